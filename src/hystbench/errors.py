@@ -1,0 +1,36 @@
+"""What a user did wrong, said in one line."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class InputError(ValueError):
+    """Bad input from a user: one line that names the place and what was expected.
+
+    The command line prints the message and exits with status 2; a traceback
+    would only hide it.
+    """
+
+
+def nearest(name: object, known: Iterable[object]) -> str:
+    """End a message with the nearest valid name, or with all of them.
+
+    Parameters
+    ----------
+    name : object
+        What the user wrote.
+    known : iterable of object
+        The valid names.
+
+    Returns
+    -------
+    str
+        ``did you mean 'x'?``, or ``expected one of a, b, c`` where nothing is near.
+    """
+    names = [str(item) for item in known]
+    close = difflib.get_close_matches(str(name), names, n=1)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    return "expected one of " + ", ".join(names)

@@ -1,0 +1,128 @@
+"""One record: an input and the output it caused, sampled uniformly."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.errors import InputError
+from hystbench.files import atomic_path
+
+FloatArray = NDArray[np.float64]
+Origin = Literal["twin", "measured"]
+Use = Literal["fit", "hold-out"]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """What a column holds: its name and its unit."""
+
+    name: str
+    unit: str
+
+    @property
+    def label(self) -> str:
+        """Axis label, such as ``displacement (um)``."""
+        return f"{self.name} ({self.unit})"
+
+
+@dataclass(frozen=True, repr=False)
+class Record:
+    """Input and output of an actuator at a uniform rate.
+
+    Parameters
+    ----------
+    name : str
+        Name of the signal; for a measured record the stem of its file.
+    dt : float
+        Sampling interval in seconds.
+    u, y : ndarray, shape (n,)
+        Input and output, in the units of their channels.
+    input, output : Channel
+        Names and units of ``u`` and ``y``.
+    origin : {"twin", "measured"}
+        Whether a simulation or a device made ``y``.
+    use : {"fit", "hold-out"}
+        Whether models may be fitted to the record.
+    """
+
+    name: str
+    dt: float
+    u: FloatArray
+    y: FloatArray
+    input: Channel
+    output: Channel
+    origin: Origin
+    use: Use = "fit"
+
+    def __post_init__(self) -> None:
+        """Freeze the arrays: a record is evidence."""
+        for array in (self.u, self.y):
+            array.setflags(write=False)
+
+    def __len__(self) -> int:
+        """Count the samples."""
+        return len(self.u)
+
+    def __repr__(self) -> str:
+        """Tell name, length, rate, channels, origin and use."""
+        return (
+            f"Record({self.name}, {len(self)} samples at {1 / self.dt:g} Hz, "
+            f"{self.input.label} to {self.output.label}, {self.origin}, {self.use})"
+        )
+
+    @property
+    def time(self) -> FloatArray:
+        """Time of each sample in seconds, from zero."""
+        return cast(FloatArray, np.arange(len(self)) * self.dt)
+
+    @property
+    def rate(self) -> float:
+        """How fast the input moves: rms(du/dt) / rms(u - mean(u)), in 1/s."""
+        moving = self.u - self.u.mean()
+        speed = np.gradient(self.u, self.dt)
+        return float(np.sqrt(np.mean(speed**2) / np.mean(moving**2)))
+
+    def save(self, path: str | Path) -> None:
+        """Write the record as a NumPy archive (no pickle), all of it or nothing."""
+        about = {
+            "name": self.name,
+            "dt": self.dt,
+            "input": asdict(self.input),
+            "output": asdict(self.output),
+            "origin": self.origin,
+            "use": self.use,
+        }
+        with atomic_path(path) as temporary, temporary.open("wb") as stream:
+            np.savez(stream, u=self.u, y=self.y, about=np.array(json.dumps(about)))
+
+
+def load_record(path: str | Path) -> Record:
+    """Read a record that :meth:`Record.save` wrote.
+
+    Raises
+    ------
+    InputError
+        If the file is not such an archive.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            about = json.loads(str(archive["about"]))
+            u, y = archive["u"], archive["y"]
+    except (OSError, KeyError, ValueError) as error:
+        raise InputError(f"{path}: not a record of hystbench ({error})") from error
+    return Record(
+        name=about["name"],
+        dt=about["dt"],
+        u=u,
+        y=y,
+        input=Channel(**about["input"]),
+        output=Channel(**about["output"]),
+        origin=about["origin"],
+        use=about["use"],
+    )
