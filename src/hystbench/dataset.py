@@ -1,0 +1,268 @@
+"""Measured records: a folder with dataset.yaml and one CSV file a record."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.errors import InputError, nearest
+from hystbench.record import Channel, FloatArray, Record, Use
+from hystbench.schema import check_against_schema, load_yaml
+
+#: Steps may differ from their mean by this share where dataset.yaml does not say:
+#: printed times are rounded, and a clock that is off by more is no uniform clock.
+UNIFORM_TOLERANCE = 0.01
+
+_CHANNEL = {
+    "type": "object",
+    "required": ["column", "unit"],
+    "additionalProperties": False,
+    "properties": {
+        "column": {"type": "string"},
+        "unit": {"type": "string"},
+        "name": {"type": "string"},
+    },
+}
+
+SCHEMA: dict[str, Any] = {
+    "type": "object",
+    "required": ["name", "time", "input", "output", "records"],
+    "additionalProperties": False,
+    "properties": {
+        "name": {"type": "string", "pattern": r"^[A-Za-z0-9][A-Za-z0-9._-]*$"},
+        "description": {"type": "string"},
+        "time": {
+            "type": "object",
+            "required": ["column", "unit"],
+            "additionalProperties": False,
+            "properties": {
+                "column": {"type": "string"},
+                "unit": {"type": "string"},
+                "tolerance": {"type": "number", "exclusiveMinimum": 0, "maximum": 0.5},
+            },
+        },
+        "input": _CHANNEL
+        | {
+            "properties": {
+                **_CHANNEL["properties"],  # type: ignore[dict-item]
+                "hold": {"enum": ["zero-order", "linear", "band-limited"]},
+            }
+        },
+        "output": _CHANNEL,
+        "noise_rms": {"type": "number", "exclusiveMinimum": 0},
+        "identification": {"type": "string"},
+        "records": {
+            "type": "array",
+            "minItems": 1,
+            "items": {
+                "type": "object",
+                "required": ["file"],
+                "additionalProperties": False,
+                "properties": {
+                    "file": {"type": "string"},
+                    "use": {"enum": ["fit", "hold-out"]},
+                    "period_samples": {"type": "integer", "minimum": 2},
+                },
+            },
+        },
+    },
+}
+
+
+@dataclass(frozen=True)
+class Dataset:
+    """What dataset.yaml says; the samples stay in their files until they are read.
+
+    Parameters
+    ----------
+    path : Path
+        The dataset.yaml itself.
+    name : str
+        Name of the dataset, and of its folder under results/datasets.
+    about : mapping
+        The checked content of dataset.yaml.
+    """
+
+    path: Path
+    name: str
+    about: Mapping[str, Any]
+
+    @property
+    def record_files(self) -> dict[str, Path]:
+        """File of each record, by the record's name (the file's stem)."""
+        files = [self.path.parent / entry["file"] for entry in self.about["records"]]
+        return {file.stem: file for file in files}
+
+    def use(self, name: str) -> Use:
+        """Tell what a record may be used for."""
+        entries = {Path(entry["file"]).stem: entry for entry in self.about["records"]}
+        use: Use = entries[name].get("use", "fit")
+        return use
+
+    def read(self, name: str) -> Record:
+        """Read and check one record.
+
+        Raises
+        ------
+        InputError
+            If a column is missing, a cell is no finite number, time does not
+            increase uniformly, or a channel does not move.
+        """
+        file = self.record_files[name]
+        time_about = self.about["time"]
+        channels = [self.about["input"], self.about["output"]]
+        columns = [time_about["column"], *(item["column"] for item in channels)]
+        time, u, y = _read_columns(file, columns)
+        dt = _sampling_interval(
+            file,
+            time * _seconds(self.path, time_about["unit"]),
+            time_about.get("tolerance", UNIFORM_TOLERANCE),
+        )
+        for item, values in zip(channels, (u, y), strict=True):
+            if np.ptp(values) == 0:
+                raise InputError(
+                    f"{file}: column {item['column']!r}: constant "
+                    f"({values[0]:g} {item['unit']}); expected a signal that moves"
+                )
+        given, measured = (Channel(_name(item), item["unit"]) for item in channels)
+        return Record(name, dt, u, y, given, measured, "measured", self.use(name))
+
+    @property
+    def identification(self) -> str:
+        """Name of the record for identification: the one named, or the slowest.
+
+        The slowest has the least rms(du/dt) / rms(u - mean(u)); only records with
+        ``use: fit`` are looked at.
+        """
+        named = self.about.get("identification")
+        if named is not None:
+            return str(named)
+        fit = [name for name in self.record_files if self.use(name) == "fit"]
+        return min(fit, key=lambda name: self.read(name).rate)
+
+
+def load_dataset(path: str | Path) -> Dataset:
+    """Read and check a dataset.yaml (its header and files, not the samples).
+
+    Parameters
+    ----------
+    path : str or Path
+        The dataset.yaml, or the folder that holds it.
+
+    Raises
+    ------
+    InputError
+        If the file, a key or a record's file is missing or wrong.
+    """
+    file = Path(path)
+    if file.is_dir():
+        file = file / "dataset.yaml"
+    about = load_yaml(file)
+    check_against_schema(about, SCHEMA, str(file))
+    dataset = Dataset(file, about["name"], about)
+    files = dataset.record_files
+    if len(files) < len(about["records"]):
+        raise InputError(f"{file}: records: two files share a stem; expected one each")
+    for record in files.values():
+        if not record.is_file():
+            there = sorted(item.name for item in record.parent.glob("*.csv"))
+            raise InputError(
+                f"{file}: records: no file {record.name!r}; "
+                f"{nearest(record.name, there)}"
+            )
+    named = about.get("identification")
+    if named is not None and named not in files:
+        raise InputError(
+            f"{file}: identification: no record {named!r}; {nearest(named, files)}"
+        )
+    if not any(dataset.use(name) == "fit" for name in files):
+        raise InputError(f"{file}: records: expected at least one with 'use: fit'")
+    _seconds(file, about["time"]["unit"])
+    return dataset
+
+
+def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
+    """Read named columns of a CSV file as numbers."""
+    with file.open(newline="", encoding="utf-8-sig") as stream:
+        header = [name.strip() for name in next(csv.reader(stream), [])]
+    for column in columns:
+        if column not in header:
+            raise InputError(
+                f"{file}: no column {column!r}; {nearest(column, header or ['time_s'])}"
+            )
+    try:
+        table = np.loadtxt(
+            file,
+            delimiter=",",
+            skiprows=1,
+            usecols=[header.index(column) for column in columns],
+            encoding="utf-8-sig",
+            ndmin=2,
+            comments=None,
+        )
+    except ValueError as error:
+        # NumPy counts rows of data from 0 or 1 by case; its own words say which.
+        reason = str(error).split(";")[0].rstrip(".")
+        raise InputError(f"{file}: {reason}; expected numbers below the header") from None
+    if len(table) < 2:
+        raise InputError(f"{file}: {len(table)} rows; expected at least 2 samples")
+    bad = np.argwhere(~np.isfinite(table))
+    if len(bad):
+        row, column_index = bad[0]
+        value = table[row, column_index]
+        raise InputError(
+            f"{file}: row {row + 2}: column {columns[column_index]!r} is {value}; "
+            "expected a finite number"
+        )
+    return tuple(np.ascontiguousarray(column) for column in table.T)
+
+
+def _sampling_interval(file: Path, time: FloatArray, tolerance: float) -> float:
+    """Mean step of a time column that increases uniformly within a tolerance."""
+    steps = np.diff(time)
+    backward = np.flatnonzero(steps <= 0)
+    if len(backward):
+        row = int(backward[0])
+        raise InputError(
+            f"{file}: row {row + 3}: time goes from {time[row]:g} s to "
+            f"{time[row + 1]:g} s; expected it to increase"
+        )
+    dt = float(time[-1] - time[0]) / len(steps)
+    # Printed times are rounded: what counts is the distance from the uniform grid.
+    away = np.abs(time - time[0] - dt * np.arange(len(time)))
+    step_error = np.abs(steps - dt)
+    row = int(np.argmax(step_error))
+    if step_error[row] > tolerance * dt or away.max() > max(tolerance, 0.5) * dt:
+        raise InputError(
+            f"{file}: row {row + 3}: a step of {steps[row]:g} s where the mean is "
+            f"{dt:g} s; expected uniform sampling within {tolerance:.3g} of a step "
+            "(time: tolerance)"
+        )
+    return dt
+
+
+def _seconds(file: Path, unit: str) -> float:
+    """How many seconds a unit of time is."""
+    if unit == "s":
+        return 1.0
+    import pint  # noqa: PLC0415  (a fifth of a second, and rarely needed)
+
+    try:
+        return float(pint.Quantity(1, unit).to("s").magnitude)
+    except (pint.UndefinedUnitError, pint.DimensionalityError) as error:
+        raise InputError(
+            f"{file}: time: unit: {error}; expected a unit of time such as s or ms"
+        ) from error
+
+
+def _name(channel: Mapping[str, str]) -> str:
+    """Name of a channel: as given, or its column without the unit behind it."""
+    if "name" in channel:
+        return channel["name"]
+    suffix = "_" + channel["unit"].replace("/", "_per_")
+    return channel["column"].removesuffix(suffix).replace("_", " ")

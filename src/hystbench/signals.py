@@ -1,0 +1,252 @@
+"""Excitation signals of the paper, Section 4, and their kin.
+
+A signal is defined in config.yaml by one kind and its parameters, for example
+``sine: {frequency_hz: 40}``. A new kind is one function here, registered in
+:data:`KINDS`; its keyword parameters are the keys that the config takes.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.errors import InputError, nearest
+from hystbench.files import atomic_path
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class Signal:
+    """An input sampled uniformly.
+
+    Parameters
+    ----------
+    name : str
+        Name in config.yaml and in every result.
+    dt : float
+        Sampling interval in seconds.
+    u : ndarray, shape (n,)
+        Input in the unit of ``unit``.
+    unit : str
+        Unit of the input.
+    """
+
+    name: str
+    dt: float
+    u: FloatArray
+    unit: str
+
+    def save(self, path: str | Path) -> None:
+        """Write the signal as a NumPy archive, all of it or nothing."""
+        with atomic_path(path) as temporary, temporary.open("wb") as stream:
+            np.savez(stream, u=self.u, name=self.name, dt=self.dt, unit=self.unit)
+
+
+def load_signal(path: str | Path) -> Signal:
+    """Read a signal that :meth:`Signal.save` wrote."""
+    with np.load(path, allow_pickle=False) as archive:
+        return Signal(
+            name=str(archive["name"]),
+            dt=float(archive["dt"]),
+            u=archive["u"],
+            unit=str(archive["unit"]),
+        )
+
+
+def _times(duration_s: float, sampling_frequency_hz: float) -> FloatArray:
+    count = round(duration_s * sampling_frequency_hz)
+    return np.asarray(np.arange(count) / sampling_frequency_hz)
+
+
+def sine(
+    *,
+    frequency_hz: float,
+    amplitude: float,
+    duration_s: float,
+    sampling_frequency_hz: float,
+) -> FloatArray:
+    """Compute ``amplitude * sin(2 pi f t)`` (Table 1, Figures 7 and 8).
+
+    Returns
+    -------
+    ndarray, shape (round(duration_s * sampling_frequency_hz),)
+        In the unit of ``amplitude``.
+    """
+    time = _times(duration_s, sampling_frequency_hz)
+    return np.asarray(amplitude * np.sin(2 * np.pi * frequency_hz * time))
+
+
+def chirp(
+    *,
+    from_hz: float,
+    to_hz: float,
+    amplitude: float,
+    duration_s: float,
+    sampling_frequency_hz: float,
+) -> FloatArray:
+    """Sweep the frequency linearly over the record (Table 2, Figure 9).
+
+    ``amplitude * sin(2 pi (from t + (to - from) t^2 / (2 duration)))``.
+
+    Returns
+    -------
+    ndarray, shape (round(duration_s * sampling_frequency_hz),)
+        In the unit of ``amplitude``.
+    """
+    time = _times(duration_s, sampling_frequency_hz)
+    slope = (to_hz - from_hz) / duration_s
+    return np.asarray(
+        amplitude * np.sin(2 * np.pi * (from_hz * time + slope * time**2 / 2))
+    )
+
+
+def sum_of_sines(
+    *,
+    frequencies_hz: Sequence[float],
+    amplitudes: Sequence[float],
+    gain: float,
+    duration_s: float,
+    sampling_frequency_hz: float,
+) -> FloatArray:
+    """Add sines that start at zero phase (Table 3, Figures 10 and 11).
+
+    Parameters
+    ----------
+    frequencies_hz, amplitudes : sequence of float
+        One of each a sine.
+    gain : float
+        Turns the unit in which the sum is written into the actuator's input unit:
+        1 if the paper's sums are in amperes, the amplifier's gain if in volts.
+
+    Raises
+    ------
+    InputError
+        If there are not as many amplitudes as frequencies.
+    """
+    if len(frequencies_hz) != len(amplitudes):
+        raise InputError(
+            f"sum-of-sines: {len(frequencies_hz)} frequencies_hz but "
+            f"{len(amplitudes)} amplitudes; expected as many"
+        )
+    time = _times(duration_s, sampling_frequency_hz)
+    total = np.zeros_like(time)
+    for frequency, amplitude in zip(frequencies_hz, amplitudes, strict=True):
+        total += amplitude * np.sin(2 * np.pi * frequency * time)
+    return np.asarray(gain * total)
+
+
+def random_sum_of_sines(
+    *,
+    band: Sequence[float],
+    level: float,
+    sines: int,
+    trials: int,
+    seed: int,
+    gain: float,
+    duration_s: float,
+    sampling_frequency_hz: float,
+) -> FloatArray:
+    """Add sines of random phase in a band (Table 3, Figure 12).
+
+    The paper names MATLAB's ``idinput``, whose sums of sinusoids take lines of the
+    record's own frequency grid, spread evenly over the band, with random phases: of
+    ``trials`` draws the one with the smallest peak-to-peak is kept and scaled so that
+    it spans ``[-level, level]``.
+
+    Parameters
+    ----------
+    band : sequence of two float
+        Lower and upper end as fractions of the Nyquist frequency.
+    level : float
+        The largest absolute value before ``gain``.
+    sines, trials, seed : int
+        How many lines, how many draws of the phases, and where the draws start.
+    gain : float
+        As in :func:`sum_of_sines`.
+
+    Raises
+    ------
+    InputError
+        If the band holds fewer lines than ``sines``.
+
+    References
+    ----------
+    L. Ljung, System Identification Toolbox, function ``idinput``.
+    """
+    time = _times(duration_s, sampling_frequency_hz)
+    count = len(time)
+    low, high = (edge * count / 2 for edge in band)
+    lines = np.arange(max(1, int(np.ceil(low))), int(np.floor(high)) + 1)
+    if len(lines) < sines:
+        raise InputError(
+            f"random-sum-of-sines: the band {list(band)} holds {len(lines)} lines in "
+            f"{duration_s:g} s; expected at least {sines} (key 'sines')"
+        )
+    # Evenly spaced, counted from the band's upper end so that its edge is excited.
+    chosen = lines[len(lines) - 1 - (len(lines) // sines) * np.arange(sines)][::-1]
+    generator = np.random.default_rng(seed)
+    best = np.zeros(count)
+    for trial in range(trials):
+        phases = generator.uniform(0, 2 * np.pi, sines)
+        angles = 2 * np.pi * np.outer(chosen / count, np.arange(count))
+        draw = np.cos(angles + phases[:, None]).sum(axis=0)
+        if trial == 0 or np.ptp(draw) < np.ptp(best):
+            best = draw
+    middle = (best.max() + best.min()) / 2
+    return np.asarray(gain * level * (best - middle) / (np.ptp(best) / 2))
+
+
+KINDS: dict[str, Callable[..., FloatArray]] = {
+    "sine": sine,
+    "chirp": chirp,
+    "sum-of-sines": sum_of_sines,
+    "random-sum-of-sines": random_sum_of_sines,
+}
+
+
+def make_signal(
+    name: str, definition: Mapping[str, Mapping[str, Any]], common: Mapping[str, Any]
+) -> Signal:
+    """Make a signal from its definition in config.yaml.
+
+    Parameters
+    ----------
+    name : str
+        The signal's name.
+    definition : mapping
+        One key, the kind, and its parameters; they win over ``common``.
+    common : mapping
+        Values for the parameters that the definition leaves out, and ``unit``.
+
+    Raises
+    ------
+    InputError
+        If the kind or a parameter is unknown, or one is missing.
+    """
+    place = f"config.yaml: excitations: {name}"
+    if len(definition) != 1:
+        raise InputError(f"{place}: expected one kind of {', '.join(KINDS)}")
+    ((kind, given),) = definition.items()
+    if kind not in KINDS:
+        raise InputError(f"{place}: unknown kind {kind!r}; {nearest(kind, KINDS)}")
+    expected = list(inspect.signature(KINDS[kind]).parameters)
+    for key in given:
+        if key not in expected:
+            raise InputError(
+                f"{place}: unknown key {key!r}; {nearest(key, expected)}"
+            )
+    values = {key: common[key] for key in expected if key in common} | dict(given)
+    missing = [key for key in expected if key not in values]
+    if missing:
+        raise InputError(f"{place}: {kind} misses the key {missing[0]!r}")
+    return Signal(
+        name=name,
+        dt=1 / values["sampling_frequency_hz"],
+        u=KINDS[kind](**values),
+        unit=common["unit"],
+    )
