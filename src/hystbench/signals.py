@@ -209,10 +209,10 @@ KINDS: dict[str, Callable[..., FloatArray]] = {
 }
 
 
-def make_signal(
+def check_definition(
     name: str, definition: Mapping[str, Mapping[str, Any]], common: Mapping[str, Any]
-) -> Signal:
-    """Make a signal from its definition in config.yaml.
+) -> tuple[str, dict[str, Any]]:
+    """Check a signal's definition in config.yaml without making the signal.
 
     Parameters
     ----------
@@ -221,7 +221,13 @@ def make_signal(
     definition : mapping
         One key, the kind, and its parameters; they win over ``common``.
     common : mapping
-        Values for the parameters that the definition leaves out, and ``unit``.
+        Values for the parameters that the definition leaves out.
+
+    Returns
+    -------
+    kind : str
+    values : dict
+        A value for each parameter of the kind.
 
     Raises
     ------
@@ -229,21 +235,31 @@ def make_signal(
         If the kind or a parameter is unknown, or one is missing.
     """
     place = f"config.yaml: excitations: {name}"
-    if len(definition) != 1:
-        raise InputError(f"{place}: expected one kind of {', '.join(KINDS)}")
     ((kind, given),) = definition.items()
     if kind not in KINDS:
         raise InputError(f"{place}: unknown kind {kind!r}; {nearest(kind, KINDS)}")
     expected = list(inspect.signature(KINDS[kind]).parameters)
     for key in given:
         if key not in expected:
-            raise InputError(
-                f"{place}: unknown key {key!r}; {nearest(key, expected)}"
-            )
+            raise InputError(f"{place}: unknown key {key!r}; {nearest(key, expected)}")
     values = {key: common[key] for key in expected if key in common} | dict(given)
-    missing = [key for key in expected if key not in values]
-    if missing:
-        raise InputError(f"{place}: {kind} misses the key {missing[0]!r}")
+    for key in expected:
+        if key not in values:
+            raise InputError(f"{place}: {kind} misses the key {key!r}")
+        numbers = values[key] if isinstance(values[key], list) else [values[key]]
+        if not all(type(number) in (int, float) for number in numbers):
+            raise InputError(f"{place}: {key}: {values[key]!r}; expected numbers")
+    return kind, values
+
+
+def make_signal(
+    name: str, definition: Mapping[str, Mapping[str, Any]], common: Mapping[str, Any]
+) -> Signal:
+    """Make a signal from its definition in config.yaml.
+
+    Takes what :func:`check_definition` takes; ``common`` has the ``unit`` as well.
+    """
+    kind, values = check_definition(name, definition, common)
     return Signal(
         name=name,
         dt=1 / values["sampling_frequency_hz"],

@@ -1,0 +1,200 @@
+"""config.yaml: checked as a whole, handed out job by job.
+
+Each job gets the settings that it depends on and no others, so that Snakemake
+reruns what a changed setting changes and nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hystbench.dataset import Dataset, load_dataset
+from hystbench.errors import InputError, nearest
+from hystbench.schema import check_against_schema, load_yaml
+from hystbench.signals import check_definition
+
+#: The four LMS filters, in the order of the paper's tables.
+FILTER_NAMES = ("gpo", "backlash", "volterra", "delayed")
+
+_KEYS_OF_FILTER = {
+    "gpo": ("input_before", "initial_state", "operator_form"),
+    "backlash": ("input_before", "initial_state", "backlash_structure"),
+    "volterra": ("input_before",),
+    "delayed": ("input_before",),
+}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """A checked config.yaml.
+
+    Parameters
+    ----------
+    config : mapping
+        The content, as the schema has it.
+    dataset : Dataset or None
+        The measured dataset, or None where the twin is the source.
+    """
+
+    config: Mapping[str, Any]
+    dataset: Dataset | None
+
+    @property
+    def results(self) -> str:
+        """Folder of the results: a dataset's never overwrite the reproduction's."""
+        if self.dataset is None:
+            return "results"
+        return f"results/datasets/{self.dataset.name}"
+
+    @property
+    def signals(self) -> list[str]:
+        """Names of the signals to run; a dataset's are its records."""
+        if self.dataset is None:
+            return list(self.config["signals"])
+        return list(self.dataset.record_files)
+
+    @property
+    def models(self) -> list[str]:
+        """Names of the models to run."""
+        return list(self.config["models"])
+
+    @property
+    def filters(self) -> list[str]:
+        """Names of the LMS filters to run."""
+        return [name for name in FILTER_NAMES if name in self.models]
+
+    @property
+    def identification_signal(self) -> str:
+        """Name of the record on which Algorithm 1 runs."""
+        if self.dataset is None:
+            return str(self.config["identification"]["signal"])
+        return self.dataset.identification
+
+    @property
+    def rdgpi_fit_signals(self) -> list[str]:
+        """Names of the records to which the RDGPI model is fitted."""
+        if self.dataset is None:
+            return list(self.config["rdgpi"]["fit_signals"])
+        return [name for name in self.signals if self.dataset.use(name) == "fit"]
+
+    @property
+    def order_sweep_signal(self) -> str:
+        """Name of the record of Figure 7; of a dataset, the identification's."""
+        if self.dataset is None:
+            return str(self.config["order_sweep"]["signal"])
+        return self.identification_signal
+
+    @property
+    def all_records(self) -> list[str]:
+        """Names of all records that some job reads."""
+        extra = [self.identification_signal, self.order_sweep_signal]
+        extra += self.rdgpi_fit_signals if "rdgpi" in self.models else []
+        return list(dict.fromkeys([*self.signals, *extra]))
+
+    @property
+    def envelopes(self) -> str:
+        """Which envelope functions the GPO filter uses."""
+        section = "filters" if self.dataset is None else "measured"
+        return str(self.config[section]["envelopes"])
+
+    def signal_job(self, name: str) -> dict[str, Any]:
+        """Give a signal's definition and the common values that it takes."""
+        return {
+            "definition": self.config["excitations"][name],
+            "common": dict(self.config["excitation"]),
+        }
+
+    def filter_job(self, model: str) -> dict[str, Any]:
+        """Give the settings on which one filter's run depends."""
+        filters = self.config["filters"]
+        job = {key: filters[key] for key in _KEYS_OF_FILTER[model]}
+        job |= {key: filters[key] for key in ("order", "transient_s", "smoothing_s")}
+        if model == "gpo":
+            job["envelopes"] = self.envelopes
+        if self.dataset is None:
+            job["amplitude"] = self.config["excitation"]["amplitude"]
+            job["convergence_factor"] = filters["convergence_factor"][model]
+        else:
+            job["fraction_of_bound"] = self.config["measured"]["fraction_of_bound"]
+        return job
+
+
+def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Settings:
+    """Check a config as a whole.
+
+    Parameters
+    ----------
+    config : mapping
+        What Snakemake read from config.yaml, further files and ``--config``.
+    schema_file : str or Path
+        The JSON Schema, as YAML.
+
+    Returns
+    -------
+    Settings
+
+    Raises
+    ------
+    InputError
+        With the first mistake found.
+    """
+    place = "config.yaml"
+    check_against_schema(config, load_yaml(schema_file), place)
+    excitations = config["excitations"]
+    for name, definition in excitations.items():
+        check_definition(name, definition, config["excitation"])
+    named = [
+        *(("signals", name) for name in config["signals"]),
+        ("identification: signal", config["identification"]["signal"]),
+        ("order_sweep: signal", config["order_sweep"]["signal"]),
+        *(("rdgpi: fit_signals", name) for name in config["rdgpi"]["fit_signals"]),
+    ]
+    if config["source"] == "twin":
+        _check_names(place, named, excitations)
+        _check_lengths(place, config)
+        return Settings(config, None)
+    dataset = load_dataset(config["source"])
+    for name in dataset.record_files:
+        _check_length(
+            str(dataset.record_files[name]),
+            len(dataset.read(name)),
+            config["filters"]["order"],
+        )
+    return Settings(config, dataset)
+
+
+def _check_names(
+    place: str, named: Iterable[tuple[str, str]], known: Iterable[str]
+) -> None:
+    known = list(known)
+    for key, name in named:
+        if name not in known:
+            raise InputError(
+                f"{place}: {key}: no signal {name!r}; {nearest(name, known)}"
+            )
+
+
+def _check_lengths(place: str, config: Mapping[str, Any]) -> None:
+    common = config["excitation"]
+    orders = config["order_sweep"]["orders"]
+    used = {name: config["filters"]["order"] for name in config["signals"]}
+    sweep = config["order_sweep"]["signal"]
+    used[sweep] = max([*orders, used.get(sweep, 1)])
+    for name, order in used.items():
+        ((_, given),) = config["excitations"][name].items()
+        duration = given.get("duration_s", common["duration_s"])
+        samples = round(duration * common["sampling_frequency_hz"])
+        _check_length(f"{place}: excitations: {name}", samples, order)
+
+
+def _check_length(place: str, samples: int, order: int) -> None:
+    """A filter of order N has N + 1 taps; fewer than twice as many samples is no run."""
+    expected = 2 * (order + 1)
+    if samples < expected:
+        raise InputError(
+            f"{place}: {samples} samples are too few for filters of order {order}; "
+            f"expected at least {expected}"
+        )
