@@ -1,0 +1,184 @@
+"""The numbers of the paper as printed: its error tables and what its text states.
+
+Source: "Modeling of Rate-Dependent Hysteresis Using a GPO-Based Adaptive Filter"
+(Zhang and Ma), Tables 1-4 and Section 4. Its measured data are not public.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cache
+from importlib.resources import files
+from typing import Any, Literal
+
+import yaml
+
+Metric = Literal["mse", "re"]
+METRICS: tuple[Metric, ...] = ("mse", "re")
+FILTERS = ("gpo", "backlash", "volterra", "delayed")
+MODELS = (*FILTERS, "rdgpi")
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A closed interval of real numbers."""
+
+    low: float
+    high: float
+
+    def meets(self, other: Interval) -> bool:
+        """Tell whether the two share a point."""
+        return self.low <= other.high and other.low <= self.high
+
+    def __str__(self) -> str:
+        return f"{self.low:.4f} to {self.high:.4f}"
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A number with its digits as printed."""
+
+    text: str
+
+    @property
+    def value(self) -> float:
+        """The number."""
+        return float(self.text)
+
+    @property
+    def interval(self) -> Interval:
+        """All numbers that round to these digits: half a unit in the last place."""
+        number = Decimal(self.text)
+        exponent = number.as_tuple().exponent
+        if not isinstance(exponent, int):
+            raise ValueError(f"{self.text!r} is not a finite number")
+        half = Decimal(5).scaleb(exponent - 1)
+        return Interval(float(number - half), float(number + half))
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The MSE (um^2) and the RE that the paper prints for one signal and model."""
+
+    table: int
+    signal: str
+    model: str
+    mse: Printed
+    re: Printed
+
+    def printed(self, metric: Metric) -> Printed:
+        """Give the MSE or the RE."""
+        return self.mse if metric == "mse" else self.re
+
+    @property
+    def rms(self) -> Interval:
+        """RMS displacement (um) that the pair implies: sqrt(MSE) / RE.
+
+        RE = sqrt(sum e^2 / sum d^2), so MSE / RE^2 = mean(d^2), whatever the model.
+        """
+        mse, re_ = self.mse.interval, self.re.interval
+        return Interval(mse.low**0.5 / re_.high, mse.high**0.5 / re_.low)
+
+
+def _read_csv(name: str) -> list[dict[str, str]]:
+    text = files(__package__).joinpath(name).read_text(encoding="utf-8")
+    return list(csv.DictReader(text.splitlines()))
+
+
+@cache
+def load() -> tuple[Pair, ...]:
+    """Read the 62 pairs: Tables 1-3 (52 of filters) and Table 4 (10 of the RDGPI)."""
+    return tuple(
+        Pair(
+            table=int(row["table"]),
+            signal=row["signal"],
+            model=row["model"],
+            mse=Printed(row["mse_um2"]),
+            re=Printed(row["relative_error"]),
+        )
+        for row in _read_csv("errors.csv")
+    )
+
+
+@dataclass(frozen=True)
+class Table4Row:
+    """A row of Table 4 as labelled in the paper, with its column of the GPO filter."""
+
+    label: str
+    mse: Printed
+    re: Printed
+
+
+@cache
+def load_table4_gpo() -> tuple[Table4Row, ...]:
+    """Read the GPO column of Table 4, which repeats Tables 1-3."""
+    return tuple(
+        Table4Row(row["label"], Printed(row["mse_um2"]), Printed(row["relative_error"]))
+        for row in _read_csv("table4_gpo.csv")
+    )
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A time of the chirp and the frequency that the paper gives for it."""
+
+    time_s: float
+    frequency_hz: float
+
+
+@dataclass(frozen=True)
+class Text:
+    """What the text of the paper states in numbers; see ``text.yaml``."""
+
+    stroke_um: float
+    sampling_hz: float
+    amplitude_a: float
+    sine_frequencies_hz: tuple[float, ...]
+    order_sweep_hz: float
+    order_sweep_knee: int
+    filter_length: int
+    identification_hz: float
+    envelope: dict[str, float]
+    chirp_from_hz: float
+    chirp_to_hz: float
+    chirp_minimum: Moment
+    chirp_resonance: Moment
+    sums: dict[str, dict[float, float]]
+    random_band_of_nyquist: tuple[float, float]
+    random_level: float
+
+
+@cache
+def load_text() -> Text:
+    """Read the numbers of the text."""
+    source = files(__package__).joinpath("text.yaml").read_text(encoding="utf-8")
+    content: dict[str, Any] = yaml.safe_load(source)
+    chirp = content.pop("chirp")
+    random = content.pop("random_sum")
+    low, high = random["band_of_nyquist"]
+    return Text(
+        **{
+            **content,
+            "sine_frequencies_hz": tuple(map(float, content["sine_frequencies_hz"])),
+        },
+        chirp_from_hz=chirp["from_hz"],
+        chirp_to_hz=chirp["to_hz"],
+        chirp_minimum=Moment(**chirp["minimum"]),
+        chirp_resonance=Moment(**chirp["resonance"]),
+        random_band_of_nyquist=(low, high),
+        random_level=random["level"],
+    )
+
+
+def signals(pairs: tuple[Pair, ...]) -> tuple[str, ...]:
+    """List the signals in the order of the tables, each once."""
+    return tuple(dict.fromkeys(pair.signal for pair in pairs))
+
+
+def sine_frequency(signal: str) -> float | None:
+    """Read the frequency in Hz off the name of a sine, as ``sine-010hz``."""
+    match = re.fullmatch(r"sine-(\d+)hz", signal)
+    return float(match[1]) if match else None

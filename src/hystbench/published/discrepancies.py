@@ -1,0 +1,327 @@
+"""Errors in the paper's tables, text and equations, each with its evidence.
+
+Where the printed numbers show the error, the evidence is computed from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from hystbench.published import (
+    FILTERS,
+    Pair,
+    Table4Row,
+    Text,
+    load,
+    load_table4_gpo,
+    load_text,
+    sine_frequency,
+)
+from hystbench.published.equations import (
+    gamma_left,
+    gamma_right,
+    generalized_play,
+    generalized_play_eq12,
+)
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class AuditRow:
+    """One finding about the paper's own numbers or words."""
+
+    kind: str
+    where: str
+    statement: str
+    evidence: str
+
+
+TABLE4_SIGNALS = (
+    "sine-010hz",
+    "sine-020hz",
+    "sine-040hz",
+    "sine-060hz",
+    "sine-080hz",
+    "sine-100hz",
+    "chirp-1-100hz",
+    "multisine-10-30-50hz",
+    "multisine-5-25-50-75-100hz",
+    "multisine-random-0-100hz",
+)
+"""Signals of the rows of Table 4 from the first; the last by its numbers."""
+
+
+def _sines(pairs: tuple[Pair, ...], model: str) -> dict[float, Pair]:
+    """Give the pairs of a model under sines, by rising frequency."""
+    found = {
+        frequency: pair
+        for pair in pairs
+        if pair.model == model
+        and (frequency := sine_frequency(pair.signal)) is not None
+    }
+    return dict(sorted(found.items()))
+
+
+def table4_gpo_repeats(pairs: tuple[Pair, ...], rows: tuple[Table4Row, ...]) -> bool:
+    """Tell whether Table 4 repeats the GPO errors of Tables 1-3 digit for digit."""
+    gpo = {p.signal: (p.mse, p.re) for p in pairs if p.model == "gpo"}
+    return all(
+        gpo[signal] == (row.mse, row.re)
+        for signal, row in zip(TABLE4_SIGNALS, rows, strict=True)
+    )
+
+
+def table4_rows(
+    pairs: tuple[Pair, ...], rows: tuple[Table4Row, ...]
+) -> Iterator[AuditRow]:
+    """Check the column of the GPO filter and the labels of Table 4."""
+    repeats = table4_gpo_repeats(pairs, rows)
+    yield AuditRow(
+        "check" if repeats else "conflict",
+        "Table 4, GPO column",
+        "repeats Tables 1-3" if repeats else "differs from Tables 1-3",
+        f"{len(rows)} pairs of MSE and RE compared digit for digit",
+    )
+    last = rows[-1]
+    for pair in pairs:
+        if pair.model == "gpo" and (pair.mse, pair.re) == (last.mse, last.re):
+            yield AuditRow(
+                "label",
+                "Table 4, last row",
+                "labelled Figure 9a, which is the chirp; it is the random sum of "
+                "Figure 12",
+                f"its GPO pair {last.mse.text}, {last.re.text} is that of "
+                f"{pair.signal} in Table {pair.table}",
+            )
+
+
+def frequency_list(pairs: tuple[Pair, ...], text: Text) -> Iterator[AuditRow]:
+    """Compare the frequencies of the text with those of the tables."""
+    tabled, told = set(_sines(pairs, "gpo")), set(text.sine_frequencies_hz)
+    if tabled != told:
+        yield AuditRow(
+            "text",
+            "Section 4, list of sine frequencies",
+            "the text and Table 1 name different sines",
+            f"only in the text: {_hz(told - tabled)}; "
+            f"only in Table 1: {_hz(tabled - told)}",
+        )
+    if text.order_sweep_hz not in tabled:
+        yield AuditRow(
+            "text",
+            "Section 4, Figure 7",
+            "the sine of the order sweep is in no table",
+            f"{text.order_sweep_hz:g} Hz; Table 1 has {_hz(tabled)}",
+        )
+
+
+def _hz(frequencies: set[float]) -> str:
+    return ", ".join(f"{f:g}" for f in sorted(frequencies)) + " Hz"
+
+
+def gpo_not_best(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
+    """Find signals of Tables 1-3 at which another filter beats the GPO filter."""
+    mse = {(p.signal, p.model): p for p in pairs}
+    for pair in pairs:
+        if pair.model != "gpo":
+            continue
+        for other in FILTERS:
+            rival = mse[pair.signal, other]
+            if rival.mse.value < pair.mse.value:
+                yield AuditRow(
+                    "contradiction",
+                    f"Table {pair.table}, {pair.signal}",
+                    "the text says that the GPO-based filter has the smallest errors",
+                    f"MSE of {other} {rival.mse.text} < gpo {pair.mse.text}; "
+                    f"RE {rival.re.text} against {pair.re.text}",
+                )
+
+
+def gpo_dips(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
+    """Find falls of the GPO filter's error between neighbouring sines."""
+    row = list(_sines(pairs, "gpo").items())
+    for (below, first), (above, second) in pairwise(row):
+        if second.mse.value < first.mse.value:
+            trend = "rises" if second.re.value > first.re.value else "falls"
+            yield AuditRow(
+                "contradiction",
+                f"Table 1, gpo, {above:g} Hz",
+                "the text says that the errors of the GPO-based filter increase with "
+                "frequency",
+                f"MSE falls from {first.mse.text} at {below:g} Hz to "
+                f"{second.mse.text}; RE {trend} from {first.re.text} to "
+                f"{second.re.text}",
+            )
+
+
+def coarse_digits(pairs: tuple[Pair, ...]) -> Iterator[AuditRow]:
+    """Find pairs printed so coarsely that they can contradict nothing."""
+    for pair in pairs:
+        if pair.rms.high > 2 * pair.rms.low:
+            yield AuditRow(
+                "rounding",
+                f"Table {pair.table}, {pair.signal}, {pair.model}",
+                "printed too coarsely to be checked",
+                f"RE {pair.re.text}: the pair implies an RMS of {pair.rms} um",
+            )
+
+
+def chirp_rate(text: Text) -> Iterator[AuditRow]:
+    """Work out the length of the chirp, which the paper does not give."""
+    rates = [
+        (moment.frequency_hz - text.chirp_from_hz) / moment.time_s
+        for moment in (text.chirp_minimum, text.chirp_resonance)
+    ]
+    rate = sum(rates) / len(rates)
+    length = (text.chirp_to_hz - text.chirp_from_hz) / rate
+    yield AuditRow(
+        "inference",
+        "Section 4, Figure 9",
+        "the length of the chirp is not given; two moments of it fix its rate",
+        f"{rates[0]:.2f} and {rates[1]:.2f} Hz/s, so {text.chirp_from_hz:g} to "
+        f"{text.chirp_to_hz:g} Hz takes {length:.2f} s",
+    )
+
+
+def crossings(
+    envelope: dict[str, float], low: float, high: float, step: float = 1e-5
+) -> tuple[tuple[float, float, float], ...]:
+    """Find where gamma_l <= gamma_r: start, end and the largest excess.
+
+    Scans [low, high] with the given step, so the ends are true to one step.
+    """
+    v: FloatArray = np.linspace(low, high, round((high - low) / step) + 1)
+    excess = gamma_right(v, envelope) - gamma_left(v, envelope)
+    inside = np.flatnonzero(excess >= 0)
+    if len(inside) == 0:
+        return ()
+    runs = np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1)
+    return tuple(
+        (float(v[run[0]]), float(v[run[-1]]), float(excess[run].max())) for run in runs
+    )
+
+
+def envelopes(text: Text) -> Iterator[AuditRow]:
+    """Check gamma_l > gamma_r and the start of Eqs. 4 and 12."""
+    limit = text.amplitude_a
+    for start, end, excess in crossings(text.envelope, -limit, limit):
+        yield AuditRow(
+            "contradiction",
+            "Section 4, published envelopes",
+            "Section 2 asks for gamma_l > gamma_r",
+            f"gamma_r >= gamma_l for {start:.3f} < u < {end:.3f} A, by at most "
+            f"{excess:.1e}",
+        )
+    below = crossings(text.envelope, -2 * limit, -limit)
+    if below:
+        _, end, excess = below[-1]
+        yield AuditRow(
+            "contradiction",
+            "Section 4, published envelopes",
+            "Section 2 asks for gamma_l > gamma_r",
+            f"gamma_r >= gamma_l again below {end:.4f} A, outside the sines' "
+            f"amplitude of {limit:g} A",
+        )
+    zero: FloatArray = np.zeros(1)
+    eq4 = generalized_play(zero, zero, text.envelope)[0, 0]
+    eq12 = generalized_play_eq12(zero, zero, text.envelope)[0, 0]
+    yield AuditRow(
+        "equation",
+        "Eqs. 4 and 12",
+        "Eq. 12 is called a rewriting of Eqs. 3-4; from rest they start apart",
+        f"x = 0, H = 0, r = 0: Eq. 4 gives {eq4:.4f}, Eq. 12 stays at {eq12:g}",
+    )
+
+
+def units_of_sums(pairs: tuple[Pair, ...], text: Text) -> Iterator[AuditRow]:
+    """Compare displacement per input of the two sums with that of the sines."""
+    rms = {p.signal: p.rms for p in pairs if p.model == "backlash"}
+    gains = [
+        (pair.rms.low + pair.rms.high) / 2 / (text.amplitude_a / 2**0.5)
+        for pair in _sines(pairs, "backlash").values()
+    ]
+    for signal, lines in text.sums.items():
+        amplitude = (sum(a**2 for a in lines.values()) / 2) ** 0.5
+        gain = (rms[signal].low + rms[signal].high) / 2 / amplitude
+        if gain > max(gains):
+            yield AuditRow(
+                "unit",
+                f"Section 4, {signal}",
+                "the unit of u is not given; in amperes the sum moves the actuator "
+                "more than any sine does. A guess that fits: u is in volts",
+                f"RMS displacement per RMS input {gain:.1f} um/A; the sines give "
+                f"{min(gains):.1f} to {max(gains):.1f} um/A",
+            )
+
+
+def wording() -> Iterator[AuditRow]:
+    """List what the words and the symbols of the paper leave wrong or open."""
+    length = load_text().filter_length
+    yield from (
+        AuditRow(
+            "equation",
+            "Eq. 13",
+            "the weights are written w_i(k-i), but Eq. 18 updates w(k) as one vector",
+            "w^T(k) H in the same equation asks for w_i(k)",
+        ),
+        AuditRow(
+            "equation",
+            "Eqs. 7-8",
+            "f takes v, but is given the largest gamma_r(v) or the smallest gamma_l(v)",
+            "f(v, w) of Eq. 4 applies the envelopes itself, so here they are applied "
+            "twice",
+        ),
+        AuditRow(
+            "equation",
+            "Algorithm 1, step 2, and Eq. 9",
+            "the number of GPOs is set to N, but Eq. 9 sums over i = 0 to N",
+            f"{length} against {length + 1} for N = {length}",
+        ),
+        AuditRow(
+            "text",
+            "Section 4, after Figure 7",
+            "a sentence on the number of weights breaks off: that of the other filters "
+            "'of the N-th-order was set at 30'",
+            f"order 30 has {length + 1} weights by Eq. 13 and the Volterra filter "
+            f"{length + 1 + (length + 1) ** 2} by N + 1 + (N + 1)^2; length 30 is "
+            f"order {length - 1}",
+        ),
+        AuditRow(
+            "text",
+            "Section 4, sensor",
+            "8 mV/um is called a resolution; its unit is that of a sensitivity",
+            "a resolution is a displacement, in um",
+        ),
+        AuditRow(
+            "missing",
+            "Section 4, RDGPI model",
+            "11 parameters are printed, but the equations that take them are not",
+            "the equations are in the paper's reference [32]",
+        ),
+        AuditRow(
+            "missing",
+            "Section 4",
+            "step sizes mu, length of the records and number of passes are not given",
+            "MSE and RE depend on all three",
+        ),
+    )
+
+
+def discrepancies() -> tuple[AuditRow, ...]:
+    """List every error but the inconsistent pairs of MSE and RE."""
+    pairs, text = load(), load_text()
+    return (
+        *table4_rows(pairs, load_table4_gpo()),
+        *frequency_list(pairs, text),
+        *gpo_not_best(pairs),
+        *gpo_dips(pairs),
+        *coarse_digits(pairs),
+        *chirp_rate(text),
+        *envelopes(text),
+        *units_of_sums(pairs, text),
+        *wording(),
+    )
