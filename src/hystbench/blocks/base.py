@@ -1,0 +1,110 @@
+"""What a block is: one physical effect that maps a signal to a signal."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import MISSING, dataclass, fields
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from hystbench.blocks.parameter import Parameter
+from hystbench.errors import InputError, nearest
+from hystbench.record import FloatArray
+
+Place = Literal["base", "drive", "material", "mechanics", "sensor"]
+
+
+@dataclass(frozen=True)
+class Block(ABC):
+    """One physical effect in the chain from input u to output y.
+
+    A subclass is a frozen dataclass. Its fields are declared with
+    :func:`~hystbench.blocks.parameter.number` and its kin; it sets ``name``,
+    ``place`` and ``reference`` and says in its docstring what it computes.
+    """
+
+    name: ClassVar[str]
+    place: ClassVar[Place]
+    reference: ClassVar[str]
+
+    @classmethod
+    def parameters(cls) -> dict[str, Parameter]:
+        """Return the declared parameters by name."""
+        return {item.name: item.metadata["parameter"] for item in fields(cls)}
+
+    @classmethod
+    def from_mapping(cls, values: Mapping[str, Any]) -> Block:
+        """Make a block from parameter names and values.
+
+        Raises
+        ------
+        InputError
+            If a parameter is unknown, missing, of the wrong type or out of bounds.
+        """
+        known = cls.parameters()
+        for key in values:
+            if key not in known:
+                raise InputError(f"unknown parameter {key!r}; {nearest(key, known)}")
+        for item in fields(cls):
+            if item.name not in values and item.default is MISSING:
+                about = item.metadata["parameter"]
+                raise InputError(
+                    f"missing parameter {item.name!r} ({about.unit}): {about.meaning}"
+                )
+        return cls(**values)
+
+    def __post_init__(self) -> None:
+        """Check every value against its declaration, then all of them together."""
+        for key, about in self.parameters().items():
+            checked = about.check(key, getattr(self, key))
+            object.__setattr__(self, key, checked)
+        self.check()
+
+    def check(self) -> None:  # noqa: B027
+        """Check what no single parameter shows; a subclass raises InputError."""
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return the parameters as a model file holds them; defaults are left out."""
+        values = {
+            item.name: getattr(self, item.name)
+            for item in fields(self)
+            if getattr(self, item.name) != item.default
+        }
+        return {k: list(v) if isinstance(v, tuple) else v for k, v in values.items()}
+
+    @abstractmethod
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the block's output.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+            Output of the block before; the model's input for the first block.
+        u : ndarray, shape (n,)
+            The model's input, which heat and friction depend on.
+        dt : float
+            Sampling interval in seconds.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+
+
+@dataclass(frozen=True)
+class RandomBlock(Block):
+    """A block that adds a random signal.
+
+    Without a random generator a model adds nothing here, so that
+    :meth:`simulate` is the block's mean.
+    """
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Return ``z`` as it is: the mean of what the block adds is zero."""
+        return z
+
+    @abstractmethod
+    def draw(self, n: int, dt: float, rng: np.random.Generator) -> FloatArray:
+        """Draw ``n`` samples of the random signal."""

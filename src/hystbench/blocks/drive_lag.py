@@ -1,0 +1,33 @@
+"""Block ``drive-lag``: first-order lag of amplifier and coil."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.parameter import number
+
+
+@dataclass(frozen=True)
+class DriveLag(LinearBlock):
+    """First-order lag, as of a coil's L/R: ``V(s) = U(s) / (1 + s tau)``.
+
+    References
+    ----------
+    .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
+       Press, 2000: a coil driven through its resistance.
+    """
+
+    name: ClassVar = "drive-lag"
+    place: ClassVar = "drive"
+    reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
+
+    time_constant_s: float = number("s", "tau", 1e-7, 1e3)
+
+    def continuous(self) -> StateSpace:
+        """Return the lag with its output as the state."""
+        rate = 1.0 / self.time_constant_s
+        return StateSpace(np.array([[-rate]]), np.array([rate]), np.array([1.0]), 0.0)

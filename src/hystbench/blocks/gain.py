@@ -1,0 +1,31 @@
+"""Block ``gain``: a static straight line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class Gain(Block):
+    """Static gain with an offset: ``y = value z + offset``.
+
+    References
+    ----------
+    By definition.
+    """
+
+    name: ClassVar = "gain"
+    place: ClassVar = "base"
+    reference: ClassVar = "by definition"
+
+    value: float = number("Y/U", "static gain", -1e9, 1e9)
+    offset: float = number("Y", "output at zero", -1e9, 1e9, default=0.0)
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the straight line."""
+        return self.value * z + self.offset

@@ -1,0 +1,64 @@
+"""Block ``gpi``: generalized Prandtl-Ishlinskii hysteresis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import numbers
+from hystbench.errors import InputError
+from hystbench.operators import Envelope, generalized_prandtl_ishlinskii
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class GeneralizedPrandtlIshlinskii(Block):
+    """Weighted sum of generalized play operators (paper, Eqs. 3-6 and 9).
+
+    ``y(t) = sum_i w_i F_{r_i}[z](t)`` with the envelope functions
+    ``gamma_l(z) = a0 tanh(a1 z + a2) + a3`` and
+    ``gamma_r(z) = a4 tanh(a5 z + a6) + a7``. Each operator starts from Eq. 3 with
+    w(0) = 0. Rate-independent.
+
+    References
+    ----------
+    .. [1] M. Al Janaideh, S. Rakheja, C.-Y. Su, "An analytical generalized
+       Prandtl-Ishlinskii model inversion for hysteresis compensation in
+       micropositioning control", IEEE/ASME Transactions on Mechatronics 16 (2011)
+       734-744.
+    """
+
+    name: ClassVar = "gpi"
+    place: ClassVar = "base"
+    reference: ClassVar = (
+        "Al Janaideh, Rakheja, Su, IEEE/ASME Trans. Mechatronics 16 (2011) 734-744"
+    )
+
+    envelope: tuple[float, ...] = numbers(
+        "-, 1/U, -, -", "a0 to a7 of Eqs. 5 and 6", -1e3, 1e3, length=8
+    )
+    thresholds: tuple[float, ...] = numbers(
+        "-", "r_i, in the unit of the envelope functions", 0.0, 1e3
+    )
+    weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -1e6, 1e6)
+
+    def check(self) -> None:
+        """Refuse as many weights as there are no thresholds for."""
+        if len(self.weights) != len(self.thresholds):
+            raise InputError(
+                f"weights: expected {len(self.thresholds)} numbers, one a threshold, "
+                f"got {len(self.weights)}"
+            )
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute Eq. 9 for every sample."""
+        envelope = Envelope(*self.envelope)
+        return generalized_prandtl_ishlinskii(
+            envelope.left(z),
+            envelope.right(z),
+            np.array(self.thresholds),
+            np.array(self.weights),
+        )

@@ -1,0 +1,47 @@
+"""Block ``resonance``: one mechanical mode beside a rigid path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.parameter import number
+
+
+@dataclass(frozen=True)
+class Resonance(LinearBlock):
+    """One mode that carries a part of the static displacement.
+
+    ``G(s) = (1 - p) + p wn^2 / (s^2 + 2 zeta wn s + wn^2)``, with static gain one.
+
+    References
+    ----------
+    .. [1] D. J. Ewins, Modal Testing: Theory, Practice and Application, 2nd ed.,
+       Research Studies Press, 2000.
+    """
+
+    name: ClassVar = "resonance"
+    place: ClassVar = "mechanics"
+    reference: ClassVar = "Ewins, Modal Testing, 2nd ed., 2000"
+
+    frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)
+    damping_ratio: float = number("-", "zeta, share of critical damping", 1e-5, 10.0)
+    participation: float = number(
+        "-",
+        "p, static share; negative: out of phase with the rest",
+        -10.0,
+        10.0,
+    )
+
+    def continuous(self) -> StateSpace:
+        """Return the mode with displacement and scaled velocity as states."""
+        wn = 2.0 * np.pi * self.frequency_hz
+        return StateSpace(
+            np.array([[0.0, wn], [-wn, -2.0 * self.damping_ratio * wn]]),
+            np.array([0.0, wn]),
+            np.array([self.participation, 0.0]),
+            1.0 - self.participation,
+        )

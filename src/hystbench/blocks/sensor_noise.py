@@ -1,0 +1,35 @@
+"""Block ``sensor-noise``: white noise of the displacement sensor."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import RandomBlock
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class SensorNoise(RandomBlock):
+    """White Gaussian noise of zero mean added to the output.
+
+    Without a random generator nothing is added.
+
+    References
+    ----------
+    .. [1] A. J. Fleming, "A review of nanometer resolution position sensors",
+       Sensors and Actuators A 190 (2013) 106-126.
+    """
+
+    name: ClassVar = "sensor-noise"
+    place: ClassVar = "sensor"
+    reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
+
+    rms: float = number("Y", "standard deviation of a sample", 0.0, 1e6)
+
+    def draw(self, n: int, dt: float, rng: np.random.Generator) -> FloatArray:
+        """Draw independent normal samples."""
+        return rng.normal(0.0, self.rms, n)

@@ -1,0 +1,76 @@
+"""Block ``transfer-function``: linear dynamics as a ratio of polynomials."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.parameter import numbers
+from hystbench.errors import InputError
+
+
+@dataclass(frozen=True)
+class TransferFunction(LinearBlock):
+    """Proper, stable transfer function in descending powers of s.
+
+    ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k.
+
+    References
+    ----------
+    .. [1] T. Kailath, Linear Systems, Prentice-Hall, 1980, section 2.1 (controller
+       canonical form).
+    """
+
+    name: ClassVar = "transfer-function"
+    place: ClassVar = "base"
+    reference: ClassVar = "Kailath, Linear Systems, 1980"
+
+    numerator: tuple[float, ...] = numbers(
+        "powers of s", "n_0 to n_m, descending", -1e30, 1e30
+    )
+    denominator: tuple[float, ...] = numbers(
+        "powers of s", "d_0 to d_k, descending", -1e30, 1e30
+    )
+
+    def check(self) -> None:
+        """Refuse an improper or unstable transfer function."""
+        if len(self.denominator) < 2 or self.denominator[0] == 0.0:
+            raise InputError(
+                "denominator: expected a nonzero leading coefficient and at least one "
+                "more; a constant is a 'gain'"
+            )
+        if len(self.numerator) > len(self.denominator):
+            raise InputError(
+                f"numerator: degree {len(self.numerator) - 1} exceeds that of the "
+                f"denominator, {len(self.denominator) - 1}; expected a proper ratio"
+            )
+        poles = np.roots(self.denominator)
+        if np.any(poles.real >= 0.0):
+            worst = poles[np.argmax(poles.real)]
+            raise InputError(
+                f"denominator: unstable pole at s = {worst:.6g}; "
+                "expected negative real parts"
+            )
+
+    def continuous(self) -> StateSpace:
+        """Return the controller canonical form, time scaled by the mean pole."""
+        d = np.array(self.denominator) / self.denominator[0]
+        order = len(d) - 1
+        n = np.zeros(order + 1)
+        n[order + 1 - len(self.numerator) :] = self.numerator
+        n /= self.denominator[0]
+        direct = float(n[0])
+        # In s = scale * p the coefficients are of order one, and the matrix
+        # exponential keeps its digits. Stable poles make d[-1] positive.
+        scale = float(d[-1] ** (1.0 / order))
+        powers = scale ** np.arange(order + 1)
+        d, n = d / powers, n / powers
+        a = np.zeros((order, order))
+        a[0] = -d[1:]
+        a[1:, :-1] = np.eye(order - 1)
+        b = np.zeros(order)
+        b[0] = scale
+        return StateSpace(scale * a, b, (n - direct * d)[1:], direct)

@@ -1,0 +1,326 @@
+"""A model: a chain of blocks from input u to output y, kept in a YAML file.
+
+The plant, a simulator that a user brings and an augmented model are all the same
+thing. The format is told in docs/model-files.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from hystbench.blocks import registry
+from hystbench.blocks.base import Block, RandomBlock
+from hystbench.blocks.parameter import Value
+from hystbench.errors import InputError, nearest
+from hystbench.files import write_text
+from hystbench.record import Channel, FloatArray
+from hystbench.schema import load_yaml
+
+Source = Literal["published", "derived", "calibrated"]
+SOURCES: tuple[str, ...] = get_args(Source)
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where the value of a parameter comes from.
+
+    Parameters
+    ----------
+    source : {"published", "derived", "calibrated"}
+        Printed in a publication, worked out from what is printed, or fitted.
+    note : str
+        One sentence.
+    """
+
+    source: str
+    note: str
+
+    def __post_init__(self) -> None:
+        """Refuse a source that is none of the three."""
+        if self.source not in SOURCES:
+            raise InputError(
+                f"source: {self.source!r} is unknown; {nearest(self.source, SOURCES)}"
+            )
+        if not isinstance(self.note, str) or not self.note.strip():
+            raise InputError(f"note: expected a sentence, got {self.note!r}")
+
+
+@dataclass(frozen=True)
+class Model:
+    """A chain of blocks from input to output.
+
+    A parameter is named ``block.parameter``; the second block of one kind in the
+    chain is ``block#2.parameter``.
+
+    Parameters
+    ----------
+    name : str
+    input, output : Channel
+        What goes in and comes out, with units.
+    chain : tuple of Block
+        In the order of the signal's way.
+    free : tuple of str
+        Names of the parameters that identification may change.
+    provenance : mapping of str to Provenance
+        By parameter name.
+    """
+
+    name: str
+    input: Channel
+    output: Channel
+    chain: tuple[Block, ...]
+    free: tuple[str, ...] = ()
+    provenance: Mapping[str, Provenance] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Refuse an empty chain and names of parameters that the chain lacks."""
+        if not self.chain:
+            raise InputError("chain: expected at least one block, got none")
+        for key, names in (("free", self.free), ("provenance", self.provenance)):
+            for name in names:
+                try:
+                    self._find(name)
+                except InputError as error:
+                    raise InputError(f"{key}: {error}") from None
+
+    def simulate(
+        self, u: FloatArray, dt: float, rng: np.random.Generator | None = None
+    ) -> FloatArray:
+        """Compute the output from rest.
+
+        Parameters
+        ----------
+        u : ndarray, shape (n,)
+            Input, in the unit of ``input``.
+        dt : float
+            Sampling interval in seconds.
+        rng : numpy.random.Generator, optional
+            Source of the random blocks' signals. Without it they add nothing and
+            the result is the same every time.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Output, in the unit of ``output``.
+        """
+        u = np.ascontiguousarray(u, dtype=np.float64)
+        y = u
+        for block in self.chain:
+            y = block.simulate(y, u, dt)
+            if rng is not None and isinstance(block, RandomBlock):
+                y = y + block.draw(len(y), dt, rng)
+        return y
+
+    def parameter_names(self) -> tuple[str, ...]:
+        """Return the names of all parameters in the chain's order."""
+        return tuple(
+            f"{label}.{parameter}"
+            for label, block in self._labelled()
+            for parameter in block.parameters()
+        )
+
+    def value(self, name: str) -> Value:
+        """Return the value of a parameter.
+
+        Raises
+        ------
+        InputError
+            If the chain has no such parameter.
+        """
+        position, parameter = self._find(name)
+        value: Value = getattr(self.chain[position], parameter)
+        return value
+
+    def with_values(self, values: Mapping[str, Value | Sequence[float]]) -> Model:
+        """Return the model with other values of some parameters.
+
+        Raises
+        ------
+        InputError
+            If the chain has no such parameter or a value does not fit it.
+        """
+        changes: dict[int, dict[str, Any]] = {}
+        for name, value in values.items():
+            position, parameter = self._find(name)
+            changes.setdefault(position, {})[parameter] = value
+        chain = list(self.chain)
+        for position, change in changes.items():
+            try:
+                chain[position] = replace(chain[position], **change)
+            except InputError as error:
+                place = _place(position, chain[position].name)
+                raise InputError(f"{place}{error}") from None
+        return replace(self, chain=tuple(chain))
+
+    @classmethod
+    def from_mapping(cls, content: object, place: str) -> Model:
+        """Make a model from what a YAML file holds.
+
+        Parameters
+        ----------
+        content : mapping
+        place : str
+            Name of the file, for messages.
+
+        Raises
+        ------
+        InputError
+            If a key, block or parameter is unknown or missing, or a value is of the
+            wrong type or out of bounds.
+        """
+        try:
+            return cls(**_read(content))
+        except InputError as error:
+            raise InputError(f"{place}: {error}") from None
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return the model as a YAML file holds it."""
+        content: dict[str, Any] = {
+            "name": self.name,
+            "input": {"name": self.input.name, "unit": self.input.unit},
+            "output": {"name": self.output.name, "unit": self.output.unit},
+        }
+        if self.free:
+            content["free"] = list(self.free)
+        content["chain"] = [{block.name: block.to_mapping()} for block in self.chain]
+        if self.provenance:
+            content["provenance"] = {
+                name: {"source": item.source, "note": item.note}
+                for name, item in self.provenance.items()
+            }
+        return content
+
+    def to_yaml(self) -> str:
+        """Return the text of the model's YAML file."""
+        import yaml  # late: kept out of jobs that write no YAML
+
+        text: str = yaml.safe_dump(
+            self.to_mapping(),
+            sort_keys=False,
+            allow_unicode=True,
+            width=88,
+            default_flow_style=None,
+        )
+        return text
+
+    def save(self, path: str | Path) -> None:
+        """Write the model's YAML file, all of it or nothing."""
+        write_text(path, self.to_yaml())
+
+    def _labelled(self) -> Iterator[tuple[str, Block]]:
+        seen: dict[str, int] = {}
+        for block in self.chain:
+            seen[block.name] = seen.get(block.name, 0) + 1
+            count = seen[block.name]
+            yield (block.name if count == 1 else f"{block.name}#{count}"), block
+
+    def _find(self, name: str) -> tuple[int, str]:
+        label, _, parameter = str(name).rpartition(".")
+        for position, (known, block) in enumerate(self._labelled()):
+            if known == label and parameter in block.parameters():
+                return position, parameter
+        raise InputError(
+            f"unknown parameter {name!r}; {nearest(name, self.parameter_names())}"
+        )
+
+
+def load_model(path: str | Path) -> Model:
+    """Read a model file.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it does not hold a model.
+    """
+    return Model.from_mapping(load_yaml(path), str(path))
+
+
+REQUIRED = ("name", "input", "output", "chain")
+KEYS = ("name", "input", "output", "free", "chain", "provenance")
+
+
+def _read(content: object) -> dict[str, Any]:
+    content = _mapping(content, "", required=REQUIRED, known=KEYS)
+    name = content["name"]
+    if not isinstance(name, str):
+        raise InputError(f"name: expected a word, got {name!r}")
+    chain = content["chain"]
+    if not isinstance(chain, list):
+        raise InputError(f"chain: expected a list of blocks, got {chain!r}")
+    free = content.get("free", [])
+    if not isinstance(free, list):
+        raise InputError(f"free: expected a list of parameters, got {free!r}")
+    provenance = _mapping(content.get("provenance", {}), "provenance: ")
+    return {
+        "name": name,
+        "input": _channel(content["input"], "input: "),
+        "output": _channel(content["output"], "output: "),
+        "chain": tuple(_block(item, position) for position, item in enumerate(chain)),
+        "free": tuple(free),
+        "provenance": {
+            key: _provenance(item, f"provenance: {key}: ")
+            for key, item in provenance.items()
+        },
+    }
+
+
+def _mapping(
+    content: object,
+    place: str,
+    required: tuple[str, ...] = (),
+    known: tuple[str, ...] = (),
+) -> dict[str, Any]:
+    if not isinstance(content, dict):
+        raise InputError(f"{place}expected a mapping of keys, got {content!r}")
+    for key in content:
+        if known and key not in known:
+            raise InputError(f"{place}unknown key {key!r}; {nearest(key, known)}")
+    for key in required:
+        if key not in content:
+            raise InputError(f"{place}missing key {key!r}")
+    return content
+
+
+def _channel(content: object, place: str) -> Channel:
+    keys = ("name", "unit")
+    content = _mapping(content, place, required=keys, known=keys)
+    for key in keys:
+        if not isinstance(content[key], str):
+            raise InputError(f"{place}{key}: expected a word, got {content[key]!r}")
+    return Channel(**content)
+
+
+def _provenance(content: object, place: str) -> Provenance:
+    keys = ("source", "note")
+    content = _mapping(content, place, required=keys, known=keys)
+    try:
+        return Provenance(**content)
+    except InputError as error:
+        raise InputError(f"{place}{error}") from None
+
+
+def _place(position: int, name: str) -> str:
+    return f"chain: block {position + 1} ({name}): "
+
+
+def _block(content: object, position: int) -> Block:
+    where = f"chain: block {position + 1}: "
+    if not isinstance(content, dict) or len(content) != 1:
+        raise InputError(
+            f"{where}expected one block and its parameters, got {content!r}"
+        )
+    ((name, values),) = content.items()
+    known = registry()
+    if name not in known:
+        raise InputError(f"{where}unknown block {name!r}; {nearest(name, known)}")
+    place = _place(position, name)
+    values = _mapping({} if values is None else values, place)
+    try:
+        return known[name].from_mapping(values)
+    except InputError as error:
+        raise InputError(f"{place}{error}") from None

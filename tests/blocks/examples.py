@@ -1,0 +1,23 @@
+"""One example of every block, which the contract and the model tests share.
+
+A new block needs a line here; the contract test says so.
+"""
+
+EXAMPLES = {
+    "asymmetry": {"coefficient": 0.02},
+    "calibration-error": {"gain": 1.05, "offset": 0.1},
+    "creep": {"magnitudes": [0.05, 0.03], "time_constants_s": [0.2, 2.0]},
+    "drive-lag": {"time_constant_s": 0.002},
+    "gain": {"value": 12.0, "offset": 0.5},
+    "gpi": {
+        "envelope": [1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248],
+        "thresholds": [0.0, 0.05, 0.1],
+        "weights": [1.0, 0.5, 0.25],
+    },
+    "resonance": {"frequency_hz": 65.0, "damping_ratio": 0.03, "participation": 0.1},
+    "sensor-noise": {"rms": 0.05},
+    "transfer-function": {
+        "numerator": [1.0e3, 4.0e5],
+        "denominator": [1.0, 1.2e3, 4.0e5],
+    },
+}

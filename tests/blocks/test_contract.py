@@ -1,0 +1,116 @@
+"""What every block keeps to, registered or not yet written."""
+
+import re
+
+import numpy as np
+import pytest
+
+from hystbench.blocks import registry
+from hystbench.blocks.base import RandomBlock
+from hystbench.errors import InputError
+
+from .examples import EXAMPLES
+
+DT = 1e-4
+TIME = np.arange(2000) * DT
+INPUT = 0.6 * np.sin(2 * np.pi * 40 * TIME)
+BLOCKS = sorted(registry())
+
+
+def example(name):
+    return registry()[name].from_mapping(EXAMPLES[name])
+
+
+def test_every_block_has_an_example():
+    assert sorted(EXAMPLES) == BLOCKS
+
+
+@pytest.mark.parametrize("name", BLOCKS)
+class TestContract:
+    def test_it_says_what_it_is_and_where_it_comes_from(self, name):
+        block = registry()[name]
+        assert re.fullmatch(r"[a-z]+(-[a-z]+)*", name)
+        assert "References" in block.__doc__
+        assert block.reference
+        assert block.place in {"base", "drive", "material", "mechanics", "sensor"}
+
+    def test_parameters_have_unit_meaning_and_bounds(self, name):
+        parameters = registry()[name].parameters()
+        assert parameters
+        for about in parameters.values():
+            assert about.unit
+            assert about.meaning
+            if about.kind != "choice":
+                assert np.isfinite([about.low, about.high]).all()
+                assert about.low < about.high
+
+    def test_output_is_finite_and_as_long_as_the_input(self, name):
+        z = INPUT.copy()
+        y = example(name).simulate(z, INPUT, DT)
+        assert y.shape == INPUT.shape
+        assert y.dtype == np.float64
+        assert np.isfinite(y).all()
+        np.testing.assert_array_equal(z, INPUT)  # the input is left alone
+
+    def test_zero_input_stays_constant(self, name):
+        # From rest, without input, nothing moves: offsets show, motion does not.
+        zero = np.zeros(500)
+        y = example(name).simulate(zero, zero, DT)
+        np.testing.assert_allclose(y, y[0], rtol=0, atol=1e-15)
+
+    def test_it_is_causal(self, name):
+        # What comes after sample 1000 changes nothing before it.
+        changed = INPUT.copy()
+        changed[1001:] *= -0.5
+        block = example(name)
+        np.testing.assert_allclose(
+            block.simulate(changed, changed, DT)[:1001],
+            block.simulate(INPUT, INPUT, DT)[:1001],
+            rtol=0,
+            atol=1e-12,
+        )
+
+    def test_mapping_round_trip(self, name):
+        block = example(name)
+        assert registry()[name].from_mapping(block.to_mapping()) == block
+
+    def test_missing_and_unknown_parameters_are_named(self, name):
+        values = dict(EXAMPLES[name])
+        first = next(iter(values))
+        with pytest.raises(InputError, match=f"unknown parameter '{first}x'.*{first}"):
+            registry()[name].from_mapping({**values, f"{first}x": 1.0})
+        del values[first]
+        with pytest.raises(InputError, match=f"missing parameter '{first}'"):
+            registry()[name].from_mapping(values)
+
+    @pytest.mark.parametrize("wrong", ["0.1", True, None, float("nan"), {}])
+    def test_a_value_that_is_no_number_is_refused(self, name, wrong):
+        values = dict(EXAMPLES[name])
+        first = next(iter(values))
+        with pytest.raises(InputError, match=f"{first}: expected"):
+            registry()[name].from_mapping({**values, first: wrong})
+
+    def test_a_value_out_of_bounds_is_refused(self, name):
+        block = registry()[name]
+        for key, about in block.parameters().items():
+            if about.kind == "choice":
+                continue
+            beyond = 2 * about.high + 1
+            old = EXAMPLES[name].get(key, 0.0)
+            value = [beyond, *old[1:]] if about.kind == "numbers" else beyond
+            with pytest.raises(InputError, match=rf"{key}.*out of bounds"):
+                block.from_mapping({**EXAMPLES[name], key: value})
+
+
+def random_blocks():
+    return [name for name in BLOCKS if issubclass(registry()[name], RandomBlock)]
+
+
+@pytest.mark.parametrize("name", random_blocks())
+def test_a_random_block_repeats_with_its_seed(name):
+    block = example(name)
+    first = block.draw(1000, DT, np.random.default_rng(1))
+    again = block.draw(1000, DT, np.random.default_rng(1))
+    other = block.draw(1000, DT, np.random.default_rng(2))
+    np.testing.assert_array_equal(first, again)
+    assert not np.allclose(first, other)

@@ -1,0 +1,58 @@
+"""The block ``gpi`` against a plain loop over Eqs. 3-6 and 9."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.errors import InputError
+
+ENVELOPE = (1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248)
+
+
+def plain_loop(v, envelope, thresholds, weights):
+    a0, a1, a2, a3, a4, a5, a6, a7 = envelope
+    state = [0.0] * len(thresholds)
+    out = []
+    for value in v:
+        left = a0 * math.tanh(a1 * value + a2) + a3
+        right = a4 * math.tanh(a5 * value + a6) + a7
+        for i, r in enumerate(thresholds):
+            state[i] = max(right - r, min(left + r, state[i]))
+        out.append(sum(w * s for w, s in zip(weights, state, strict=True)))
+    return np.array(out)
+
+
+@given(
+    st.lists(st.floats(-0.65, 0.65), min_size=1, max_size=60),
+    st.lists(st.tuples(st.floats(0, 0.3), st.floats(-5, 5)), min_size=1, max_size=8),
+)
+def test_it_is_the_plain_loop(samples, operators):
+    thresholds, weights = zip(*operators, strict=True)
+    block = GeneralizedPrandtlIshlinskii(
+        envelope=ENVELOPE, thresholds=thresholds, weights=weights
+    )
+    v = np.array(samples)
+    np.testing.assert_allclose(
+        block.simulate(v, v, 1e-4),
+        plain_loop(samples, ENVELOPE, thresholds, weights),
+        rtol=1e-12,
+        atol=1e-12,
+    )
+
+
+def test_a_weight_for_each_threshold():
+    with pytest.raises(InputError, match="expected 2 numbers, one a threshold, got 1"):
+        GeneralizedPrandtlIshlinskii(
+            envelope=ENVELOPE, thresholds=[0.0, 0.1], weights=[1.0]
+        )
+
+
+def test_an_envelope_has_eight_coefficients():
+    with pytest.raises(InputError, match="envelope: expected 8 numbers, got 7"):
+        GeneralizedPrandtlIshlinskii(
+            envelope=ENVELOPE[:7], thresholds=[0.0], weights=[1.0]
+        )

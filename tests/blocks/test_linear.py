@@ -1,0 +1,134 @@
+"""Linear blocks against scipy.signal and against their transfer functions."""
+
+import numpy as np
+import pytest
+import scipy.signal
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.blocks import registry
+from hystbench.blocks.creep import Creep
+from hystbench.blocks.drive_lag import DriveLag
+from hystbench.blocks.linear import LinearBlock, interpolate
+from hystbench.blocks.resonance import Resonance
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.errors import InputError
+
+DT = 1e-4
+WN = 2 * np.pi * 65.0
+CASES = {
+    "drive-lag": (DriveLag(time_constant_s=0.002), [1.0], [0.002, 1.0]),
+    # (1 - p) + p wn^2 / (...) on one denominator, by hand.
+    "resonance": (
+        Resonance(frequency_hz=65.0, damping_ratio=0.03, participation=-0.2),
+        [1.2, 1.2 * 0.06 * WN, WN**2],
+        [1.0, 0.06 * WN, WN**2],
+    ),
+    # 1 + 0.1 / (1 + 0.5 s) + 0.05 / (1 + 0.02 s), by hand.
+    "creep": (
+        Creep(magnitudes=[0.1, 0.05], time_constants_s=[0.5, 0.02]),
+        [0.01, 0.547, 1.15],
+        [0.01, 0.52, 1.0],
+    ),
+    "transfer-function": (
+        TransferFunction(
+            numerator=[2.0, 50.0, 3.0e5], denominator=[2.0, 900.0, 5.0e5, 9.0e7]
+        ),
+        [2.0, 50.0, 3.0e5],
+        [2.0, 900.0, 5.0e5, 9.0e7],
+    ),
+}
+
+
+def test_every_linear_block_has_a_case():
+    linear = {k for k, block in registry().items() if issubclass(block, LinearBlock)}
+    assert linear == set(CASES)
+
+
+def rough_input(n=400):
+    return np.random.default_rng(3).normal(size=n)
+
+
+def with_hold(block, hold):
+    return type(block).from_mapping({**block.to_mapping(), "hold": hold})
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("hold", ["linear", "zero-order"])
+def test_response_is_that_of_lsim(name, hold):
+    block, numerator, denominator = CASES[name]
+    v = rough_input()
+    _, expected, _ = scipy.signal.lsim(
+        (numerator, denominator), v, np.arange(len(v)) * DT, interp=hold == "linear"
+    )
+    simulated = with_hold(block, hold).simulate(v, v, DT)
+    np.testing.assert_allclose(
+        simulated, expected, rtol=0, atol=1e-9 * np.abs(expected).max()
+    )
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_frequency_response_is_that_of_the_polynomials(name):
+    block, numerator, denominator = CASES[name]
+    frequency = np.array([0.1, 5.0, 60.0, 65.0, 300.0])
+    s = 2j * np.pi * frequency
+    np.testing.assert_allclose(
+        block.frequency_response(frequency),
+        np.polyval(numerator, s) / np.polyval(denominator, s),
+        rtol=1e-10,
+    )
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(("hold", "error"), [("band-limited", 1e-3), ("linear", 0.25)])
+def test_steady_state_of_a_fast_sine(name, hold, error):
+    # A sine at a quarter of the sampling rate: the straight-line hold loses up to
+    # 1 - sinc(1/4)^2 = 19 % of what passes the dynamics, the band-limited one does not.
+    block, numerator, denominator = CASES[name]
+    dt = 1e-3
+    n = 8000
+    time = np.arange(n) * dt
+    y = with_hold(block, hold).simulate(np.sin(2 * np.pi * 250 * time), time, dt)
+    s = 2j * np.pi * 250
+    response = np.polyval(numerator, s) / np.polyval(denominator, s)
+    expected = np.imag(response * np.exp(s * time))
+    middle = slice(5000, 7000)  # slow modes have settled, the far end is not near
+    scale = np.abs(response)
+    assert np.abs(y - expected)[middle].max() < error * scale
+    if hold == "linear" and name == "drive-lag":
+        assert np.abs(y - expected)[middle].max() > 0.1 * scale
+
+
+@given(st.lists(st.floats(-1, 1), min_size=3, max_size=40), st.integers(2, 16))
+def test_interpolation_passes_through_the_samples(samples, factor):
+    v = np.array(samples)
+    fine = interpolate(v, factor)
+    assert len(fine) == (len(v) - 1) * factor + 1
+    np.testing.assert_allclose(fine[::factor], v, rtol=0, atol=1e-12)
+
+
+def test_interpolation_of_a_sine_is_the_sine():
+    # Whole periods: the odd continuation is the sine itself.
+    fine = interpolate(np.sin(2 * np.pi * 3 * np.arange(33) / 32), 8)
+    expected = np.sin(2 * np.pi * 3 * np.arange(257) / 256)
+    np.testing.assert_allclose(fine, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"numerator": [1, 0, 0], "denominator": [1, 1]}, "degree 2 exceeds"),
+        ({"numerator": [1], "denominator": [1, -1]}, "unstable pole"),
+        ({"numerator": [1], "denominator": [1, 0]}, "unstable pole"),
+        ({"numerator": [1], "denominator": [0, 1]}, "leading coefficient"),
+        ({"numerator": [1], "denominator": [2]}, "'gain'"),
+    ],
+)
+def test_a_transfer_function_that_cannot_be_simulated_is_refused(values, message):
+    with pytest.raises(InputError, match=message):
+        TransferFunction.from_mapping(values)
+
+
+def test_creep_needs_a_time_constant_for_each_magnitude():
+    with pytest.raises(InputError, match="expected 2 numbers, one a time constant"):
+        Creep(magnitudes=[0.1], time_constants_s=[1.0, 2.0])

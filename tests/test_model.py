@@ -1,0 +1,231 @@
+"""Models: the chain, its file, and what is said about a wrong one."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.blocks import registry
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.sensor_noise import SensorNoise
+from hystbench.errors import InputError
+from hystbench.model import Model, Provenance, load_model
+from hystbench.record import Channel
+
+TEXT = """
+name: small
+input: {name: current, unit: A}
+output: {name: displacement, unit: um}
+free: [gain.value, resonance#2.damping_ratio]
+chain:
+  - gain: {value: 10, offset: 1}
+  - resonance: {frequency_hz: 65, damping_ratio: 0.03, participation: 0.1}
+  - resonance: {frequency_hz: 300, damping_ratio: 0.05, participation: 0.2}
+  - sensor-noise: {rms: 0.05}
+provenance:
+  gain.value: {source: published, note: It is printed.}
+"""
+
+
+def content():
+    return yaml.safe_load(TEXT)
+
+
+def model():
+    return Model.from_mapping(content(), "small.yaml")
+
+
+def test_the_chain_is_applied_in_order():
+    chain = (Gain(value=2.0, offset=1.0), Gain(value=3.0, offset=0.0))
+    u = np.array([0.0, 1.0])
+    double = Model("m", Channel("u", "A"), Channel("y", "um"), chain)
+    np.testing.assert_allclose(double.simulate(u, 1e-3), [3.0, 9.0])
+
+
+def test_random_blocks_speak_only_with_a_generator():
+    silent, spoken = model(), np.random.default_rng(5)
+    u = np.sin(np.arange(4000) / 50)
+    mean = silent.simulate(u, 1e-4)
+    np.testing.assert_array_equal(mean, silent.simulate(u, 1e-4))
+    noise = silent.simulate(u, 1e-4, spoken) - mean
+    assert noise.std() == pytest.approx(0.05, rel=5 / np.sqrt(2 * len(u)))
+
+
+def test_noise_before_dynamics_is_filtered():
+    chain = (SensorNoise(rms=1.0), Gain(value=0.0))
+    quiet = Model("m", Channel("u", "A"), Channel("y", "um"), chain)
+    y = quiet.simulate(np.zeros(10), 1e-3, np.random.default_rng(1))
+    np.testing.assert_array_equal(y, np.zeros(10))
+
+
+def test_parameters_are_read_and_replaced_by_name():
+    changed = model().with_values({"gain.value": 7.0, "resonance#2.frequency_hz": 310})
+    assert changed.value("gain.value") == 7.0
+    assert changed.value("resonance#2.frequency_hz") == 310.0
+    assert changed.value("resonance.frequency_hz") == 65.0
+    assert model().value("gain.value") == 10.0
+    with pytest.raises(InputError, match=r"did you mean 'gain\.value'"):
+        model().value("gain.valu")
+    with pytest.raises(InputError, match=r"block 4 \(sensor-noise\): rms: -1 is"):
+        model().with_values({"sensor-noise.rms": -1.0})
+
+
+def test_every_parameter_has_a_name():
+    names = model().parameter_names()
+    assert "resonance#2.participation" in names
+    assert len(names) == len(set(names))
+    for name in names:
+        model().value(name)
+
+
+@st.composite
+def blocks(draw):
+    block = registry()[draw(st.sampled_from(sorted(registry())))]
+    length = draw(st.integers(1, 4))
+    values = {}
+    for key, about in block.parameters().items():
+        one = st.floats(max(about.low, -1e6), min(about.high, 1e6))
+        if about.kind == "choice":
+            values[key] = draw(st.sampled_from(about.options))
+        elif about.kind == "number":
+            values[key] = draw(one)
+        else:
+            n = about.length or length
+            values[key] = draw(st.lists(one, min_size=n, max_size=n))
+    if block.name == "transfer-function":  # only stable ones can be made
+        roots = draw(st.lists(st.floats(-1e3, -1), min_size=1, max_size=3))
+        values["denominator"] = [float(c) for c in np.poly(roots)]
+        values["numerator"] = values["numerator"][: len(roots) + 1]
+    return block.from_mapping(values)
+
+
+words = st.text("abcdefghijklmnopqrstuvwxyz -µ:#'\"{}[]0123456789.", min_size=1)
+
+
+@given(st.data())
+def test_a_model_file_round_trips(data):
+    chain = tuple(data.draw(st.lists(blocks(), min_size=1, max_size=5)))
+    bare = Model("m", Channel("u", "A"), Channel("y", "um"), chain)
+    names = bare.parameter_names()
+    free = data.draw(st.lists(st.sampled_from(names), unique=True))
+    sources = st.sampled_from(["published", "derived", "calibrated"])
+    notes = words.filter(str.strip)
+    original = Model(
+        name=data.draw(words),
+        input=Channel(data.draw(words), data.draw(words)),
+        output=Channel(data.draw(words), data.draw(words)),
+        chain=chain,
+        free=tuple(free),
+        provenance={
+            name: Provenance(data.draw(sources), data.draw(notes)) for name in free
+        },
+    )
+    text = original.to_yaml()
+    assert Model.from_mapping(yaml.safe_load(text), "m.yaml") == original
+
+
+def test_save_and_load(tmp_path):
+    model().save(tmp_path / "m.yaml")
+    assert load_model(tmp_path / "m.yaml") == model()
+
+
+def without(key):
+    return lambda c: c.pop(key)
+
+
+def put(value, *path):
+    def change(c):
+        for key in path[:-1]:
+            c = c[key]
+        c[path[-1]] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (without("chain"), "missing key 'chain'"),
+        (put([], "chain"), "chain: expected at least one block"),
+        (put({}, "chain"), "chain: expected a list of blocks"),
+        (put("gain", "chain", 0), "chain: block 1: expected one block and its"),
+        (put({"a": 1, "b": 2}, "chain", 0), "chain: block 1: expected one block"),
+        (
+            put({"resonanse": {}}, "chain", 1),
+            "chain: block 2: unknown block 'resonanse'; did you mean 'resonance'?",
+        ),
+        (
+            put({"gain": {"valeu": 1}}, "chain", 1),
+            "chain: block 2 (gain): unknown parameter 'valeu'; did you mean 'value'?",
+        ),
+        (
+            put({"gain": None}, "chain", 1),
+            "chain: block 2 (gain): missing parameter 'value' (Y/U): static gain",
+        ),
+        (
+            put({"gain": {"value": "1e-5"}}, "chain", 1),
+            "chain: block 2 (gain): value: expected a number, got '1e-5'",
+        ),
+        (
+            put({"gain": {"value": [1]}}, "chain", 1),
+            "chain: block 2 (gain): value: expected a number, got [1]",
+        ),
+        (
+            put(-0.5, "chain", 1, "resonance", "damping_ratio"),
+            "chain: block 2 (resonance): damping_ratio: -0.5 is out of bounds, "
+            "expected 1e-05 to 10 -",
+        ),
+        (
+            put("linaer", "chain", 1, "resonance", "hold"),
+            "chain: block 2 (resonance): hold: 'linaer' is unknown; "
+            "did you mean 'linear'?",
+        ),
+        (put(1, "chian"), "unknown key 'chian'; did you mean 'chain'?"),
+        (put(3, "name"), "name: expected a word, got 3"),
+        (put("A", "input"), "input: expected a mapping of keys, got 'A'"),
+        (put(1, "input", "unit"), "input: unit: expected a word, got 1"),
+        (put(1, "output", "units"), "output: unknown key 'units'"),
+        (put("gain.value", "free"), "free: expected a list of parameters"),
+        (
+            put(["gain.vale"], "free"),
+            "free: unknown parameter 'gain.vale'; did you mean 'gain.value'?",
+        ),
+        (
+            put("guessed", "provenance", "gain.value", "source"),
+            "provenance: gain.value: source: 'guessed' is unknown",
+        ),
+        (
+            put(" ", "provenance", "gain.value", "note"),
+            "provenance: gain.value: note: expected a sentence",
+        ),
+        (
+            put({"source": "published", "note": "x"}, "provenance", "gain.values"),
+            "provenance: unknown parameter 'gain.values'; did you mean 'gain.value'?",
+        ),
+    ],
+)
+def test_a_wrong_file_is_refused_in_one_line(change, message):
+    wrong = content()
+    change(wrong)
+    with pytest.raises(InputError) as caught:
+        Model.from_mapping(wrong, "small.yaml")
+    assert str(caught.value).startswith("small.yaml: " + message)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_is_a_list_is_refused():
+    with pytest.raises(InputError, match=r"a\.yaml: expected a mapping of keys"):
+        Model.from_mapping([1], "a.yaml")
+
+
+def test_importing_models_stays_light():
+    # A filter's job is one process; scipy alone would double its start.
+    code = "import sys, hystbench.model; print('scipy' in sys.modules)"
+    out = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert out.stdout.strip() == "False"
