@@ -6,6 +6,7 @@ reruns what a changed setting changes and nothing else.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -100,6 +101,14 @@ class Settings:
         section = "filters" if self.dataset is None else "measured"
         return str(self.config[section]["envelopes"])
 
+    @property
+    def model_file(self) -> str:
+        """File of the twin's model: one of the package's by name, or a path."""
+        name = str(self.config["twin"]["model"])
+        if name in packaged_models():
+            return packaged_models()[name]
+        return name
+
     def signal_job(self, name: str) -> dict[str, Any]:
         """Give a signal's definition and the common values that it takes."""
         return {
@@ -107,11 +116,45 @@ class Settings:
             "common": dict(self.config["excitation"]),
         }
 
+    @property
+    def measure_job(self) -> dict[str, Any]:
+        """Settings of the twin's measurement."""
+        return {key: self.config["twin"][key] for key in ("seed", "input_zero_error")}
+
+    @property
+    def identification_job(self) -> dict[str, Any]:
+        """Settings of Algorithm 1; it identifies as many operators as the filter has."""
+        job = {
+            key: value
+            for key, value in self.config["identification"].items()
+            if key != "signal"
+        }
+        return job | {"order": self.config["filters"]["order"]}
+
+    @property
+    def error_job(self) -> dict[str, Any]:
+        """Settings of the errors of any model."""
+        filters = self.config["filters"]
+        return {key: filters[key] for key in ("transient_s", "smoothing_s")}
+
+    @property
+    def rdgpi_job(self) -> dict[str, Any]:
+        """Settings of the identification of the RDGPI model."""
+        return {key: self.config["rdgpi"][key] for key in ("starts", "seed")}
+
+    @property
+    def order_sweep_job(self) -> dict[str, Any]:
+        """Settings of Figure 7: its orders and each filter's settings."""
+        return {
+            "orders": self.config["order_sweep"]["orders"],
+            "filters": {name: self.filter_job(name) for name in self.filters},
+        }
+
     def filter_job(self, model: str) -> dict[str, Any]:
         """Give the settings on which one filter's run depends."""
         filters = self.config["filters"]
         job = {key: filters[key] for key in _KEYS_OF_FILTER[model]}
-        job |= {key: filters[key] for key in ("order", "transient_s", "smoothing_s")}
+        job |= {"order": filters["order"]} | self.error_job
         if model == "gpo":
             job["envelopes"] = self.envelopes
         if self.dataset is None:
@@ -155,6 +198,7 @@ def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Setting
     if config["source"] == "twin":
         _check_names(place, named, excitations)
         _check_lengths(place, config)
+        _check_model(place, config["twin"]["model"])
         return Settings(config, None)
     dataset = load_dataset(config["source"])
     for name in dataset.record_files:
@@ -164,6 +208,20 @@ def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Setting
             config["filters"]["order"],
         )
     return Settings(config, dataset)
+
+
+def packaged_models() -> dict[str, str]:
+    """Files of the package's own model files, by name."""
+    folder = Path(os.path.relpath(Path(__file__).parent / "plants"))
+    return {file.stem: str(file) for file in sorted(folder.glob("*.yaml"))}
+
+
+def _check_model(place: str, name: str) -> None:
+    if name not in packaged_models() and not Path(name).is_file():
+        raise InputError(
+            f"{place}: twin: model: no model or file {name!r}; "
+            f"{nearest(name, packaged_models())}"
+        )
 
 
 def _check_names(

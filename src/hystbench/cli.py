@@ -1,0 +1,75 @@
+"""The command line: one small file a command in :mod:`hystbench.commands`.
+
+Commands are imported when they are called, so that a job pays for what it uses
+and ``hystbench --help`` for nothing.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+import click
+
+from hystbench import __version__
+from hystbench.errors import InputError, nearest
+
+#: Each command and the line that ``--help`` shows for it.
+COMMANDS = {
+    "signal": "Make an excitation signal.",
+    "measure": "Simulate a model on a signal and record it.",
+    "load": "Read and check one record of a measured dataset.",
+    "identify": "Identify the envelope functions (Algorithm 1).",
+    "filter": "Run one LMS filter on one record.",
+    "envelopes": "Run the GPO filter with identified and published envelopes.",
+    "order-sweep": "Run the filters over a range of orders (Figure 7).",
+    "rdgpi-identify": "Identify the rate-dependent GPI model.",
+    "rdgpi": "Simulate the rate-dependent GPI model on one record.",
+    "rdgpi-published": "Simulate it with the eleven published values.",
+    "compare": "Write tables and claims, ours beside the published.",
+    "show": "Print the tables of a comparison.",
+    "figure": "Draw one figure.",
+    "docs": "Fill the tables of README.md and docs from results.",
+}
+
+
+class LazyGroup(click.Group):
+    """A group that imports a command when it is called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Name the commands in the order of the workflow."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a command; an unknown name gets the nearest one."""
+        if cmd_name not in COMMANDS:
+            raise InputError(
+                f"no command {cmd_name!r}; {nearest(cmd_name, COMMANDS)}"
+            )
+        module = cmd_name.replace("-", "_")
+        command: click.Command = getattr(
+            importlib.import_module(f"hystbench.commands.{module}"), module
+        )
+        return command
+
+    def format_commands(
+        self, ctx: click.Context, formatter: click.HelpFormatter
+    ) -> None:
+        """List the commands without importing them."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+
+@click.group(cls=LazyGroup)
+@click.version_option(__version__)
+def cli() -> None:
+    """Benchmark rate-dependent hysteresis models of smart actuators."""
+
+
+def main() -> None:
+    """Run the command line; a user's mistake is one line and exit status 2."""
+    try:
+        cli(prog_name="hystbench")
+    except InputError as error:
+        print(f"hystbench: {error}", file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,25 @@
+"""``hystbench load``: read and check one measured record."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.dataset import load_dataset
+from hystbench.errors import InputError, nearest
+
+
+@click.command()
+@click.argument("dataset", type=click.Path(exists=True, path_type=Path))
+@click.argument("name")
+@options.out
+def load(dataset: Path, name: str, out: Path) -> None:
+    """Read the record NAME of DATASET (a dataset.yaml or its folder)."""
+    measured = load_dataset(dataset)
+    if name not in measured.record_files:
+        raise InputError(
+            f"{dataset}: no record {name!r}; {nearest(name, measured.record_files)}"
+        )
+    measured.read(name).save(out)

@@ -1,0 +1,81 @@
+# What all rules share: checked settings, and the source files that a job depends on.
+import json
+import os
+import sys
+from pathlib import Path
+
+import grimp
+
+import hystbench
+from hystbench.errors import InputError
+from hystbench.settings import read_settings
+
+# Jobs call `hystbench`: the one of the interpreter that runs Snakemake.
+os.environ["PATH"] = os.pathsep.join(
+    [str(Path(sys.executable).parent), os.environ["PATH"]]
+)
+
+PACKAGE = Path(os.path.relpath(Path(hystbench.__file__).parent))
+GRAPH = grimp.build_graph("hystbench", cache_dir=".snakemake/imports")
+KERNELS = sorted(PACKAGE.glob("kernels/*.so"))
+
+try:
+    if not KERNELS:
+        raise InputError(f"{PACKAGE}/kernels: not compiled; expected 'make' to have run")
+    for source in PACKAGE.glob("kernels/*.[ch]"):
+        if source.stat().st_mtime > KERNELS[0].stat().st_mtime:
+            raise InputError(f"{source}: newer than the compiled kernels; run 'make'")
+    SETTINGS = read_settings(
+        config, Path(workflow.basedir, "..", "schemas", "config.schema.yaml")
+    )
+except InputError as error:
+    sys.exit(f"hystbench: {error}")
+
+RESULTS = SETTINGS.results
+TWIN = SETTINGS.dataset is None
+
+
+def code(*modules):
+    """Files of modules and of all that they import, the compiled kernels included.
+
+    As inputs of a rule they make an edited module rerun what depends on it.
+    """
+    names = set(modules).union(*(GRAPH.find_upstream_modules(name) for name in modules))
+    files = []
+    for name in sorted(names):
+        path = PACKAGE.joinpath(*name.split(".")[1:])
+        files.append(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
+    if "hystbench.kernels" in names:
+        files.extend(KERNELS)
+    return [str(file) for file in files]
+
+
+def settings_text(settings):
+    """Settings of a job as one word for the shell, the same for the same settings."""
+    return json.dumps(settings, sort_keys=True)
+
+
+def record(name):
+    """Archive of a record."""
+    return f"{RESULTS}/records/{name}.npz"
+
+
+def run(signal, model, suffix="json"):
+    """Result of a model on a signal."""
+    return f"{RESULTS}/filters/{signal}/{model}.{suffix}"
+
+
+def runs(suffix="json"):
+    """Results of all models on all signals that the settings ask for."""
+    return [
+        run(signal, model, suffix)
+        for signal in SETTINGS.signals
+        for model in SETTINGS.models
+    ]
+
+
+def identified(wildcards):
+    """The identified envelope functions, for the filter that uses them."""
+    if wildcards.filter == "gpo" and SETTINGS.envelopes == "identified":
+        return rules.identify.output
+    return []

@@ -1,0 +1,43 @@
+# One job a signal and filter, so that any cell of the tables can be made again alone.
+rule filter:
+    input:
+        record=record("{signal}"),
+        identified=identified,
+        code=lambda wildcards: code(
+            "hystbench.commands.filter", f"hystbench.filters.{wildcards.filter}"
+        ),
+    output:
+        run=run("{signal}", "{filter}"),
+        arrays=run("{signal}", "{filter}", "npz"),
+    log:
+        f"{RESULTS}/logs/filter/{{signal}}-{{filter}}.log",
+    params:
+        settings=lambda wildcards: settings_text(SETTINGS.filter_job(wildcards.filter)),
+        identified=lambda wildcards, input: (
+            f"--identified {input.identified}" if input.identified else ""
+        ),
+    shell:
+        "hystbench filter {input.record} --model {wildcards.filter}"
+        " {params.identified} --settings {params.settings:q}"
+        " --out {output.run} --arrays {output.arrays} 2> {log}"
+
+
+# Figure 7: the error against the order, all filters in one job.
+rule order_sweep:
+    input:
+        record=record(SETTINGS.order_sweep_signal),
+        identified=rules.identify.output,
+        code=code(
+            "hystbench.commands.order_sweep",
+            *[f"hystbench.filters.{name}" for name in SETTINGS.filters],
+        ),
+    output:
+        f"{RESULTS}/order-sweep/errors.csv",
+    log:
+        f"{RESULTS}/logs/order-sweep.log",
+    params:
+        settings=settings_text(SETTINGS.order_sweep_job),
+    threads: 2
+    shell:
+        "hystbench order-sweep {input.record} --identified {input.identified}"
+        " --settings {params.settings:q} --threads {threads} --out {output} 2> {log}"

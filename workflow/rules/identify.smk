@@ -1,0 +1,30 @@
+rule identify:
+    input:
+        record=record(SETTINGS.identification_signal),
+        code=code("hystbench.commands.identify"),
+    output:
+        f"{RESULTS}/identify/identified.json",
+    log:
+        f"{RESULTS}/logs/identify/identify.log",
+    params:
+        settings=settings_text(SETTINGS.identification_job),
+    shell:
+        "hystbench identify {input.record} --settings {params.settings:q}"
+        " --out {output} 2> {log}"
+
+
+# The GPO filter with the identified and with the published envelope functions.
+rule envelopes:
+    input:
+        records=[record(signal) for signal in SETTINGS.signals],
+        identified=rules.identify.output,
+        code=code("hystbench.commands.envelopes", "hystbench.filters.gpo"),
+    output:
+        f"{RESULTS}/identify/envelopes.csv",
+    log:
+        f"{RESULTS}/logs/identify/envelopes.log",
+    params:
+        settings=settings_text(SETTINGS.filter_job("gpo")),
+    shell:
+        "hystbench envelopes {input.records} --identified {input.identified}"
+        " --settings {params.settings:q} --out {output} 2> {log}"

@@ -1,0 +1,33 @@
+# The twin and a measured dataset give the same records.
+if TWIN:
+
+    rule measure:
+        input:
+            signal=rules.signal.output,
+            model=SETTINGS.model_file,
+            code=code("hystbench.commands.measure"),
+        output:
+            f"{RESULTS}/records/{{signal}}.npz",
+        log:
+            f"{RESULTS}/logs/measure/{{signal}}.log",
+        params:
+            settings=settings_text(SETTINGS.measure_job),
+        shell:
+            "hystbench measure {input.signal} --model {input.model}"
+            " --settings {params.settings:q} --out {output} 2> {log}"
+
+else:
+
+    rule measure:
+        input:
+            dataset=str(SETTINGS.dataset.path),
+            file=lambda wildcards: str(
+                SETTINGS.dataset.record_files[wildcards.signal]
+            ),
+            code=code("hystbench.commands.load"),
+        output:
+            f"{RESULTS}/records/{{signal}}.npz",
+        log:
+            f"{RESULTS}/logs/measure/{{signal}}.log",
+        shell:
+            "hystbench load {input.dataset} {wildcards.signal} --out {output} 2> {log}"

@@ -1,0 +1,12 @@
+rule signal:
+    input:
+        code=code("hystbench.commands.signal"),
+    output:
+        f"{RESULTS}/signals/{{signal}}.npz",
+    log:
+        f"{RESULTS}/logs/signal/{{signal}}.log",
+    params:
+        settings=lambda wildcards: settings_text(SETTINGS.signal_job(wildcards.signal)),
+    shell:
+        "hystbench signal {wildcards.signal} --settings {params.settings:q}"
+        " --out {output} 2> {log}"
