@@ -43,9 +43,7 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a command; an unknown name gets the nearest one."""
         if cmd_name not in COMMANDS:
-            raise InputError(
-                f"no command {cmd_name!r}; {nearest(cmd_name, COMMANDS)}"
-            )
+            raise InputError(f"no command {cmd_name!r}; {nearest(cmd_name, COMMANDS)}")
         module = cmd_name.replace("-", "_")
         command: click.Command = getattr(
             importlib.import_module(f"hystbench.commands.{module}"), module

@@ -188,38 +188,43 @@ def load_dataset(path: str | Path) -> Dataset:
 
 def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
     """Read named columns of a CSV file as numbers."""
-    with file.open(newline="", encoding="utf-8-sig") as stream:
-        header = [name.strip() for name in next(csv.reader(stream), [])]
+    lines = file.read_text(encoding="utf-8-sig").splitlines()
+    header = [name.strip() for name in next(csv.reader(lines[:1]), [])]
     for column in columns:
         if column not in header:
             raise InputError(
                 f"{file}: no column {column!r}; {nearest(column, header or ['time_s'])}"
             )
+    places = [header.index(column) for column in columns]
+    rows = [line for line in lines[1:] if line.strip()]
+    if len(rows) < 2:
+        raise InputError(f"{file}: {len(rows)} rows; expected at least 2 samples")
     try:
-        table = np.loadtxt(
-            file,
-            delimiter=",",
-            skiprows=1,
-            usecols=[header.index(column) for column in columns],
-            encoding="utf-8-sig",
-            ndmin=2,
-            comments=None,
-        )
-    except ValueError as error:
-        # NumPy counts rows of data from 0 or 1 by case; its own words say which.
-        reason = str(error).split(";")[0].rstrip(".")
-        raise InputError(f"{file}: {reason}; expected numbers below the header") from None
-    if len(table) < 2:
-        raise InputError(f"{file}: {len(table)} rows; expected at least 2 samples")
+        table = np.loadtxt(rows, delimiter=",", usecols=places, comments=None)
+    except ValueError:
+        # NumPy's own message counts rows in two ways.
+        raise InputError(f"{file}: {_first_bad_cell(lines, header, places)}") from None
     bad = np.argwhere(~np.isfinite(table))
     if len(bad):
-        row, column_index = bad[0]
-        value = table[row, column_index]
-        raise InputError(
-            f"{file}: row {row + 2}: column {columns[column_index]!r} is {value}; "
-            "expected a finite number"
-        )
+        raise InputError(f"{file}: {_first_bad_cell(lines, header, places)}")
     return tuple(np.ascontiguousarray(column) for column in table.T)
+
+
+def _first_bad_cell(lines: list[str], header: list[str], places: list[int]) -> str:
+    """Find the first cell that is no finite number; rows count from 1 as in editors."""
+    for number, cells in enumerate(csv.reader(lines[1:]), start=2):
+        for place in places if cells else []:
+            cell = cells[place].strip() if place < len(cells) else ""
+            try:
+                finite = bool(np.isfinite(float(cell)))
+            except ValueError:
+                finite = False
+            if not finite:
+                return (
+                    f"row {number}: column {header[place]!r} is {cell or 'empty'!r}; "
+                    "expected a finite number"
+                )
+    return "expected rows of numbers, separated by commas"
 
 
 def _sampling_interval(file: Path, time: FloatArray, tolerance: float) -> float:
@@ -250,7 +255,7 @@ def _seconds(file: Path, unit: str) -> float:
     """How many seconds a unit of time is."""
     if unit == "s":
         return 1.0
-    import pint  # noqa: PLC0415  (a fifth of a second, and rarely needed)
+    import pint  # late: a fifth of a second, and rarely needed
 
     try:
         return float(pint.Quantity(1, unit).to("s").magnitude)

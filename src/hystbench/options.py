@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 
-class SettingsType(click.ParamType):
+class SettingsType(click.ParamType[dict[str, Any]]):
     """Settings of a job: a JSON object, as the workflow writes it."""
 
     name = "JSON"

@@ -17,7 +17,7 @@ def load_yaml(path: str | Path) -> Any:
     InputError
         If there is no such file or it is not YAML.
     """
-    import yaml  # noqa: PLC0415  (kept out of jobs that read no YAML)
+    import yaml  # late: kept out of jobs that read no YAML
 
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -32,9 +32,7 @@ def load_yaml(path: str | Path) -> Any:
         raise InputError(f"{path}: {where}{problem}") from error
 
 
-def check_against_schema(
-    content: Any, schema: Mapping[str, Any], place: str
-) -> None:
+def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) -> None:
     """Check content against a JSON Schema (draft 2020-12).
 
     Parameters
@@ -52,10 +50,13 @@ def check_against_schema(
         With the most telling of the errors: the key, what was expected and the
         nearest valid name.
     """
-    from jsonschema import Draft202012Validator  # noqa: PLC0415
-    from jsonschema.exceptions import best_match  # noqa: PLC0415
+    from jsonschema import Draft202012Validator
+    from jsonschema.exceptions import best_match
 
-    error = best_match(Draft202012Validator(schema).iter_errors(content))
+    errors = list(Draft202012Validator(schema).iter_errors(content))
+    # A misspelt key is also a missing one: the misspelling tells more.
+    misspelt = [item for item in errors if item.validator == "additionalProperties"]
+    error = best_match(misspelt or errors)
     if error is None:
         return
     path = [f"{item}" for item in error.absolute_path]
@@ -65,9 +66,8 @@ def check_against_schema(
         unknown = next(key for key in error.instance if key not in known)
         raise InputError(f"{where}: unknown key {unknown!r}; {nearest(unknown, known)}")
     if error.validator == "enum":
-        raise InputError(
-            f"{where}: {error.instance!r}; {nearest(error.instance, error.validator_value)}"
-        )
+        near = nearest(error.instance, error.validator_value)
+        raise InputError(f"{where}: {error.instance!r} is unknown; {near}")
     if error.validator == "type":
         raise InputError(
             f"{where}: {error.instance!r} is no {error.validator_value}; "
@@ -77,7 +77,11 @@ def check_against_schema(
 
 
 def _expected(schema: Mapping[str, Any], kind: Any) -> str:
-    article = {"array": "a list", "object": "a mapping of keys", "integer": "a whole number"}
+    article = {
+        "array": "a list",
+        "object": "a mapping of keys",
+        "integer": "a whole number",
+    }
     kinds = kind if isinstance(kind, list) else [kind]
     words = " or ".join(article.get(item, f"a {item}") for item in kinds)
     about = schema.get("description")

@@ -123,7 +123,7 @@ class Settings:
 
     @property
     def identification_job(self) -> dict[str, Any]:
-        """Settings of Algorithm 1; it identifies as many operators as the filter has."""
+        """Settings of Algorithm 1, for as many operators as the filter has."""
         job = {
             key: value
             for key, value in self.config["identification"].items()
@@ -135,7 +135,9 @@ class Settings:
     def error_job(self) -> dict[str, Any]:
         """Settings of the errors of any model."""
         filters = self.config["filters"]
-        return {key: filters[key] for key in ("transient_s", "smoothing_s")}
+        return {
+            key: filters[key] for key in ("transient_fraction", "smoothing_fraction")
+        }
 
     @property
     def rdgpi_job(self) -> dict[str, Any]:
@@ -238,7 +240,7 @@ def _check_names(
 def _check_lengths(place: str, config: Mapping[str, Any]) -> None:
     common = config["excitation"]
     orders = config["order_sweep"]["orders"]
-    used = {name: config["filters"]["order"] for name in config["signals"]}
+    used = dict.fromkeys(config["signals"], config["filters"]["order"])
     sweep = config["order_sweep"]["signal"]
     used[sweep] = max([*orders, used.get(sweep, 1)])
     for name, order in used.items():
@@ -249,7 +251,7 @@ def _check_lengths(place: str, config: Mapping[str, Any]) -> None:
 
 
 def _check_length(place: str, samples: int, order: int) -> None:
-    """A filter of order N has N + 1 taps; fewer than twice as many samples is no run."""
+    """Refuse a record shorter than twice the N + 1 taps of a filter."""
     expected = 2 * (order + 1)
     if samples < expected:
         raise InputError(

@@ -1,0 +1,69 @@
+"""What tests share: the repository, small datasets and a way to run the workflow."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import settings
+
+ROOT = Path(__file__).parents[1]
+
+# A kernel's first call or a busy machine must not fail a property.
+settings.register_profile("hystbench", deadline=None)
+settings.load_profile("hystbench")
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    return ROOT
+
+
+@pytest.fixture
+def write_dataset(tmp_path):
+    """Write a measured dataset: a dict of CSV texts and a dataset.yaml text."""
+
+    def write(files: dict[str, str], yaml_text: str | None = None) -> Path:
+        folder = tmp_path / "dataset"
+        folder.mkdir()
+        for name, text in files.items():
+            (folder / name).write_text(text)
+        if yaml_text is None:
+            records = "".join(f"  - {{file: {name}}}\n" for name in files)
+            yaml_text = (
+                "name: bench\n"
+                "time: {column: time_s, unit: s}\n"
+                "input: {column: current_A, unit: A}\n"
+                "output: {column: displacement_um, unit: um}\n"
+                f"records:\n{records}"
+            )
+        (folder / "dataset.yaml").write_text(yaml_text)
+        return folder / "dataset.yaml"
+
+    return write
+
+
+def csv_text(time, u, y, header="time_s,current_A,displacement_um") -> str:
+    rows = [f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in zip(time, u, y, strict=True)]
+    return "\n".join([header, *rows]) + "\n"
+
+
+@pytest.fixture
+def loop_csv():
+    """Write one loop of a slow sine, 400 samples at 100 Hz, as CSV."""
+    time = np.arange(400) / 100
+    u = np.sin(2 * np.pi * time / 4)
+    return csv_text(time, u, 10 * u + 0.1)
+
+
+def run_hystbench(*arguments, cwd: Path | None = None):
+    return subprocess.run(
+        [sys.executable, "-m", "hystbench", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=cwd,
+        check=False,
+    )

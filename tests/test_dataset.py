@@ -1,0 +1,158 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.dataset import load_dataset
+from hystbench.errors import InputError
+
+from conftest import csv_text
+
+TIME = np.arange(50) / 1000
+U = np.sin(40 * TIME)
+Y = np.cos(40 * TIME)
+HEADER = """
+name: bench
+time: {column: time_s, unit: s}
+input: {column: current_A, unit: A}
+output: {column: displacement_um, unit: um}
+"""
+
+
+def message(call) -> str:
+    with pytest.raises(InputError) as caught:
+        call()
+    text = str(caught.value)
+    assert "\n" not in text
+    return text
+
+
+def test_reads_what_was_written(write_dataset):
+    dataset = load_dataset(write_dataset({"slow.csv": csv_text(TIME, U, Y)}))
+    record = dataset.read("slow")
+    assert record.dt == pytest.approx(0.001, rel=1e-12)
+    np.testing.assert_allclose(record.u, U, rtol=1e-8)
+    np.testing.assert_allclose(record.y, Y, rtol=1e-8)
+    assert (record.origin, record.use) == ("measured", "fit")
+    assert (record.input.label, record.output.label) == (
+        "current (A)",
+        "displacement (um)",
+    )
+
+
+@given(
+    count=st.integers(2, 40),
+    dt=st.floats(1e-6, 10),
+    start=st.floats(-5, 5),
+    scale=st.floats(1e-3, 1e6),
+)
+def test_any_uniform_record_comes_back(tmp_path_factory, count, dt, start, scale):
+    folder = tmp_path_factory.mktemp("data")
+    time = start + dt * np.arange(count)
+    u = scale * np.sin(np.arange(count))
+    rows = [
+        f"{t!r},{a!r},{-a!r}" for t, a in zip(time.tolist(), u.tolist(), strict=True)
+    ]
+    (folder / "r.csv").write_text(
+        "time_s,current_A,displacement_um\n" + "\n".join(rows) + "\n"
+    )
+    (folder / "dataset.yaml").write_text(HEADER + "records: [{file: r.csv}]\n")
+    record = load_dataset(folder).read("r")
+    np.testing.assert_array_equal(record.u, u)
+    np.testing.assert_array_equal(record.y, -u)
+    assert record.dt == pytest.approx(dt, rel=1e-6)
+
+
+def test_milliseconds_become_seconds(write_dataset):
+    text = csv_text(TIME * 1000, U, Y)
+    yaml_text = HEADER.replace("unit: s}", "unit: ms}") + "records: [{file: r.csv}]"
+    record = load_dataset(write_dataset({"r.csv": text}, yaml_text)).read("r")
+    assert record.dt == pytest.approx(0.001, rel=1e-9)
+
+
+def test_unit_of_time_is_checked(write_dataset):
+    yaml_text = HEADER.replace("unit: s}", "unit: V}") + "records: [{file: r.csv}]"
+    path = write_dataset({"r.csv": csv_text(TIME, U, Y)}, yaml_text)
+    assert "expected a unit of time" in message(lambda: load_dataset(path))
+
+
+def test_identification_is_the_slowest_fit_record_unless_named(write_dataset):
+    slow = csv_text(TIME, np.sin(40 * TIME), Y)
+    fast = csv_text(TIME, np.sin(200 * TIME), Y)
+    slowest = csv_text(TIME, np.sin(20 * TIME), Y)
+    records = (
+        "records: [{file: fast.csv}, {file: slow.csv}, "
+        "{file: slowest.csv, use: hold-out}]\n"
+    )
+    files = {"slow.csv": slow, "fast.csv": fast, "slowest.csv": slowest}
+    path = write_dataset(files, HEADER + records)
+    assert load_dataset(path).identification == "slow"
+    path.write_text(HEADER + "identification: fast\n" + records)
+    assert load_dataset(path).identification == "fast"
+
+
+def with_row(row: str) -> str:
+    lines = csv_text(TIME, U, Y).splitlines()
+    lines[10] = row
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (with_row("0.009,nan,1"), ["row 11", "'current_A'", "finite number"]),
+        (with_row("0.009,inf,1"), ["row 11", "'current_A'", "finite number"]),
+        (with_row("0.009,x,1"), ["row 11", "'x'"]),
+        (with_row("0.009,,1"), ["row 11", "finite number"]),
+        (with_row("0.009,1"), ["row 11", "finite number"]),
+        (with_row("0.007,1,1"), ["row 11", "expected it to increase"]),
+        (with_row("0.0096,1,1"), ["row 11", "uniform sampling"]),
+        (
+            csv_text(TIME, U, Y, "time_s,curent_A,displacement_um"),
+            ["no column 'current_A'", "did you mean 'curent_A'?"],
+        ),
+        (csv_text(TIME, U * 0 + 3, Y), ["'current_A'", "constant"]),
+        (csv_text(TIME, U, Y * 0), ["'displacement_um'", "constant"]),
+        (csv_text(TIME[:1], U[:1], Y[:1]), ["at least 2 samples"]),
+        ("time_s,current_A,displacement_um\n", ["at least 2 samples"]),
+        ("", ["no column 'time_s'"]),
+    ],
+)
+def test_a_bad_file_is_told_in_one_line(write_dataset, text, expected):
+    dataset = load_dataset(write_dataset({"bad.csv": text}))
+    said = message(lambda: dataset.read("bad"))
+    for part in ["bad.csv", *expected]:
+        assert part in said
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("name: bench", "nmae: bench"), "'name'"),
+        (("input:", "imput:"), "did you mean 'input'?"),
+        (("unit: A", "untis: A"), "input: unknown key 'untis'; did you mean 'unit'?"),
+        (("r.csv", "rr.csv"), "no file 'rr.csv'; did you mean 'r.csv'?"),
+        (("use: fit", "use: hold"), "did you mean 'hold-out'?"),
+        (("use: fit", "use: hold-out"), "at least one with 'use: fit'"),
+        (("name: bench", "name: bench\nidentification: q"), "no record 'q'"),
+        (("name: bench", "name: ../up"), "'../up'"),
+        (("name: bench", "name: [bench"), "line"),
+    ],
+)
+def test_a_bad_header_is_told_in_one_line(write_dataset, change, expected):
+    yaml_text = HEADER + "records: [{file: r.csv, use: fit}]\n"
+    path = write_dataset({"r.csv": csv_text(TIME, U, Y)}, yaml_text.replace(*change))
+    said = message(lambda: load_dataset(path))
+    assert expected in said
+    assert "dataset.yaml" in said
+
+
+def test_rounded_times_pass_and_a_stated_tolerance_counts(write_dataset):
+    jitter = np.where(np.arange(50) % 2, 2e-5, 0)
+    text = csv_text(TIME + jitter, U, Y)
+    records = "records: [{file: r.csv}]\n"
+    path = write_dataset({"r.csv": text}, HEADER + records)
+    assert "uniform sampling" in message(lambda: load_dataset(path).read("r"))
+    loose = HEADER.replace("unit: s}", "unit: s, tolerance: 0.05}")
+    path.write_text(loose + records)
+    assert load_dataset(path).read("r").dt == pytest.approx(0.001, rel=1e-3)

@@ -1,0 +1,70 @@
+import numpy as np
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.record import Channel, Record, load_record
+
+
+def make(u, dt=0.01):
+    u = np.asarray(u, dtype=float)
+    channels = Channel("current", "A"), Channel("displacement", "um")
+    return Record("r", dt, u, 2 * u, *channels, origin="twin")
+
+
+def test_comes_back_from_its_file(tmp_path):
+    record = make([1, 2, 3.5])
+    record.save(tmp_path / "deep" / "r.npz")
+    back = load_record(tmp_path / "deep" / "r.npz")
+    np.testing.assert_array_equal(back.u, record.u)
+    np.testing.assert_array_equal(back.y, record.y)
+    assert (back.name, back.dt, back.input, back.output, back.origin, back.use) == (
+        "r",
+        0.01,
+        record.input,
+        record.output,
+        "twin",
+        "fit",
+    )
+
+
+def test_is_evidence_that_cannot_be_changed():
+    with pytest.raises(ValueError, match="read-only"):
+        make([1, 2]).u[0] = 5
+
+
+def test_rate_of_a_sine_is_its_angular_frequency():
+    time = np.arange(100_000) / 10_000
+    assert make(np.sin(2 * np.pi * 3 * time), 1e-4).rate == pytest.approx(
+        2 * np.pi * 3, rel=1e-4
+    )
+
+
+def test_rate_does_not_hang_on_scale_or_offset():
+    u = np.sin(np.arange(1000) / 50)
+    assert make(1400 * u + 72).rate == pytest.approx(make(u).rate, rel=1e-9)
+
+
+def test_repr_tells_what_it_is():
+    assert repr(make([1, 2])) == (
+        "Record(r, 2 samples at 100 Hz, current (A) to displacement (um), twin, fit)"
+    )
+
+
+def test_another_file_is_refused_in_one_line(tmp_path):
+    (tmp_path / "x.npz").write_text("no archive")
+    with pytest.raises(InputError, match=r"x\.npz: not a record"):
+        load_record(tmp_path / "x.npz")
+
+
+def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
+    make([1, 2]).save(tmp_path / "r.npz")
+    before = (tmp_path / "r.npz").read_bytes()
+
+    def fail(*_, **__):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(np, "savez", fail)
+    with pytest.raises(OSError, match="disk full"):
+        make([3, 4]).save(tmp_path / "r.npz")
+    assert (tmp_path / "r.npz").read_bytes() == before
+    assert [item.name for item in tmp_path.iterdir()] == ["r.npz"]

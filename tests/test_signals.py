@@ -1,0 +1,157 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.errors import InputError
+from hystbench.signals import (
+    chirp,
+    load_signal,
+    make_signal,
+    random_sum_of_sines,
+    sine,
+    sum_of_sines,
+)
+
+COMMON = {
+    "unit": "A",
+    "sampling_frequency_hz": 10_000,
+    "duration_s": 2.0,
+    "amplitude": 0.632,
+    "gain": 1.264,
+}
+
+
+def test_sine_by_hand():
+    u = sine(frequency_hz=1, amplitude=2, duration_s=1, sampling_frequency_hz=4)
+    np.testing.assert_allclose(u, [0, 2, 0, -2], atol=1e-15)
+
+
+def test_chirp_has_the_frequency_that_the_paper_reads_off():
+    # Section 4: about 63.4 Hz at 1.28 s and 69.7 Hz at 1.41 s.
+    u = chirp(
+        from_hz=1,
+        to_hz=100,
+        amplitude=1,
+        duration_s=2.03,
+        sampling_frequency_hz=100_000,
+    )
+    rising = np.flatnonzero((u[:-1] < 0) & (u[1:] >= 0)) / 100_000
+    middle = (rising[1:] + rising[:-1]) / 2
+    frequency = 1 / np.diff(rising)
+    assert np.interp(1.28, middle, frequency) == pytest.approx(63.4, abs=0.1)
+    assert np.interp(1.41, middle, frequency) == pytest.approx(69.7, abs=0.1)
+
+
+def test_sum_of_sines_has_its_lines_and_no_others():
+    u = sum_of_sines(
+        frequencies_hz=[10, 30, 50],
+        amplitudes=[0.1, 0.2, 0.3],
+        gain=1.264,
+        duration_s=1,
+        sampling_frequency_hz=1000,
+    )
+    amplitude = 2 * np.abs(np.fft.rfft(u)) / len(u)
+    np.testing.assert_allclose(
+        amplitude[[10, 30, 50]], 1.264 * np.array([0.1, 0.2, 0.3]), rtol=1e-12
+    )
+    amplitude[[10, 30, 50]] = 0
+    assert amplitude.max() < 1e-12
+
+
+@given(seed=st.integers(0, 1000), sines=st.integers(2, 40), level=st.floats(0.1, 2))
+def test_random_sum_stays_in_band_and_spans_its_level(seed, sines, level):
+    u = random_sum_of_sines(
+        band=[0, 0.02],
+        level=level,
+        sines=sines,
+        trials=3,
+        seed=seed,
+        gain=2,
+        duration_s=2,
+        sampling_frequency_hz=10_000,
+    )
+    assert u.max() == pytest.approx(2 * level, rel=1e-12)
+    assert u.min() == pytest.approx(-2 * level, rel=1e-12)
+    line = np.abs(np.fft.rfft(u)) / len(u)
+    excited = np.flatnonzero(line > 1e-6 * line.max())
+    excited = excited[excited > 0]
+    assert len(excited) == sines
+    # 0.02 of the Nyquist frequency of 5 kHz is 100 Hz, line 200 of a 2 s record.
+    assert excited.max() == 200
+
+
+def test_random_sum_keeps_the_draw_with_the_least_peak():
+    arguments = {
+        "band": [0, 0.02],
+        "level": 1.0,
+        "sines": 10,
+        "seed": 3,
+        "gain": 1,
+        "duration_s": 2,
+        "sampling_frequency_hz": 10_000,
+    }
+    one = random_sum_of_sines(trials=1, **arguments)
+    ten = random_sum_of_sines(trials=10, **arguments)
+    # At equal peaks the draw with the smaller crest has the larger rms.
+    assert ten.std() >= one.std()
+
+
+def test_the_same_seed_gives_the_same_signal():
+    definition = {
+        "random-sum-of-sines": {
+            "band": [0, 0.02],
+            "level": 0.5,
+            "sines": 10,
+            "trials": 10,
+            "seed": 1,
+        }
+    }
+    first, second = (make_signal("s", definition, COMMON).u for _ in range(2))
+    np.testing.assert_array_equal(first, second)
+
+
+def test_its_own_values_win_over_the_common_ones():
+    signal = make_signal("s", {"sine": {"frequency_hz": 5, "amplitude": 3}}, COMMON)
+    assert signal.u.max() == pytest.approx(3)
+    assert (len(signal.u), signal.dt, signal.unit) == (20_000, 1e-4, "A")
+
+
+def test_comes_back_from_its_file(tmp_path):
+    signal = make_signal("s", {"sine": {"frequency_hz": 5}}, COMMON)
+    signal.save(tmp_path / "s.npz")
+    back = load_signal(tmp_path / "s.npz")
+    np.testing.assert_array_equal(back.u, signal.u)
+    assert (back.name, back.dt, back.unit) == ("s", 1e-4, "A")
+
+
+@pytest.mark.parametrize(
+    ("definition", "expected"),
+    [
+        ({"sin": {}}, "did you mean 'sine'?"),
+        ({"sine": {"frequency": 4}}, "did you mean 'frequency_hz'?"),
+        ({"sine": {}}, "misses the key 'frequency_hz'"),
+        ({"sine": {"frequency_hz": "ten"}}, "frequency_hz: 'ten'; expected numbers"),
+        (
+            {"sum-of-sines": {"frequencies_hz": [1], "amplitudes": [1, 2]}},
+            "1 frequencies_hz but 2 amplitudes",
+        ),
+        (
+            {
+                "random-sum-of-sines": {
+                    "band": [0, 1e-4],
+                    "level": 1,
+                    "sines": 10,
+                    "trials": 1,
+                    "seed": 0,
+                }
+            },
+            "expected at least 10",
+        ),
+    ],
+)
+def test_a_bad_definition_is_told_in_one_line(definition, expected):
+    with pytest.raises(InputError) as caught:
+        make_signal("mine", definition, COMMON)
+    assert expected in str(caught.value)
+    assert "\n" not in str(caught.value)
