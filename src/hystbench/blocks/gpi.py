@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import numbers
 from hystbench.errors import InputError
@@ -56,9 +54,7 @@ class GeneralizedPrandtlIshlinskii(Block):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute Eq. 9 for every sample."""
         envelope = Envelope(*self.envelope)
-        return generalized_prandtl_ishlinskii(
-            envelope.left(z),
-            envelope.right(z),
-            np.array(self.thresholds),
-            np.array(self.weights),
+        y, _ = generalized_prandtl_ishlinskii(
+            envelope.left(z), envelope.right(z), self.thresholds, self.weights
         )
+        return y

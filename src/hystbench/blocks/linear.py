@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import choice
-from hystbench.kernels import state_space
+from hystbench.operators import state_space
 from hystbench.record import FloatArray
 
 Hold = Literal["zero-order", "linear", "band-limited"]
@@ -91,7 +91,7 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     phi, now, following = discretise(system, dt, hold)
     # x(k+1) = phi x(k) + now v(k) + following v(k+1); the state x(k) - following v(k)
     # turns this into the usual form, which the kernel takes.
-    return state_space(
+    y, _ = state_space(
         phi,
         now + phi @ following,
         system.c,
@@ -99,6 +99,7 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
         v,
         -following * v[0],
     )
+    return y
 
 
 def discretise(
