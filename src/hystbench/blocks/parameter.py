@@ -88,7 +88,7 @@ def number(
     low: float = -math.inf,
     high: float = math.inf,
     default: object = MISSING,
-) -> Any:  # noqa: ANN401  (stands for the field's own type)
+) -> Any:
     """Declare a parameter that is one number."""
     return _declare(Parameter("number", unit, meaning, low, high), default)
 
@@ -99,15 +99,15 @@ def numbers(
     low: float = -math.inf,
     high: float = math.inf,
     length: int | None = None,
-) -> Any:  # noqa: ANN401
+) -> Any:
     """Declare a parameter that is a sequence of numbers."""
     return _declare(Parameter("numbers", unit, meaning, low, high, length), MISSING)
 
 
-def choice(meaning: str, options: tuple[str, ...], default: str) -> Any:  # noqa: ANN401
+def choice(meaning: str, options: tuple[str, ...], default: str) -> Any:
     """Declare a parameter that is one word out of several."""
     return _declare(Parameter("choice", "-", meaning, options=options), default)
 
 
-def _declare(parameter: Parameter, default: object) -> Any:  # noqa: ANN401
+def _declare(parameter: Parameter, default: object) -> Any:
     return field(default=default, kw_only=True, metadata={"parameter": parameter})
