@@ -427,7 +427,7 @@ def follow_direction(
 
 
 def _array(values: ArrayLike) -> FloatArray:
-    return np.ascontiguousarray(values, dtype=np.float64)
+    return np.asarray(values, dtype=np.float64, order="C")
 
 
 def _signal(name: str, values: ArrayLike) -> FloatArray:

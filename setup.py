@@ -1,0 +1,46 @@
+"""The compiled kernels: plain C in one shared library; the rest is in pyproject.toml."""
+
+import os
+import sysconfig
+
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+# What the loops may not assume is that no NaN or infinity ever comes: that is how
+# they see divergence. So neither -ffast-math nor -ffinite-math-only, and nothing
+# linked with them, which would flush denormals in the whole process.
+FLAGS = (
+    "-O3 -march=native -std=gnu11 -fPIC -fvisibility=hidden -ffp-contract=fast "
+    "-fno-math-errno -fno-trapping-math -fno-signed-zeros -Wall -Wno-psabi"
+).split()
+
+
+class BuildKernels(build_ext):
+    """Build a library for ctypes: no Python headers, no flags of Python's own build."""
+
+    def get_ext_filename(self, fullname: str) -> str:
+        """Name the library plainly: it does not depend on the version of Python."""
+        return os.path.join(*fullname.split(".")) + ".so"
+
+    def build_extensions(self) -> None:
+        """Compile and link with the flags above alone."""
+        words = (os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc").split()
+        self.compiler.set_executables(
+            compiler_so=[*words, *FLAGS], linker_so=[*words, "-shared"]
+        )
+        super().build_extensions()
+
+
+HERE = "src/hystbench/kernels"
+SOURCES = ["lms.c", "play.c", "state_space.c", "volterra.c"]
+
+setup(
+    ext_modules=[
+        Extension(
+            "hystbench.kernels._kernels",
+            sources=[f"{HERE}/{name}" for name in SOURCES],
+            depends=[f"{HERE}/lanes.h"],
+        )
+    ],
+    cmdclass={"build_ext": BuildKernels},
+)

@@ -1,0 +1,417 @@
+"""What all adaptive filters share: the LMS loop, its results and its bound.
+
+An adaptive filter predicts ``y(k) = w(k)' H(k)`` (Eq. 13), compares with what the
+plant gave, ``e(k) = d(k) - y(k)``, and corrects ``w(k+1) = w(k) + 2 mu e(k) H(k)``
+(Eq. 18). The error is a priori: the prediction does not know ``d(k)``. Filters
+differ in the regressor ``H`` alone, so a new one is one file with one method.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hystbench import kernels
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+CHUNK = 4096
+"""Samples whose regressors are held at a time."""
+
+FILTERS: dict[str, type[AdaptiveFilter]] = {}
+"""Every filter by its name."""
+
+
+@dataclass(frozen=True)
+class State:
+    """What a filter carries from one chunk of a signal to the next.
+
+    Parameters
+    ----------
+    weights : ndarray
+        Weights after the last update.
+    past : ndarray, shape (order + 1,)
+        The last inputs, oldest first.
+    operators : ndarray
+        Outputs of the play operators, by tap; empty for filters without.
+    limit : float or None
+        Error beyond which the filter has diverged; None before the first chunk.
+    """
+
+    weights: FloatArray
+    past: FloatArray
+    operators: FloatArray
+    limit: float | None = None
+
+
+@dataclass(frozen=True)
+class Result:
+    """What an adaptive filter made of a record.
+
+    Parameters
+    ----------
+    output, error : ndarray, shape (n,)
+        Prediction y and a priori error ``e = d - y`` at each sample. They end before
+        the sample at which the filter diverged.
+    weights : ndarray
+        Weights after the last sample; after divergence of no use, but finite.
+    diverged_at : int or None
+        First sample whose error was beyond the limit or not a number.
+    state : State
+        Where to go on with the next chunk.
+    """
+
+    output: FloatArray
+    error: FloatArray
+    weights: FloatArray
+    diverged_at: int | None
+    state: State
+
+
+@dataclass(frozen=True)
+class Bound:
+    """Bound on the step size, Eq. 19, and what sets the speed of convergence.
+
+    Parameters
+    ----------
+    trace : float
+        Trace of ``R = E[H H']``, the mean over the record.
+    largest, smallest : float
+        Eigenvalues of R; the smallest is zero where R has less than full rank.
+    rank : int
+        Eigenvalues above ``size * eps * largest``: the others are rounding.
+    size : int
+        Number of weights.
+    smallest_nonzero : float
+        Smallest eigenvalue that counts for the rank.
+    """
+
+    trace: float
+    largest: float
+    smallest: float
+    rank: int
+    size: int
+    smallest_nonzero: float
+
+    @property
+    def bound(self) -> float:
+        """Step sizes between zero and this converge in the mean: 1 / trace."""
+        return 1 / self.trace if self.trace > 0 else np.inf
+
+    @property
+    def spread(self) -> float:
+        """Largest over smallest eigenvalue; infinite where R has not full rank."""
+        return self.largest / self.smallest if self.smallest > 0 else np.inf
+
+    @property
+    def spread_nonzero(self) -> float:
+        """Largest over smallest of the eigenvalues that are not rounding."""
+        return self.largest / self.smallest_nonzero if self.rank else np.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class AdaptiveFilter(ABC):
+    """An adaptive filter with LMS weights.
+
+    A subclass that is not abstract is in :data:`FILTERS` under its ``name``.
+
+    Parameters
+    ----------
+    order : int
+        Order N: the delay line has N + 1 taps, x(k) to x(k - N).
+    step_size : float
+        Convergence factor mu of Eq. 18.
+    normalized : bool
+        Divide each correction by ``regularization + H'H`` (normalized LMS).
+    regularization : float
+        Keeps that division from zero; in the unit of ``H'H``.
+    x_before : float
+        Input before the first sample.
+
+    Raises
+    ------
+    InputError
+        If a parameter is out of range.
+    """
+
+    name: ClassVar[str]
+
+    order: int
+    step_size: float
+    normalized: bool = False
+    regularization: float = 1e-6
+    x_before: float = 0.0
+
+    def __init_subclass__(cls) -> None:
+        """Enter the filter in the registry."""
+        if "name" in cls.__dict__:
+            FILTERS[cls.name] = cls
+
+    def __post_init__(self) -> None:
+        """Refuse parameters out of range."""
+        if self.order < 0:
+            raise InputError(f"order: {self.order} given, 0 or more expected")
+        positive("step_size", self.step_size)
+        positive("regularization", self.regularization)
+        if not np.isfinite(self.x_before):
+            raise InputError(f"x_before: {self.x_before} is not a finite number")
+
+    @property
+    def taps(self) -> int:
+        """Length of the delay line, N + 1."""
+        return self.order + 1
+
+    @property
+    def size(self) -> int:
+        """Number of weights."""
+        return self.taps
+
+    @property
+    def steps(self) -> FloatArray:
+        """Step size of each weight."""
+        return np.full(self.size, self.step_size)
+
+    @abstractmethod
+    def regressor(
+        self, line: FloatArray, operators: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Give the regressor H at each sample of a chunk.
+
+        Parameters
+        ----------
+        line : ndarray, shape (taps + n,)
+            The inputs, oldest first: ``taps`` past ones, then those of the chunk.
+        operators : ndarray
+            Outputs of the operators before the chunk.
+
+        Returns
+        -------
+        H : ndarray, shape (n, size)
+            Regressors.
+        operators : ndarray
+            Outputs of the operators after the chunk.
+        """
+
+    def start(self, weights: ArrayLike | None = None) -> State:
+        """Give the state before the first sample.
+
+        Parameters
+        ----------
+        weights : array_like, shape (size,), optional
+            Initial weights; zero by default.
+
+        Raises
+        ------
+        InputError
+            If there are not ``size`` finite weights.
+        """
+        if weights is None:
+            weights = np.zeros(self.size)
+        w = np.array(weights, dtype=np.float64)
+        if w.shape != (self.size,) or not np.isfinite(w).all():
+            raise InputError(
+                f"weights: {w.shape} given, {self.size} finite numbers expected"
+            )
+        return State(w, np.full(self.taps, self.x_before), self._first_operators())
+
+    def run(
+        self,
+        x: ArrayLike,
+        d: ArrayLike,
+        state: State | None = None,
+        limit: float | None = None,
+    ) -> Result:
+        """Filter a record, or the next chunk of one.
+
+        Chunk after chunk, each with the state of the one before, gives what the
+        whole record gives at once.
+
+        Parameters
+        ----------
+        x, d : array_like, shape (n,)
+            Input of the plant and its output.
+        state : State, optional
+            Where the chunk before ended; the start by default.
+        limit : float, optional
+            Magnitude of the error beyond which the filter has diverged. By default
+            a million times the largest ``|d|`` of the first chunk.
+
+        Raises
+        ------
+        InputError
+            If x and d differ in length, are not finite or the limit is not positive.
+        """
+        x, d = _finite("x", x), _finite("d", d)
+        if len(x) != len(d):
+            raise InputError(f"d: {len(d)} samples given, x has {len(x)}")
+        state = state or self.start()
+        limit = limit or state.limit
+        if limit is None:
+            largest = float(np.abs(d).max(initial=0.0))
+            limit = 1e6 * (largest or 1.0)
+        positive("limit", limit)
+        line = np.concatenate((state.past, x))
+        output, error, weights, operators = self._adapt(line, d, state, limit)
+        diverged_at = len(output) if len(output) < len(d) else None
+        if not np.isfinite(weights).all():
+            # overflow in the last update of all: the next prediction would show it
+            diverged_at = len(output)
+            weights = np.nan_to_num(weights)
+        end = State(weights, line[len(x) :], operators, limit)
+        return Result(output, error, weights, diverged_at, end)
+
+    def bound(self, x: ArrayLike) -> Bound:
+        """Bound on the step size for an input, Eq. 19.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,)
+            Input, at least one sample.
+        """
+        return eigenvalue_bound(self._correlation(x), self.size)
+
+    def _first_operators(self) -> FloatArray:
+        return np.zeros(0)
+
+    def _chunks(self, x: ArrayLike) -> Iterator[FloatArray]:
+        """Delay line of chunk after chunk of an input: past inputs, then its own."""
+        x = _finite("x", x)
+        if len(x) == 0:
+            raise InputError("x: no samples")
+        line = np.concatenate((np.full(self.taps, self.x_before), x))
+        for start in range(0, len(x), CHUNK):
+            yield line[start : start + self.taps + CHUNK]
+
+    def _correlation(self, x: ArrayLike) -> FloatArray:
+        """Mean of H H' over the input."""
+        total, count = np.zeros((self.size, self.size)), 0
+        operators = self._first_operators()
+        for line in self._chunks(x):
+            rows, operators = self.regressor(line, operators)
+            total += rows.T @ rows
+            count += len(rows)
+        return total / count
+
+    def _adapt(
+        self, line: FloatArray, d: FloatArray, state: State, limit: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Run the LMS loop; output and error end where the filter diverges.
+
+        This one works with any regressor. The filters here have their own, which
+        make the regressor inside the loop.
+        """
+        output, error = np.empty(len(d)), np.empty(len(d))
+        weights, steps = kernels.pad(state.weights), kernels.pad(2 * self.steps)
+        operators, done = state.operators, 0
+        while done < len(d):
+            chunk = line[done : done + self.taps + CHUNK]
+            h, operators = self.regressor(chunk, operators)
+            rows = np.zeros((len(h), len(weights)))
+            rows[:, : self.size] = h
+            part = slice(done, done + len(h))
+            taken = self._rows(
+                rows, len(weights), steps, d[part], limit, weights,
+                output[part], error[part],
+            )  # fmt: skip
+            done += taken
+            if taken < len(h):
+                break
+        return output[:done], error[:done], weights[: self.size].copy(), operators
+
+    def _rows(
+        self,
+        rows: FloatArray,
+        stride: int,
+        steps: FloatArray,
+        d: FloatArray,
+        limit: float,
+        weights: FloatArray,
+        output: FloatArray,
+        error: FloatArray,
+    ) -> int:
+        vectors = len(weights) // kernels.WIDTH
+        numbers = (self._kernel_regularization(), limit)
+        arrays = (weights, output, error)
+        sizes = (len(d), vectors)
+        return kernels.call(
+            "hb_lms_rows", *sizes, rows, stride, d, steps, *numbers, *arrays
+        )
+
+    def _kernel_regularization(self) -> float:
+        # the kernels take a negative one for the plain LMS
+        return self.regularization if self.normalized else -1.0
+
+
+def run_many(
+    jobs: Iterable[tuple[AdaptiveFilter, ArrayLike, ArrayLike]],
+    workers: int | None = None,
+    limit: float | None = None,
+) -> list[Result]:
+    """Run many filters at once: step sizes, orders, seeds.
+
+    Each job runs as it would alone, so the results do not depend on ``workers``.
+    Jobs may share their arrays.
+
+    Parameters
+    ----------
+    jobs : iterable of (AdaptiveFilter, array_like, array_like)
+        Filter, input x and plant output d.
+    workers : int, optional
+        Threads; as many as Python chooses by default.
+    limit : float, optional
+        As for :meth:`AdaptiveFilter.run`.
+
+    Returns
+    -------
+    list of Result
+        In the order of the jobs.
+    """
+    with ThreadPoolExecutor(workers) as pool:
+        running = [pool.submit(item.run, x, d, None, limit) for item, x, d in jobs]
+        return [job.result() for job in running]
+
+
+def with_step_sizes(
+    adaptive: AdaptiveFilter, step_sizes: Iterable[float]
+) -> list[AdaptiveFilter]:
+    """Give copies of a filter that differ in the step size."""
+    return [replace(adaptive, step_size=size) for size in step_sizes]
+
+
+def eigenvalue_bound(correlation: FloatArray, size: int) -> Bound:
+    """Eigenvalues of R; those beyond the matrix given, up to ``size``, are zero."""
+    values = np.linalg.eigvalsh(correlation)
+    largest = float(values[-1])
+    nonzero = values[values > size * np.finfo(float).eps * largest]
+    rank = len(nonzero)
+    smallest = float(nonzero[0]) if rank else 0.0
+    return Bound(
+        trace=float(np.trace(correlation)),
+        largest=largest,
+        smallest=smallest if rank == size else 0.0,
+        rank=rank,
+        size=size,
+        smallest_nonzero=smallest,
+    )
+
+
+def positive(name: str, value: float) -> None:
+    """Refuse a parameter that is not a positive finite number."""
+    if not 0 < value < np.inf:
+        raise InputError(f"{name}: {value} given, a positive number expected")
+
+
+def _finite(name: str, values: ArrayLike) -> FloatArray:
+    array = np.asarray(values, dtype=np.float64, order="C")
+    if array.ndim != 1:
+        raise InputError(f"{name}: {array.ndim} dimensions given, 1 expected")
+    if not np.isfinite(array).all():
+        place = int(np.flatnonzero(~np.isfinite(array))[0])
+        raise InputError(f"{name}: sample {place} is {array[place]}")
+    return array

@@ -1,0 +1,124 @@
+"""What the filters of play operators share: an operator on each tap."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from hystbench import kernels
+from hystbench.errors import InputError, nearest
+from hystbench.filters.base import AdaptiveFilter, State, positive
+from hystbench.operators import FORMS, Form, follow_direction
+from hystbench.record import FloatArray
+
+InitialState = Literal["zero", "settled"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlayFilter(AdaptiveFilter):
+    """Adaptive filter whose regressor is play operators of rising thresholds.
+
+    Parameters
+    ----------
+    amplitude : float
+        Largest magnitude of the input, from which the thresholds follow (Eq. 10).
+    form : {"eq12", "eq4"}
+        Equation by which the operators move.
+    initial_state : {"zero", "settled"}
+        Outputs of the operators before the first sample: zero, or where Eq. 4 puts
+        them from zero when they see ``x_before``.
+    """
+
+    amplitude: float
+    form: Form = "eq12"
+    initial_state: InitialState = "zero"
+
+    def __post_init__(self) -> None:
+        """Refuse parameters out of range."""
+        super().__post_init__()
+        positive("amplitude", self.amplitude)
+        if self.form not in FORMS:
+            raise InputError(
+                f"form: {self.form!r} unknown; {nearest(self.form, FORMS)}"
+            )
+        known = ("zero", "settled")
+        if self.initial_state not in known:
+            raise InputError(
+                f"initial_state: {self.initial_state!r} unknown; "
+                f"{nearest(self.initial_state, known)}"
+            )
+
+    @property
+    @abstractmethod
+    def thresholds(self) -> FloatArray:
+        """Threshold of each operator."""
+
+    @property
+    def along_line(self) -> bool:
+        """Whether operator i reads tap i; otherwise all read x(k)."""
+        return True
+
+    @abstractmethod
+    def envelopes(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Left and right envelope functions of the input."""
+
+    def regressor(
+        self, line: FloatArray, operators: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Give the outputs of the operators at each sample, by tap."""
+        left, right, r, state = self._lanes(line, operators)
+        count, vectors = len(line) - self.taps, len(r) // kernels.WIDTH
+        rows = np.empty((count, len(r)))
+        envelopes = (left, right, int(self.along_line))
+        kernels.call("hb_play_rows", count, vectors, *envelopes, r, state, rows)
+        return rows[:, ::-1][:, : self.taps], state[::-1][: self.taps].copy()
+
+    def _first_operators(self) -> FloatArray:
+        zero = np.zeros(self.taps)
+        if self.initial_state == "zero":
+            return zero
+        left, right = self.envelopes(np.array([self.x_before]))
+        r = self.thresholds
+        return np.maximum(right - r, np.minimum(left + r, zero))
+
+    def _lanes(
+        self, line: FloatArray, operators: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Envelopes of the line, thresholds and states, as the kernels want them.
+
+        Lanes run from the oldest tap to the newest, so that a window of the line is
+        read as it lies. An operator in the padding never leaves zero.
+        """
+        r = kernels.pad_front(self.thresholds[::-1], np.inf)
+        state = kernels.pad_front(operators[::-1])
+        left, right = self.envelopes(line)
+        if self.form == "eq12":
+            left, right = follow_direction(line, left, right)
+        spare = len(r) - self.taps
+        if not self.along_line:
+            left, right = left[self.taps :], right[self.taps :]
+        elif spare:
+            front = np.zeros(spare)
+            left = np.concatenate((front, left[1:]))
+            right = np.concatenate((front, right[1:]))
+        else:
+            left, right = left[1:], right[1:]
+        return left, right, r, state
+
+    def _adapt(
+        self, line: FloatArray, d: FloatArray, state: State, limit: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        left, right, r, operators = self._lanes(line, state.operators)
+        weights = kernels.pad_front(state.weights[::-1])
+        output, error = np.empty(len(d)), np.empty(len(d))
+        sizes = (len(d), len(r) // kernels.WIDTH)
+        envelopes = (left, right, int(self.along_line))
+        numbers = (2 * self.step_size, self._kernel_regularization(), limit)
+        arrays = (operators, weights, output, error)
+        done = kernels.call("hb_lms_play", *sizes, *envelopes, d, r, *numbers, *arrays)
+        last = slice(None, self.taps)
+        tail = weights[::-1][last].copy(), operators[::-1][last].copy()
+        return output[:done], error[:done], *tail

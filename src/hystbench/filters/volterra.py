@@ -1,0 +1,155 @@
+"""Second-order Volterra adaptive filter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hystbench import kernels
+from hystbench.filters.base import (
+    AdaptiveFilter,
+    Bound,
+    State,
+    eigenvalue_bound,
+    positive,
+)
+from hystbench.record import FloatArray
+
+QUAD = 4  # the kernel keeps blocks of 4 x 4 second-order weights
+
+
+@dataclass(frozen=True)
+class VolterraBound(Bound):
+    """Bound of Eq. 19 for the whole regressor and for its two parts.
+
+    Parameters
+    ----------
+    first_order, second_order : float
+        Traces of the parts of R that belong to ``x(k-i)`` and ``x(k-i) x(k-j)``.
+    """
+
+    first_order: float
+    second_order: float
+
+    def margin(self, step_size: float, second_order_step: float) -> float:
+        """Give ``mu1 tr R1 + mu2 tr R2``: below 1 the weights converge in the mean.
+
+        With a step size for each weight on the diagonal of M, the mean error of the
+        weights follows ``v(k+1) = (I - 2 M R) v(k)``. ``M R`` has the eigenvalues of
+        ``M^1/2 R M^1/2``, none negative, so it converges if they are below 1; and
+        none is above their sum, the trace of ``M R``.
+        """
+        return step_size * self.first_order + second_order_step * self.second_order
+
+
+@dataclass(frozen=True, kw_only=True)
+class VolterraFilter(AdaptiveFilter):
+    """Adaptive filter of all x(k-i) and all products x(k-i) x(k-j), i, j = 0 to N.
+
+    ``N + 1 + (N + 1)^2`` weights, first-order ones first, then the square of the
+    second-order ones row by row, as the paper counts them: each product of two
+    different taps has two weights. ``step_size`` is that of the first-order weights.
+    Normalized, both parts are divided by the power of the whole regressor. Other
+    parameters are those of :class:`hystbench.filters.base.AdaptiveFilter`.
+
+    Parameters
+    ----------
+    second_order_step : float
+        Convergence factor of the second-order weights.
+
+    References
+    ----------
+    Diniz, Adaptive Filtering, Springer, 4th edition 2013, chapter 11.
+    """
+
+    name: ClassVar[str] = "volterra"
+
+    second_order_step: float
+
+    def __post_init__(self) -> None:
+        """Refuse parameters out of range."""
+        super().__post_init__()
+        positive("second_order_step", self.second_order_step)
+
+    @property
+    def size(self) -> int:
+        """Number of weights."""
+        return self.taps + self.taps**2
+
+    @property
+    def steps(self) -> FloatArray:
+        """Step size of each weight."""
+        sizes = (self.step_size, self.second_order_step)
+        return np.repeat(sizes, (self.taps, self.taps**2))
+
+    def regressor(
+        self, line: FloatArray, operators: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Give taps and all their products at each sample."""
+        x = self._windows(line)
+        products = x[:, :, None] * x[:, None, :]
+        return np.hstack((x, products.reshape(len(x), -1))), operators
+
+    def bound(self, x: ArrayLike) -> VolterraBound:
+        """Bound on the step sizes for an input, Eq. 19, as a whole and by part.
+
+        The two equal columns of a product make one of sqrt(2) times its size and
+        one of zeros, with the same eigenvalues: so half the matrix will do.
+        """
+        rows, columns = np.triu_indices(self.taps)
+        scale = np.where(rows == columns, 1.0, np.sqrt(2.0))
+        size = self.taps + len(rows)
+        total, count = np.zeros((size, size)), 0
+        for line in self._chunks(x):
+            taps = self._windows(line)
+            h = np.hstack((taps, scale * taps[:, rows] * taps[:, columns]))
+            total += h.T @ h
+            count += len(h)
+        total /= count
+        power = np.diag(total)
+        return VolterraBound(
+            **vars(eigenvalue_bound(total, self.size)),
+            first_order=float(power[: self.taps].sum()),
+            second_order=float(power[self.taps :].sum()),
+        )
+
+    def _windows(self, line: FloatArray) -> FloatArray:
+        return np.lib.stride_tricks.sliding_window_view(line[1:], self.taps)[:, ::-1]
+
+    def _adapt(
+        self, line: FloatArray, d: FloatArray, state: State, limit: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        kept, diagonal = _blocks(self.taps)
+        full, spare = len(kept), len(kept) - self.taps
+        # the kernel's taps run from the oldest to the newest
+        first = np.zeros(full)
+        first[spare:] = state.weights[: self.taps][::-1]
+        second = np.zeros((full, full))
+        square = state.weights[self.taps :].reshape(self.taps, self.taps)
+        second[spare:, spare:] = square[::-1, ::-1]
+        symmetric = np.where(diagonal, second, 0.5 * (second + second.T))
+        unmoved = second - symmetric
+        packed = symmetric[kept]
+        rows = np.concatenate((np.zeros(spare), line[1:]))
+        output, error = np.empty(len(d)), np.empty(len(d))
+        sizes = (len(d), full // QUAD, self.taps)
+        steps = (2 * self.step_size, 2 * self.second_order_step)
+        numbers = (*steps, self._kernel_regularization(), limit)
+        arrays = (first, packed, output, error)
+        done = kernels.call("hb_lms_volterra", *sizes, rows, d, *numbers, *arrays)
+        symmetric[kept] = packed
+        second = np.where(kept, symmetric, symmetric.T) + unmoved
+        square = second[spare:, spare:][::-1, ::-1]
+        weights = np.concatenate((first[spare:][::-1], square.ravel()))
+        return output[:done], error[:done], weights, state.operators
+
+
+@lru_cache
+def _blocks(taps: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Masks of the block lower triangle, which the kernel keeps, and its diagonal."""
+    block = np.arange(-(-taps // QUAD) * QUAD) // QUAD
+    return block[:, None] >= block[None, :], block[:, None] == block[None, :]

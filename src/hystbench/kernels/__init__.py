@@ -1,0 +1,101 @@
+"""Compiled loops: play operators, LMS filters and linear dynamics.
+
+The C files beside this one make one shared library without Python's headers;
+:mod:`ctypes` loads it and lets other threads run during a call. Arrays go in as
+they are: C order, float64. The callers in :mod:`hystbench.operators` and
+:mod:`hystbench.filters` see to shapes; what is here only passes pointers.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+WIDTH = 8
+"""Lanes of a vector: the kernels want operators and weights padded to it."""
+
+LIBRARY = Path(__file__).with_name("_kernels.so")
+
+_SIZE, _REAL, _ARRAY = ctypes.c_ssize_t, ctypes.c_double, ctypes.c_void_p
+_SIGNATURES: dict[str, tuple[Any, str]] = {
+    # i: a size, f: a number, a: an array
+    "hb_follow_direction": (None, "iaaa"),
+    "hb_play": (None, "iiaaaaa"),
+    "hb_prandtl_ishlinskii": (_SIZE, "iiaaaaaa"),
+    "hb_rate_dependent": (_SIZE, "iiiiaaaaaa"),
+    "hb_lms_rows": (_SIZE, "iiaiaaffaaa"),
+    "hb_lms_play": (_SIZE, "iiaaiaafffaaaa"),
+    "hb_play_rows": (None, "iiaaiaaa"),
+    "hb_lms_volterra": (_SIZE, "iiiaaffffaaaa"),
+    "hb_state_space": (None, "iiaaafaaa"),
+}
+
+
+def load(path: Path = LIBRARY) -> ctypes.CDLL:
+    """Load the shared library and declare its functions.
+
+    Raises
+    ------
+    InputError
+        If it was not built, or was built for another machine.
+    """
+    try:
+        library = ctypes.CDLL(str(path))
+    except OSError as error:
+        raise InputError(
+            f"{path}: the compiled kernels do not load ({error}); build them with "
+            "`pip install --no-deps --no-build-isolation -e .`"
+        ) from error
+    kinds = {"i": _SIZE, "f": _REAL, "a": _ARRAY}
+    for name, (result, arguments) in _SIGNATURES.items():
+        function = getattr(library, name)
+        function.restype = result
+        function.argtypes = [kinds[kind] for kind in arguments]
+    return library
+
+
+_library = load()
+
+
+def call(name: str, *arguments: FloatArray | float | int) -> int:
+    """Call a kernel; an array must be of float64 in C order.
+
+    Returns
+    -------
+    int
+        What the kernel returns: the samples taken, 0 where it returns nothing.
+    """
+    plain: list[float | int] = []
+    for value in arguments:
+        if isinstance(value, np.ndarray):
+            if value.dtype != np.float64 or not value.flags.c_contiguous:
+                raise TypeError(f"{name}: arrays must be float64 in C order")
+            plain.append(value.ctypes.data)
+        else:
+            plain.append(value)
+    return int(getattr(_library, name)(*plain) or 0)
+
+
+def padded(count: int) -> int:
+    """Round a count of operators or weights up to whole vectors."""
+    return -(-max(count, 1) // WIDTH) * WIDTH
+
+
+def pad(values: FloatArray, filling: float = 0.0) -> FloatArray:
+    """Copy a vector, filled up to whole vectors at its end."""
+    out = np.full(padded(len(values)), filling)
+    out[: len(values)] = values
+    return out
+
+
+def pad_front(values: FloatArray, filling: float = 0.0) -> FloatArray:
+    """Copy a vector, filled up to whole vectors at its start."""
+    out = np.full(padded(len(values)), filling)
+    out[len(out) - len(values) :] = values
+    return out
