@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 
 
@@ -30,7 +31,13 @@ def nearest(name: object, known: Iterable[object]) -> str:
         ``did you mean 'x'?``, or ``expected one of a, b, c`` where nothing is near.
     """
     names = [str(item) for item in known]
-    close = difflib.get_close_matches(str(name), names, n=1)
+    # Leading zeros are what people forget: sine-40hz for sine-040hz.
+    plain = {_without_leading_zeros(item): item for item in names}
+    close = difflib.get_close_matches(_without_leading_zeros(str(name)), plain, n=1)
     if close:
-        return f"did you mean {close[0]!r}?"
+        return f"did you mean {plain[close[0]]!r}?"
     return "expected one of " + ", ".join(names)
+
+
+def _without_leading_zeros(name: str) -> str:
+    return re.sub(r"(?<!\d)0+(?=\d)", "", name)

@@ -39,3 +39,6 @@ out = click.option(
 identified = click.option(
     "--identified", type=FILE, help="Identified envelope functions (JSON)."
 )
+arrays = click.option(
+    "--arrays", type=NEW_FILE, required=True, help="Archive of output and error."
+)

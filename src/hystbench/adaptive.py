@@ -1,0 +1,172 @@
+"""An LMS filter on a record as the settings of a job ask for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.errors import InputError, nearest
+from hystbench.files import read_json
+from hystbench.filters import FILTERS, AdaptiveFilter, Bound, Result
+from hystbench.operators import PUBLISHED_ENVELOPE, Envelope
+from hystbench.record import Record
+from hystbench.results import run_result
+
+#: Step sizes of a filter in settings and results, and the filter's own names.
+_STEP_NAMES = {"mu": "step_size"}
+_VOLTERRA_STEP_NAMES = {
+    "first_order": "step_size",
+    "second_order": "second_order_step",
+}
+
+
+def step_names(model: str) -> dict[str, str]:
+    """Names of a filter's step sizes in settings, and the filter's own for them."""
+    return _VOLTERRA_STEP_NAMES if model == "volterra" else _STEP_NAMES
+
+
+def make_filter(
+    model: str,
+    settings: Mapping[str, Any],
+    record: Record,
+    identified: Path | None = None,
+    order: int | None = None,
+) -> AdaptiveFilter:
+    """Make a filter for a record.
+
+    Parameters
+    ----------
+    model : str
+        Name of the filter.
+    settings : mapping
+        Those of the job: ``order``, ``input_before``, the filter's own, and either
+        ``convergence_factor`` or ``fraction_of_bound``.
+    record : Record
+        Its input sets the bound, and the thresholds where no ``amplitude`` is set.
+    identified : Path, optional
+        Result of Algorithm 1, for ``envelopes: identified``.
+    order : int, optional
+        Another order than that of the settings.
+
+    Raises
+    ------
+    InputError
+        If the filter is unknown, or identified envelopes are asked for but not given.
+    """
+    if model not in FILTERS:
+        raise InputError(f"no filter {model!r}; {nearest(model, FILTERS)}")
+    names = step_names(model)
+    options: dict[str, Any] = {
+        "order": settings["order"] if order is None else order,
+        "x_before": settings["input_before"],
+    }
+    if model in ("gpo", "backlash"):
+        amplitude = settings.get("amplitude", float(np.abs(record.u).max()))
+        options |= {
+            "amplitude": amplitude,
+            "initial_state": settings["initial_state"],
+        }
+    if model == "gpo":
+        options["form"] = settings["operator_form"]
+        if settings["envelopes"] == "identified":
+            if identified is None:
+                raise InputError(
+                    "envelopes: identified; expected the option --identified FILE"
+                )
+            about = read_json(identified)
+            options["envelope"] = Envelope.from_dict(about["envelope"])
+            options["amplitude"] = about["amplitude"]
+        else:
+            options["envelope"] = PUBLISHED_ENVELOPE
+    if model == "backlash":
+        options["structure"] = settings["backlash_structure"]
+    steps = settings.get("convergence_factor", dict.fromkeys(names, 1.0))
+    adaptive = FILTERS[model](
+        **options, **{own: float(steps[name]) for name, own in names.items()}
+    )
+    if "convergence_factor" in settings:
+        return adaptive
+    bounds = step_bounds(model, adaptive.bound(record.u))
+    fraction = settings["fraction_of_bound"]
+    return replace(
+        adaptive, **{own: fraction * bounds[name] for name, own in names.items()}
+    )
+
+
+def step_bounds(model: str, bound: Bound) -> dict[str, float]:
+    """Bound of Eq. 19 on each step size; of the Volterra filter's, part by part."""
+    if model == "volterra":
+        traces = {name: getattr(bound, name) for name in _VOLTERRA_STEP_NAMES}
+    else:
+        traces = {"mu": bound.trace}
+    return {name: 1 / trace for name, trace in traces.items()}
+
+
+def run_filter(
+    adaptive: AdaptiveFilter, record: Record, settings: Mapping[str, Any]
+) -> tuple[dict[str, Any], Result]:
+    """Run a filter on a record and compute what is kept of it.
+
+    Returns
+    -------
+    dict
+        As :func:`hystbench.results.run_result`, and with the filter's order, step
+        sizes, their bounds by Eq. 19, eigenvalues of R and final weights.
+    Result
+        Output and error at each sample.
+    """
+    model = adaptive.name
+    result = adaptive.run(record.u, record.y)
+    bound = adaptive.bound(record.u)
+    steps = {name: getattr(adaptive, own) for name, own in step_names(model).items()}
+    bounds = step_bounds(model, bound)
+    kept = run_result(
+        record,
+        model,
+        result.error,
+        "one-step a priori",
+        transient_fraction=settings["transient_fraction"],
+        smoothing_fraction=settings["smoothing_fraction"],
+        diverged=_divergence(result, steps, bounds),
+    )
+    kept |= {
+        "order": adaptive.order,
+        "taps": adaptive.taps,
+        "step_size": steps,
+        "bound": bounds,
+        "eigenvalues": {
+            "trace": bound.trace,
+            "largest": bound.largest,
+            "smallest": bound.smallest,
+            "rank": bound.rank,
+            "size": bound.size,
+            "spread": finite_or_none(bound.spread),
+            "spread_nonzero": finite_or_none(bound.spread_nonzero),
+        },
+        "weights": result.weights.tolist(),
+    }
+    return kept, result
+
+
+def finite_or_none(value: float) -> float | None:
+    """Infinity is no JSON number; an infinite spread is one that is not there."""
+    return float(value) if np.isfinite(value) else None
+
+
+def _divergence(
+    result: Result, steps: Mapping[str, float], bounds: Mapping[str, float]
+) -> dict[str, Any] | None:
+    if result.diverged_at is None:
+        return None
+    told = ", ".join(
+        f"{'mu' if name == 'mu' else 'mu of ' + name.replace('_', ' ')} = {step:.4g} "
+        f"{'above' if step > bounds[name] else 'below'} 1/tr[R] = {bounds[name]:.4g}"
+        for name, step in steps.items()
+    )
+    sentence = f"diverged at sample {result.diverged_at}, {told}"
+    return {"sample": result.diverged_at, "sentence": sentence}
+

@@ -1,0 +1,60 @@
+import sys
+
+import pytest
+
+from hystbench.cli import COMMANDS, LazyGroup
+from hystbench.options import SettingsType
+
+from conftest import run_hystbench
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_is_there_and_has_help(name):
+    command = LazyGroup().get_command(None, name)
+    assert command.name == name
+    assert command.help
+
+
+def test_help_lists_the_commands_and_imports_none_of_them():
+    result = run_hystbench("--help")
+    assert result.returncode == 0
+    for name in COMMANDS:
+        assert name in result.stdout
+
+
+def test_help_needs_no_numpy(root):
+    import subprocess
+
+    code = (
+        "import sys, hystbench.cli\n"
+        "try: hystbench.cli.cli(['--help'])\n"
+        "except SystemExit: pass\n"
+        "assert 'numpy' not in sys.modules"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True
+    )
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["filtr"], "hystbench: no command 'filtr'; did you mean 'filter'?"),
+        (["load", ".", "x", "--out", "y.npz"], "dataset.yaml"),
+    ],
+)
+def test_a_users_mistake_is_one_line_and_status_2(tmp_path, arguments, expected):
+    result = run_hystbench(*arguments, cwd=tmp_path)
+    assert result.returncode == 2
+    assert expected in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_settings_are_a_json_object():
+    kind = SettingsType()
+    assert kind.convert('{"mu": 1}', None, None) == {"mu": 1}
+    for text in ["{", "[1]"]:
+        with pytest.raises(Exception, match="JSON"):
+            kind.convert(text, None, None)

@@ -1,0 +1,129 @@
+import copy
+
+import pytest
+import yaml
+
+from hystbench.errors import InputError
+from hystbench.settings import read_settings
+
+from conftest import ROOT
+
+SCHEMA = ROOT / "workflow" / "schemas" / "config.schema.yaml"
+CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())
+
+
+def changed(*path_and_value):
+    """The project's config with one value changed; None takes the key away."""
+    *path, key, value = path_and_value
+    config = copy.deepcopy(CONFIG)
+    place = config
+    for step in path:
+        place = place[step]
+    if value is None:
+        del place[key]
+    else:
+        place[key] = value
+    return config
+
+
+def read(config):
+    return read_settings(config, SCHEMA)
+
+
+def test_the_projects_own_config_is_valid():
+    settings = read(CONFIG)
+    assert settings.results == "results"
+    assert len(settings.signals) == 13
+    assert settings.filters == ["gpo", "backlash", "volterra", "delayed"]
+
+
+def test_every_key_of_the_config_is_in_the_schema_and_the_other_way_round():
+    schema = yaml.safe_load(SCHEMA.read_text())
+
+    def keys(part):
+        while "$ref" in part:
+            part = schema["$defs"][part["$ref"].rsplit("/", 1)[1]]
+        return part.get("properties", {})
+
+    def compare(config, part):
+        known = keys(part)
+        if not known:
+            return
+        assert set(config) == set(known)
+        for key, value in config.items():
+            if isinstance(value, dict):
+                compare(value, known[key])
+
+    compare(CONFIG, schema)
+
+
+@pytest.mark.parametrize(
+    ("config", "expected"),
+    [
+        (changed("sorce", "twin"), "unknown key 'sorce'; did you mean 'source'?"),
+        (changed("source", None), "'source' is a required property"),
+        (changed("filters", "ordr", 3), "filters: unknown key 'ordr'"),
+        (changed("filters", "order", "30"), "filters: order: '30' is no integer"),
+        (changed("filters", "order", 0), "filters: order"),
+        (changed("filters", "envelopes", "publishd"), "did you mean 'published'?"),
+        (changed("signals", ["sine-040h"]), "did you mean 'sine-040hz'?"),
+        (changed("models", ["gpo", "voltera"]), "did you mean 'volterra'?"),
+        (changed("signals", "sine-040hz"), "signals: 'sine-040hz' is no array"),
+        (changed("signals", []), "signals"),
+        (changed("identification", "signal", "sine-1hz"), "'sine-001hz'"),
+        (changed("order_sweep", "signal", "x"), "order_sweep: signal: no signal 'x'"),
+        (changed("rdgpi", "fit_signals", ["sine-10hz"]), "'sine-010hz'"),
+        (changed("twin", "model", "gmaa"), "no model or file 'gmaa'; did you mean"),
+        (changed("source", "nowhere/dataset.yaml"), "nowhere/dataset.yaml"),
+        (
+            changed("filters", "convergence_factor", "gpo", "mu", 0),
+            "convergence_factor: gpo: mu: 0",
+        ),
+        (
+            changed("filters", "convergence_factor", "volterra", "second_order", -1e-3),
+            "convergence_factor: volterra: second_order: -0.001",
+        ),
+        (changed("measured", "fraction_of_bound", 0), "fraction_of_bound: 0"),
+        (
+            changed("excitations", "sine-010hz", {"sine": {"frequenzy_hz": 10}}),
+            "did you mean 'frequency_hz'?",
+        ),
+        (changed("excitation", "duration_s", 0.001), "too few for filters of order 30"),
+    ],
+)
+def test_a_bad_config_is_told_in_one_line(config, expected):
+    with pytest.raises(InputError) as caught:
+        read(config)
+    assert expected in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_job_gets_what_it_depends_on_and_no_more():
+    base = read(CONFIG)
+    louder = read(changed("filters", "convergence_factor", "gpo", "mu", 0.5))
+    assert louder.filter_job("gpo") != base.filter_job("gpo")
+    for name in ["backlash", "volterra", "delayed"]:
+        assert louder.filter_job(name) == base.filter_job(name)
+    other = read(changed("filters", "backlash_structure", "current-input"))
+    assert other.filter_job("backlash") != base.filter_job("backlash")
+    for name in ["gpo", "volterra", "delayed"]:
+        assert other.filter_job(name) == base.filter_job(name)
+
+
+def test_a_measured_dataset_has_its_own_signals_and_folder(write_dataset, loop_csv):
+    path = write_dataset({"a.csv": loop_csv, "b.csv": loop_csv})
+    settings = read(changed("source", str(path)))
+    assert settings.results == "results/datasets/bench"
+    assert settings.signals == ["a", "b"]
+    assert settings.identification_signal == "a"
+    assert settings.envelopes == "identified"
+    job = settings.filter_job("delayed")
+    assert job["fraction_of_bound"] == CONFIG["measured"]["fraction_of_bound"]
+    assert "convergence_factor" not in job
+
+
+def test_a_record_shorter_than_its_filter_is_refused(write_dataset, loop_csv):
+    short = "\n".join(loop_csv.splitlines()[:40]) + "\n"
+    path = write_dataset({"short.csv": short})
+    with pytest.raises(InputError, match=r"short\.csv: 39 samples are too few"):
+        read(changed("source", str(path)))
