@@ -1,7 +1,8 @@
-"""The compiled kernels: plain C in one shared library; the rest is in pyproject.toml."""
+"""The compiled kernels, plain C in one library; all else is in pyproject.toml."""
 
 import os
 import sysconfig
+from pathlib import Path
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
@@ -9,10 +10,11 @@ from setuptools.command.build_ext import build_ext
 # What the loops may not assume is that no NaN or infinity ever comes: that is how
 # they see divergence. So neither -ffast-math nor -ffinite-math-only, and nothing
 # linked with them, which would flush denormals in the whole process.
-FLAGS = (
-    "-O3 -march=native -std=gnu11 -fPIC -fvisibility=hidden -ffp-contract=fast "
-    "-fno-math-errno -fno-trapping-math -fno-signed-zeros -Wall -Wno-psabi"
-).split()
+FLAGS = [
+    *("-O3", "-march=native", "-std=gnu11", "-fPIC", "-fvisibility=hidden"),
+    *("-ffp-contract=fast", "-fno-math-errno", "-fno-trapping-math"),
+    *("-fno-signed-zeros", "-Wall", "-Wno-psabi"),
+]
 
 
 class BuildKernels(build_ext):
@@ -20,7 +22,7 @@ class BuildKernels(build_ext):
 
     def get_ext_filename(self, fullname: str) -> str:
         """Name the library plainly: it does not depend on the version of Python."""
-        return os.path.join(*fullname.split(".")) + ".so"
+        return str(Path(*fullname.split("."))) + ".so"
 
     def build_extensions(self) -> None:
         """Compile and link with the flags above alone."""

@@ -41,7 +41,8 @@ class BacklashFilter(PlayFilter):
         known = ("delay-line", "current-input")
         if self.structure not in known:
             raise InputError(
-                f"structure: {self.structure!r} unknown; {nearest(self.structure, known)}"
+                f"structure: {self.structure!r} unknown; "
+                f"{nearest(self.structure, known)}"
             )
 
     @property
