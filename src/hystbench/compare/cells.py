@@ -1,0 +1,94 @@
+"""Ours beside every printed number: one row a signal, model and metric."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hystbench.compare.evidence import Cell, Evidence, Run
+from hystbench.published import METRICS, Metric
+from hystbench.published.consistency import Standing, standings
+
+NOT_RUN = "not run"
+
+
+@dataclass(frozen=True)
+class ComparedCell:
+    """A printed error and ours.
+
+    Parameters
+    ----------
+    table : int
+        Table of the paper.
+    signal, model, metric : str
+        Which error.
+    published : str
+        As printed.
+    ours : float or None
+        None where it was not run or diverged.
+    published_consistent : {"yes", "no", "undecided"}
+        Whether the printed pair of MSE and RE can be true beside the others of its
+        signal; undecided where one of several pairs must be wrong.
+    status : str
+        ``finite``, ``not run``, or the sentence that tells where it diverged.
+    """
+
+    table: int
+    signal: str
+    model: str
+    metric: Metric
+    published: str
+    ours: float | None
+    published_consistent: Standing
+    status: str
+
+    @property
+    def ran(self) -> bool:
+        """Whether there is a run, finite or diverged."""
+        return self.status != NOT_RUN
+
+    @property
+    def log10_ratio(self) -> float | None:
+        """log10(ours / published); None without a finite run."""
+        if self.ours is None:
+            return None
+        ratio = self.ours / float(self.published)
+        return math.log10(ratio) if ratio > 0 else -math.inf
+
+    @property
+    def distance(self) -> float:
+        """|log10(ours / published)|, infinite where the run diverged."""
+        ratio = self.log10_ratio
+        return math.inf if ratio is None else abs(ratio)
+
+
+def twin_runs(runs: Mapping[Cell, Run]) -> dict[Cell, Run]:
+    """Keep the runs on the twin: measured records have no published errors."""
+    return {cell: run for cell, run in runs.items() if run.origin == "twin"}
+
+
+def compare_cells(evidence: Evidence) -> tuple[ComparedCell, ...]:
+    """Set ours beside each of the 124 printed numbers, run or not."""
+    consistent = standings(evidence.published)
+    runs = twin_runs(evidence.runs)
+    cells = []
+    for pair in evidence.published:
+        run = runs.get((pair.signal, pair.model))
+        for metric in METRICS:
+            ours = None
+            if run is not None and run.diverged is None:
+                ours = run.error(metric)
+            cells.append(
+                ComparedCell(
+                    table=pair.table,
+                    signal=pair.signal,
+                    model=pair.model,
+                    metric=metric,
+                    published=pair.printed(metric).text,
+                    ours=ours,
+                    published_consistent=consistent[pair.signal, pair.model],
+                    status=NOT_RUN if run is None else run.status,
+                )
+            )
+    return tuple(cells)

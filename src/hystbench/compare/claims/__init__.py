@@ -1,0 +1,62 @@
+"""The ledger: every checkable sentence of the paper, judged."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from pathlib import Path
+
+from hystbench.compare.claims import (
+    device,
+    errors,
+    filters,
+    identification,
+    operators,
+    signals,
+)
+from hystbench.compare.claims.claim import Claim, Judgement, judge
+from hystbench.compare.evidence import Evidence
+from hystbench.files import atomic_path
+
+CLAIMS: tuple[Claim, ...] = tuple(
+    item
+    for module in (operators, identification, filters, signals, errors, device)
+    for item in vars(module).values()
+    if isinstance(item, Claim)
+)
+
+COLUMNS = (
+    "id",
+    "claim",
+    "where",
+    "kind",
+    "reading",
+    "verdict",
+    "evidence",
+    "published_bears_out",
+    "published_evidence",
+)
+
+
+def judge_all(evidence: Evidence) -> tuple[Judgement, ...]:
+    """Judge every claim of the ledger."""
+    return tuple(judge(claim, evidence) for claim in CLAIMS)
+
+
+def write_claims(judgements: Iterable[Judgement], path: str | Path) -> None:
+    """Write the ledger as CSV; see ``COLUMNS``."""
+    with (
+        atomic_path(path) as temporary,
+        temporary.open("w", encoding="utf-8", newline="") as stream,
+    ):
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        for j in judgements:
+            c = j.claim
+            writer.writerow(
+                (
+                    *(c.id, c.claim, c.where, c.kind, c.reading),
+                    *(j.verdict, j.evidence),
+                    *(j.published_bears_out, j.published_evidence),
+                )
+            )

@@ -1,0 +1,73 @@
+"""Small measures that several claims share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from hystbench.record import FloatArray
+
+
+def rank_correlation(x: Sequence[float], y: Sequence[float]) -> float:
+    """Spearman's rank correlation; ties take ranks in the order given."""
+    ranks = [np.argsort(np.argsort(values, kind="stable")) for values in (x, y)]
+    return float(np.corrcoef(ranks[0], ranks[1])[0, 1])
+
+
+def turning_points(x: FloatArray, swing: float) -> FloatArray:
+    """Values at which x turns back by more than ``swing``, without its ends.
+
+    Smaller wiggles, such as noise, are passed over.
+    """
+    found: list[float] = []
+    low = high = float(x[0])
+    rising: bool | None = None
+    for value in map(float, x):
+        low, high = min(low, value), max(high, value)
+        if rising is not False and high - value > swing:
+            if rising:
+                found.append(high)
+            rising, low = False, value
+            high = value
+        elif rising is not True and value - low > swing:
+            if rising is False:
+                found.append(low)
+            rising, high = True, value
+            low = value
+    return np.array(found)
+
+
+def minor_turning_points(x: FloatArray, tolerance: float = 0.1) -> int:
+    """Count turns inside the range of x: those that close a minor loop.
+
+    A turn is inside where it is farther than ``tolerance`` of the range from both
+    ends of the range; turns smaller than half that are passed over.
+    """
+    bottom, top = float(x.min()), float(x.max())
+    margin = tolerance * (top - bottom)
+    turns = turning_points(x, margin / 2)
+    return int(np.sum((turns > bottom + margin) & (turns < top - margin)))
+
+
+def cycles(
+    u: FloatArray, y: FloatArray, dt: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Split where u rises through the middle of its range: the cycles of a chirp.
+
+    Returns
+    -------
+    time : ndarray, shape (cycles,)
+        Middle of each whole cycle in seconds.
+    frequency : ndarray, shape (cycles,)
+        One over the length of the cycle, in Hz.
+    peak_to_peak : ndarray, shape (cycles,)
+        max(y) - min(y) over the cycle.
+    """
+    u = u - (u.max() + u.min()) / 2
+    starts = np.flatnonzero((u[:-1] <= 0) & (u[1:] > 0))
+    exact = (starts - u[starts] / (u[starts + 1] - u[starts])) * dt
+    ranges = np.array([np.ptp(y[a : b + 1]) for a, b in pairwise(starts)], dtype=float)
+    time = (exact[:-1] + exact[1:]) / 2
+    return time, 1 / np.diff(exact), ranges

@@ -1,0 +1,243 @@
+"""Tables 1-4 with ours beside the paper's, and tables of measured records.
+
+Each is written as CSV, Markdown and LaTeX.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from hystbench.compare.cells import NOT_RUN, ComparedCell
+from hystbench.compare.evidence import Cell, Run
+from hystbench.files import write_text
+from hystbench.published import METRICS, MODELS, Metric
+
+ONE_STEP = "one-step a priori errors with running weights"
+FREE_RUN = "errors of a free-run simulation"
+MARKS = {"yes": "", "no": "†", "undecided": "‡"}
+LEGEND = (
+    "† this printed pair of MSE and RE cannot be true beside the others of its "
+    "signal; ‡ one of several such pairs must be wrong, which one is unknown"
+)
+TITLES = {
+    1: "sines",
+    2: "chirp",
+    3: "sums of sines",
+    4: "RDGPI model and GPO-based filter",
+}
+METRIC_NAMES: dict[Metric, str] = {"mse": "MSE (um^2)", "re": "RE"}
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with its caption and what its marks mean.
+
+    Parameters
+    ----------
+    name : str
+        Stem of its files.
+    caption : str
+        What it holds; names the kind of error and where the data are from.
+    legend : str
+        What the marks in its cells mean; empty where there are none.
+    frame : DataFrame
+        Its cells as text.
+    """
+
+    name: str
+    caption: str
+    legend: str
+    frame: pd.DataFrame
+
+    def csv(self) -> str:
+        """Give the table as CSV, with the caption in a column of its own."""
+        caption = f"{self.caption} {self.legend}".strip()
+        return str(self.frame.assign(note=caption).to_csv(index=False))
+
+    def markdown(self) -> str:
+        """Give the table as Markdown."""
+        body = self.frame.to_markdown(
+            index=False, disable_numparse=True, stralign="right"
+        )
+        legend = f"\n{self.legend}\n" if self.legend else ""
+        return f"**{self.caption}**\n\n{body}\n{legend}"
+
+    def latex(self) -> str:
+        """Give the table as a LaTeX float for the package booktabs."""
+        text = self.frame.rename(columns=_escape).map(_escape)
+        body = text.to_latex(
+            index=False,
+            escape=False,
+            column_format="ll" + "r" * (len(text.columns) - 2),
+        ).strip()
+        return "\n".join(
+            (
+                r"\begin{table}",
+                rf"\caption{{{_escape(self.caption)}}}",
+                rf"\label{{tab:{self.name}}}",
+                body,
+                *([rf"\par\small {_escape(self.legend)}"] if self.legend else []),
+                r"\end{table}",
+                "",
+            )
+        )
+
+    def write(self, folder: str | Path) -> list[Path]:
+        """Write the table in all three formats; give the paths."""
+        written = []
+        for suffix, text in (
+            (".csv", self.csv()),
+            (".md", self.markdown()),
+            (".tex", self.latex()),
+        ):
+            path = Path(folder) / f"{self.name}{suffix}"
+            write_text(path, text)
+            written.append(path)
+        return written
+
+
+_LATEX = {
+    "\\": r"\textbackslash{}",
+    "&": r"\&",
+    "%": r"\%",
+    "$": r"\$",
+    "#": r"\#",
+    "_": r"\_",
+    "{": r"\{",
+    "}": r"\}",
+    "~": r"\textasciitilde{}",
+    "†": r"$^\dagger$",
+    "‡": r"$^\ddagger$",
+    "<": r"$<$",
+    ">": r"$>$",
+    "^": r"\textasciicircum{}",
+}
+
+
+_SPECIAL = re.compile(r"um\^2|" + "|".join(map(re.escape, _LATEX)))
+
+
+def _escape(text: str) -> str:
+    """Write text for LaTeX."""
+    return _SPECIAL.sub(
+        lambda found: _LATEX.get(found[0], r"\textmu m$^2$"),
+        text,
+    )
+
+
+def _number(value: float) -> str:
+    """Write an error as the paper does, with four decimals, where they suffice."""
+    if 0.001 <= value < 1000:
+        return f"{value:.4f}"
+    return f"{value:.2g}" if value < 1 else f"{value:.4g}"
+
+
+def _ours(cell: ComparedCell) -> str:
+    if cell.ours is not None:
+        return _number(cell.ours)
+    return NOT_RUN if cell.status == NOT_RUN else "diverged"
+
+
+def error_kind(models: Iterable[str]) -> str:
+    """Say in words what the errors of these models are."""
+    listed = list(models)
+    if "rdgpi" not in listed:
+        return ONE_STEP[0].upper() + ONE_STEP[1:]
+    if len(listed) == 1:
+        return FREE_RUN[0].upper() + FREE_RUN[1:]
+    others = ", ".join(model for model in listed if model != "rdgpi")
+    return f"{others}: {ONE_STEP}; rdgpi: {FREE_RUN}"
+
+
+def paper_table(number: int, cells: Iterable[ComparedCell]) -> Table:
+    """Set ours beside one table of the paper; Table 4 repeats the GPO filter."""
+    listed = list(cells)
+    rows = list(dict.fromkeys(c.signal for c in listed if c.table == number))
+    models = {c.model for c in listed if c.table == number}
+    if number == 4:
+        models.add("gpo")
+    columns = [model for model in MODELS if model in models]
+    by_key = {(c.signal, c.model, c.metric): c for c in listed}
+    content = []
+    for signal in rows:
+        for metric in METRICS:
+            line = {"signal": signal, "error": METRIC_NAMES[metric]}
+            for model in columns:
+                cell = by_key[signal, model, metric]
+                mark = MARKS[cell.published_consistent]
+                line[f"{model} paper"] = cell.published + mark
+                line[f"{model} ours"] = _ours(cell)
+            content.append(line)
+    return Table(
+        name=f"table-{number}",
+        caption=(
+            f"Table {number} of the paper ({TITLES[number]}) with ours beside it. "
+            f"{error_kind(columns)}. The paper's are of a measured actuator, ours of "
+            "its twin, a simulation."
+        ),
+        legend=LEGEND,
+        frame=pd.DataFrame(content, dtype=str),
+    )
+
+
+def measured_table(record: str, runs: Sequence[Run]) -> Table:
+    """List the errors of all models on one measured record."""
+    content = []
+    for run in runs:
+        finite = run.diverged is None
+        values = {
+            f"MSE ({run.unit})": run.mse,
+            "RE": run.re,
+            f"MSE after transient ({run.unit})": run.mse_after_transient,
+            "RE after transient": run.re_after_transient,
+        }
+        content.append(
+            {"model": run.model, "errors are": run.error_kind}
+            | {
+                name: "diverged" if not finite else _maybe(value)
+                for name, value in values.items()
+            }
+        )
+    models = [run.model for run in runs]
+    return Table(
+        name=f"measured-{record}",
+        caption=(
+            f"Errors of all models on the measured record {record}. "
+            f"{error_kind(models)}. The paper has no numbers for it."
+        ),
+        legend="; ".join(
+            f"{run.model} {run.diverged}" for run in runs if run.diverged is not None
+        ),
+        frame=pd.DataFrame(content, dtype=str),
+    )
+
+
+def _maybe(value: float | None) -> str:
+    if value is None or not math.isfinite(value):
+        return "none"
+    return f"{value:.4g}"
+
+
+def tables(cells: Sequence[ComparedCell], runs: Mapping[Cell, Run]) -> list[Table]:
+    """Make Tables 1-4 and one table for each measured record."""
+    by_record: dict[str, list[Run]] = {}
+    for run in runs.values():
+        if run.origin == "measured":
+            by_record.setdefault(run.signal, []).append(run)
+    return [
+        *(paper_table(number, cells) for number in TITLES),
+        *(
+            measured_table(record, sorted(found, key=lambda r: _rank(r.model)))
+            for record, found in sorted(by_record.items())
+        ),
+    ]
+
+
+def _rank(model: str) -> tuple[int, str]:
+    return (MODELS.index(model) if model in MODELS else len(MODELS), model)

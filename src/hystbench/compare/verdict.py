@@ -1,0 +1,139 @@
+"""The verdict in a few sentences, for the report's first page and the terminal.
+
+Every number comes from the summary.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from tabulate import tabulate
+
+from hystbench.compare.claims.claim import Judgement
+from hystbench.compare.tables import Table
+
+HEADERS = ("", "runs", "within a factor of 2", "median |log10(ours/paper)|", "diverged")
+
+
+def _percent(fraction: float | None) -> str:
+    return "none" if fraction is None else f"{100 * fraction:.0f} %"
+
+
+def _median(value: float | None) -> str:
+    return "none" if value is None else f"{value:.3f}"
+
+
+def _row(name: str, part: Mapping[str, Any]) -> tuple[str, ...]:
+    return (
+        name,
+        f"{part['cells']} of {part['cells_published']}",
+        _percent(part["within_factor_2"]),
+        _median(part["median_abs_log10_ratio"]),
+        str(part["diverged"]),
+    )
+
+
+def rows(summary: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """List the lines of the small table: all filters, each model, other counts."""
+    without = summary["without_inconsistent"]
+    split = {"calibrated": "signals of the calibration", "held_out": "held-out signals"}
+    return [
+        _row("four filters", summary),
+        *(_row(model, part) for model, part in summary["per_model"].items()),
+        *(_row(name, summary[key]) for key, name in split.items() if key in summary),
+        _row("filters, without †", without["without_no"]),
+        _row("filters, without † and ‡", without["without_no_and_undecided"]),
+        _row("rdgpi", summary["rdgpi"]),
+    ]
+
+
+def sentences(summary: Mapping[str, Any]) -> list[str]:
+    """Give the verdict in words."""
+    order = summary["orderings"]
+    said = []
+    if summary["cells"] == 0:
+        said.append(
+            "No filter was run on a signal of the paper, so nothing is compared with "
+            "its Tables 1-3."
+        )
+    else:
+        median = summary["median_abs_log10_ratio"]
+        typical = (
+            "the typical run diverged"
+            if median is None
+            else f"the typical MSE is off by a factor of {10**median:.2f}"
+        )
+        said.append(
+            f"Of the {summary['cells_published']} filter errors (MSE) in Tables 1-3, "
+            f"{summary['cells']} were run on the twin; "
+            f"{_percent(summary['within_factor_2'])} of them are within a factor of 2 "
+            f"of the paper and {typical}."
+        )
+        said.append(
+            f"Ours order {order['agree']} of {order['compared']} pairs of filters "
+            f"under one signal as the paper does (it has {order['published']})."
+        )
+    said.append(
+        f"Of {summary['claims_total']} claims of the paper "
+        f"{summary['claims_reproduced']} are reproduced, "
+        f"{summary['claims_not_reproduced']} are not, and "
+        f"{summary['claims_not_testable']} cannot be tested here."
+    )
+    said.append(
+        "The twin is a simulation, since the measured data are not public: agreement "
+        "says that the models do on such a plant as printed, not that the device was "
+        "measured again."
+    )
+    return said
+
+
+LEGEND = (
+    "† printed pairs of MSE and RE that cannot be true beside the others of their "
+    "signal; ‡ pairs of which one must be wrong, which one is unknown."
+)
+
+
+def verdict_rst(summary: Mapping[str, Any]) -> str:
+    """Write the first page of the report as reStructuredText."""
+    return _page(sentences(summary), _table(summary, "rst"))
+
+
+def verdict_markdown(summary: Mapping[str, Any]) -> str:
+    """Write the verdict as Markdown."""
+    return _page(sentences(summary), _table(summary, "pipe"))
+
+
+def _table(summary: Mapping[str, Any], style: str) -> str:
+    """Write the small table; a bar has a meaning of its own in both markups."""
+    headers = [header.replace("|", r"\|") for header in HEADERS]
+    return str(tabulate(rows(summary), headers, style, disable_numparse=True))
+
+
+def _page(said: Sequence[str], table: str) -> str:
+    return "\n\n".join((" ".join(said[:-1]), said[-1], table, LEGEND)) + "\n"
+
+
+def print_tables(
+    tables: Iterable[Table],
+    judgements: Iterable[Judgement],
+    summary: Mapping[str, Any],
+) -> str:
+    """Write ours beside theirs and the claims for a terminal."""
+    parts = []
+    for table in tables:
+        body = tabulate(
+            [list(row) for row in table.frame.itertuples(index=False)],
+            list(table.frame.columns),
+            tablefmt="simple",
+            disable_numparse=True,
+            stralign="right",
+        )
+        parts.append("\n".join(filter(None, (table.caption, body, table.legend))))
+    ledger = tabulate(
+        [(j.verdict, j.claim.id, j.published_bears_out) for j in judgements],
+        ("verdict", "claim", "paper's own tables bear it out"),
+        tablefmt="simple",
+    )
+    numbers = tabulate(rows(summary), HEADERS, tablefmt="simple", disable_numparse=True)
+    return "\n\n".join((*parts, ledger, numbers, "\n".join(sentences(summary)))) + "\n"
