@@ -2,7 +2,9 @@
 # Both make the environment .venv first, when it is not there or is out of date.
 
 PYTHON ?= python3.11
-CC ?= gcc
+ifeq ($(origin CC),default)
+CC := gcc
+endif
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready

@@ -27,6 +27,7 @@ COMMANDS = {
     "rdgpi": "Simulate the rate-dependent GPI model on one record.",
     "rdgpi-published": "Simulate it with the eleven published values.",
     "compare": "Write tables and claims, ours beside the published.",
+    "compare-measured": "Write the errors on a measured dataset.",
     "show": "Print the tables of a comparison.",
     "figure": "Draw one figure.",
     "docs": "Fill the tables of README.md and docs from results.",

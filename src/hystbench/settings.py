@@ -51,6 +51,11 @@ class Settings:
         return f"results/datasets/{self.dataset.name}"
 
     @property
+    def name(self) -> str:
+        """Name of what is measured: ``twin`` or that of the dataset."""
+        return "twin" if self.dataset is None else self.dataset.name
+
+    @property
     def signals(self) -> list[str]:
         """Names of the signals to run; a dataset's are its records."""
         if self.dataset is None:

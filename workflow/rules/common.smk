@@ -79,3 +79,14 @@ def identified(wildcards):
     if wildcards.filter == "gpo" and SETTINGS.envelopes == "identified":
         return rules.identify.output
     return []
+
+
+def options(name, files):
+    """An option of the command line, once for each file."""
+    return " ".join(f"{name} {file}" for file in files)
+
+
+# The paper's own numbers, an input of all that is compared with them.
+PUBLISHED = sorted(
+    str(file) for file in PACKAGE.glob("published/*") if file.suffix in {".csv", ".yaml"}
+)

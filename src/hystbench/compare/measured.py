@@ -1,0 +1,105 @@
+"""Errors on a measured dataset, for which the paper has no numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import pandas as pd
+from tabulate import tabulate
+
+from hystbench.compare.evidence import Run, read_run
+from hystbench.compare.tables import Table, error_kind
+from hystbench.files import write_text
+from hystbench.published import MODELS
+
+#: Columns of errors.csv: one row a record and model.
+COLUMNS = (
+    "signal",
+    "model",
+    "error_kind",
+    "mse",
+    "re",
+    "mse_after_transient",
+    "re_after_transient",
+    "unit",
+    "status",
+)
+
+
+def compare_measured(
+    out_dir: str | Path, dataset: str, runs: Iterable[str | Path]
+) -> None:
+    """Write the errors of all models on a measured dataset.
+
+    Parameters
+    ----------
+    out_dir : path
+        Folder for ``errors.csv`` (a row a record and model), ``tables/errors``
+        (CSV, Markdown, LaTeX: a row a record), ``tables.txt`` and ``verdict.rst``.
+    dataset : str
+        Name of the dataset.
+    runs : iterable of paths
+        One JSON file for each record and model.
+    """
+    out = Path(out_dir)
+    found = [read_run(path) for path in runs]
+    table = errors_table(dataset, found)
+    rows = [[getattr(run, column) for column in COLUMNS] for run in found]
+    frame = pd.DataFrame(rows, columns=list(COLUMNS))
+    write_text(out / "errors.csv", frame.to_csv(index=False))
+    table.write(out / "tables")
+    said = finite_sentence(found)
+    body = tabulate(
+        table.frame.to_numpy().tolist(),
+        list(table.frame.columns),
+        tablefmt="rst",
+        disable_numparse=True,
+    )
+    parts = [table.caption, body, table.legend, said]
+    text = "\n\n".join(part for part in parts if part) + "\n"
+    write_text(out / "tables.txt", text)
+    write_text(out / "verdict.rst", text)
+
+
+def errors_table(dataset: str, runs: Sequence[Run]) -> Table:
+    """Set the errors of all models side by side, a row a record and metric."""
+    by_cell = {(run.signal, run.model): run for run in runs}
+    signals = dict.fromkeys(run.signal for run in runs)
+    models = [model for model in MODELS if any(run.model == model for run in runs)]
+    units = {run.signal: run.unit for run in runs}
+    content = []
+    for signal in signals:
+        for metric, name in (("mse", f"MSE ({units[signal]})"), ("re", "RE")):
+            line = {"record": signal, "error": name}
+            for model in models:
+                run = by_cell.get((signal, model))
+                line[model] = _cell(run, metric)
+            content.append(line)
+    diverged = [run for run in runs if run.diverged is not None]
+    return Table(
+        name="errors",
+        caption=(
+            f"Errors on the measured records of {dataset}. {error_kind(models)}. "
+            "The paper has no numbers for them."
+        ),
+        legend="; ".join(f"{run.signal}, {run.model}: {run.diverged}" for run in diverged),
+        frame=pd.DataFrame(content, dtype=str),
+    )
+
+
+def finite_sentence(runs: Sequence[Run]) -> str:
+    """Say how many models stay finite on every record."""
+    models = dict.fromkeys(run.model for run in runs)
+    lost = dict.fromkeys(run.model for run in runs if run.diverged is not None)
+    finite = len(models) - len(lost)
+    text = f"{finite} of {len(models)} models stay finite on every record"
+    return f"{text}; not {', '.join(lost)}." if lost else f"{text}."
+
+
+def _cell(run: Run | None, metric: str) -> str:
+    if run is None:
+        return "not run"
+    if run.diverged is not None:
+        return "diverged"
+    return f"{run.error('mse' if metric == 'mse' else 're'):.4g}"

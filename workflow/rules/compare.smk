@@ -1,0 +1,90 @@
+# Ours beside the paper's: cells, claims, audit and tables. A measured dataset has no
+# published numbers, so its errors stand alone.
+COMPARE = f"{RESULTS}/compare"
+
+if TWIN:
+
+    rule tables:
+        input:
+            runs=runs(),
+            records=[record(signal) for signal in SETTINGS.signals],
+            order_sweep=rules.order_sweep.output,
+            identified=rules.identify.output,
+            envelopes=rules.envelopes.output,
+            published=PUBLISHED,
+            code=code("hystbench.commands.compare"),
+        output:
+            cells=report(
+                f"{COMPARE}/cells.csv",
+                caption="../report/cells.rst",
+                category="Comparison",
+            ),
+            claims=report(
+                f"{COMPARE}/claims.csv",
+                caption="../report/claims.rst",
+                category="Comparison",
+            ),
+            audit=report(
+                f"{COMPARE}/audit.csv",
+                caption="../report/audit.rst",
+                category="Comparison",
+            ),
+            summary=f"{COMPARE}/summary.json",
+            verdict=f"{COMPARE}/verdict.rst",
+            text=f"{COMPARE}/tables.txt",
+            tables=report(
+                expand(f"{COMPARE}/tables/table-{{number}}.csv", number=[1, 2, 3, 4]),
+                caption="../report/tables.rst",
+                category="Tables",
+            ),
+            markdown=expand(f"{COMPARE}/tables/table-{{number}}.md", number=[1, 2, 3, 4]),
+            latex=expand(f"{COMPARE}/tables/table-{{number}}.tex", number=[1, 2, 3, 4]),
+        log:
+            f"{RESULTS}/logs/tables.log",
+        params:
+            runs=lambda wildcards, input: options("--run", input.runs),
+            records=lambda wildcards, input: options("--record", input.records),
+            folder=COMPARE,
+        shell:
+            "hystbench compare {params.runs} {params.records}"
+            " --order-sweep {input.order_sweep} --identified {input.identified}"
+            " --envelopes {input.envelopes} --out {params.folder} 2> {log}"
+
+else:
+
+    rule tables:
+        input:
+            runs=runs(),
+            envelopes=rules.envelopes.output,
+            order_sweep=rules.order_sweep.output,
+            code=code("hystbench.commands.compare_measured"),
+        output:
+            errors=report(
+                f"{COMPARE}/errors.csv",
+                caption="../report/errors.rst",
+                category="Comparison",
+            ),
+            verdict=f"{COMPARE}/verdict.rst",
+            text=f"{COMPARE}/tables.txt",
+            tables=expand(
+                f"{COMPARE}/tables/errors.{{suffix}}", suffix=["csv", "md", "tex"]
+            ),
+        log:
+            f"{RESULTS}/logs/tables.log",
+        params:
+            runs=lambda wildcards, input: options("--run", input.runs),
+            dataset=SETTINGS.name,
+            folder=COMPARE,
+        shell:
+            "hystbench compare-measured {params.dataset} {params.runs}"
+            " --out {params.folder} 2> {log}"
+
+
+# `snakemake compare` prints ours beside theirs, whether anything was to do or not.
+rule compare:
+    input:
+        rules.tables.output.text,
+    log:
+        f"{RESULTS}/logs/compare.log",
+    shell:
+        "hystbench show {input} 2> {log}"
