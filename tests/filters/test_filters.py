@@ -1,0 +1,436 @@
+"""Every filter against the paper's equations written out, and what all must keep."""
+
+import numpy as np
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.filters import FILTERS, run_many
+from hystbench.operators import PUBLISHED_ENVELOPE
+
+OPTIONS = {
+    "delayed": [{}],
+    "backlash": [
+        {"amplitude": 0.7},
+        {"amplitude": 0.7, "structure": "current-input"},
+        {"amplitude": 0.7, "form": "eq4", "initial_state": "settled", "x_before": 0.1},
+    ],
+    "gpo": [
+        {"amplitude": 0.7},
+        {"amplitude": 0.7, "form": "eq4", "x_before": -0.2},
+        {"amplitude": 0.7, "initial_state": "settled", "x_before": 0.3},
+    ],
+    "volterra": [
+        {"second_order_step": 1.0},
+        {"second_order_step": 1.0, "x_before": 0.2},
+    ],
+}
+CASES = [(name, options) for name, several in OPTIONS.items() for options in several]
+
+
+NAMES = [f"{name}-{place}" for place, (name, _) in enumerate(CASES)]
+
+
+@pytest.fixture(params=CASES, ids=NAMES)
+def case(request):
+    return request.param
+
+
+def make(case, order, step_size=1e-3, **more):
+    name, options = case
+    return FILTERS[name](order=order, step_size=step_size, **options, **more)
+
+
+@pytest.fixture
+def signals():
+    """Input of several tones and the output of a plant with memory and a bend."""
+    k = np.arange(1500)
+    x = 0.4 * np.sin(0.05 * k) + 0.2 * np.sin(0.31 * k + 1) + 0.1 * np.sin(1.7 * k)
+    x[700:740] = x[700]  # a hold, for Eq. 12
+    memory = np.convolve(x, 0.7 ** np.arange(40))[: len(x)]
+    return x, memory + 0.5 * memory**2 + 0.05
+
+
+def plain_regressors(case, adaptive, x):
+    """Regressor of every sample, from the definitions alone, tap by tap."""
+    name, options = case
+    order = adaptive.order
+    before = options.get("x_before", 0.0)
+    at = lambda k: x[k] if k >= 0 else before  # noqa: E731
+    if name == "delayed":
+        return np.array([[at(k - i) for i in range(order + 1)] for k in range(len(x))])
+    if name == "volterra":
+        taps = plain_regressors(("delayed", options), adaptive, x)
+        return np.array([np.concatenate((h, np.outer(h, h).ravel())) for h in taps])
+    if name == "gpo":
+        e = PUBLISHED_ENVELOPE
+        left = lambda v: e.a0 * np.tanh(e.a1 * v + e.a2) + e.a3  # noqa: E731
+        right = lambda v: e.a4 * np.tanh(e.a5 * v + e.a6) + e.a7  # noqa: E731
+    else:
+        left = right = lambda v: v
+    together = options.get("structure") == "current-input"
+    h = np.zeros((len(x), order + 1))
+    for i in range(order + 1):
+        r = i / (order + 1) * max(left(0.7), right(0.7))
+        w = 0.0
+        if options.get("initial_state") == "settled":
+            w = max(right(before) - r, min(left(before) + r, 0.0))
+        for k in range(len(x)):
+            now, last = (at(k), at(k - 1)) if together else (at(k - i), at(k - i - 1))
+            low, high = right(now) - r, left(now) + r
+            if options.get("form") == "eq4":
+                w = max(low, min(high, w))
+            elif now > last and low > w:
+                w = low
+            elif now < last and high < w:
+                w = high
+            h[k, i] = w
+    return h
+
+
+def plain_lms(h, d, mu, epsilon=None):
+    w, y = np.zeros(h.shape[1]), np.zeros(len(d))
+    for k in range(len(d)):
+        y[k] = w @ h[k]
+        gain = 1.0 if epsilon is None else 1 / (epsilon + h[k] @ h[k])
+        w = w + 2 * mu * (d[k] - y[k]) * gain * h[k]
+    return y, w
+
+
+def near(actual, expected):
+    scale = np.abs(expected).max()
+    np.testing.assert_allclose(actual, expected, rtol=0, atol=1e-9 * scale)
+
+
+def stable(case, order, x, share=None):
+    """A filter at a share of Eq. 19's bound, for Volterra half of it in each part.
+
+    The bound is on the mean. The power of products varies so much over a record
+    that at half the bound single samples already overshoot: hence Volterra's tenth.
+    """
+    adaptive = make(case, order)
+    bound = adaptive.bound(x)
+    name, options = case
+    if name != "volterra":
+        return make(case, order, (share or 0.5) * bound.bound)
+    share = share or 0.1
+    steps = share / 2 / bound.first_order, share / 2 / bound.second_order
+    return make((name, {**options, "second_order_step": steps[1]}), order, steps[0])
+
+
+@pytest.mark.parametrize("order", [0, 1, 6, 7, 8, 30, 31, 53])
+def test_equals_the_equations_written_out(case, order, signals):
+    n = 1500
+    if case[0] == "volterra" and order > 10:  # the plain loop takes its time
+        n, order = 300, min(order, 34)
+    x, d = signals[0][:n], signals[1][:n]
+    adaptive = stable(case, order, x)
+    h = plain_regressors(case, adaptive, x)
+    y, w = plain_lms(h, d, adaptive.steps)
+    result = adaptive.run(x, d)
+    assert result.diverged_at is None
+    near(result.output, y)
+    near(result.weights, w)
+    np.testing.assert_array_equal(result.error, d - result.output)
+
+
+@pytest.mark.parametrize("order", [2, 30, 53])
+def test_normalized_equals_the_equations_written_out(case, order, signals):
+    x, d = signals[0][:300], signals[1][:300]
+    adaptive = make(case, order, 0.1, normalized=True, regularization=0.01)
+    h = plain_regressors(case, adaptive, x)
+    if case[0] == "volterra":
+        h_steps = np.concatenate(
+            (np.full(order + 1, 0.1), np.full((order + 1) ** 2, 1.0))
+        )
+    else:
+        h_steps = 0.1
+    y, w = plain_lms(h, d, h_steps, 0.01)
+    result = adaptive.run(x, d)
+    near(result.output, y)
+    near(result.weights, w)
+
+
+@pytest.mark.parametrize("order", [3, 30])
+def test_regressor_equals_the_definitions(case, order, signals):
+    x = signals[0][:200]
+    adaptive = make(case, order)
+    line = np.concatenate((np.full(order + 1, adaptive.x_before), x))
+    h, _ = adaptive.regressor(line, adaptive.start().operators)
+    np.testing.assert_allclose(h, plain_regressors(case, adaptive, x), atol=1e-15)
+
+
+def test_fused_loop_equals_the_general_one(case, signals):
+    x, d = signals
+    adaptive = stable(case, 9, x)
+    general = adaptive._adapt  # the loop of the base, that any new filter gets
+    base = [
+        kind for kind in type(adaptive).__mro__ if kind.__name__ == "AdaptiveFilter"
+    ]
+    state = adaptive.start()
+    line = np.concatenate((state.past, x))
+    fused = general(line, d, state, 1e9)
+    plain = base[0]._adapt(adaptive, line, d, state, 1e9)
+    for one, other in zip(fused, plain, strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-10, atol=1e-12)
+
+
+@pytest.mark.parametrize("order", [0, 7, 30])
+@pytest.mark.parametrize("cuts", [[1], [700], [1, 2, 40, 41, 1499]])
+@pytest.mark.parametrize("normalized", [False, True])
+def test_chunks_equal_the_whole(case, order, cuts, normalized, signals):
+    x, d = signals
+    adaptive = make(case, order, 1e-4, normalized=normalized)
+    if case[0] == "volterra":
+        name, options = case
+        adaptive = make((name, {**options, "second_order_step": 1e-5}), order, 1e-4)
+    whole = adaptive.run(x, d, limit=1e6)
+    state, output = adaptive.start(), []
+    for part in np.split(np.arange(len(x)), cuts):
+        result = adaptive.run(x[part], d[part], state, limit=1e6)
+        state = result.state
+        output.append(result.output)
+    np.testing.assert_array_equal(np.concatenate(output), whole.output)
+    np.testing.assert_array_equal(state.weights, whole.weights)
+    np.testing.assert_array_equal(state.operators, whole.state.operators)
+
+
+def test_an_empty_chunk_changes_nothing(case, signals):
+    x, d = signals
+    adaptive = make(case, 5, 1e-4)
+    state = adaptive.run(x[:100], d[:100]).state
+    result = adaptive.run([], [], state)
+    assert result.diverged_at is None
+    assert len(result.output) == 0
+    np.testing.assert_array_equal(result.weights, state.weights)
+
+
+def test_weights_given_at_the_start(signals):
+    # any weights: Volterra's need not be symmetric
+    x, d = signals[0][:200], signals[1][:200]
+    rng = np.random.default_rng(5)
+    for case in CASES:
+        adaptive = stable(case, 6, x)
+        start = rng.standard_normal(adaptive.size)
+        result = adaptive.run(x, d, adaptive.start(start))
+        h = plain_regressors(case, adaptive, x)
+        # the filter is linear in its weights: shift the target instead
+        y, w = np.zeros(len(d)), start.copy()
+        for k in range(len(d)):
+            y[k] = w @ h[k]
+            w = w + 2 * adaptive.steps * (d[k] - y[k]) * h[k]
+        near(result.output, y)
+        near(result.weights, w)
+
+
+def test_a_filter_finds_the_weights_it_was_given(case):
+    # the plant is the filter itself with known weights: no error is left
+    rng = np.random.default_rng(3)
+    x = rng.uniform(-0.6, 0.6, 60000)
+    adaptive = make(case, 2, 0.2, normalized=True)
+    h = plain_regressors(case, adaptive, x[:20000])
+    x = x[:20000]
+    true = rng.standard_normal(adaptive.size)
+    result = adaptive.run(np.tile(x, 3), np.tile(h @ true, 3))
+    assert np.abs(result.error[-100:]).max() < 1e-3 * np.abs(result.error[:100]).max()
+
+
+# --- divergence
+
+
+def test_a_step_size_beyond_the_bound_diverges_without_nan(case, signals):
+    x, d = signals
+    adaptive = make(case, 30, 1e3)
+    result = adaptive.run(x, d)
+    assert result.diverged_at is not None
+    assert len(result.output) == len(result.error) == result.diverged_at
+    assert (np.abs(result.error) <= 1e6 * np.abs(d).max()).all()
+    assert np.isfinite(result.weights).all()
+
+
+@pytest.mark.parametrize("step_size", [1e100, 1e300, 8e307])
+def test_overflow_counts_as_divergence(case, step_size, signals):
+    # products beyond the largest double: infinities and NaN inside the loop
+    x, d = signals
+    name, options = case
+    if name == "volterra":
+        case = name, {**options, "second_order_step": step_size}
+    result = make(case, 30, step_size).run(x, d, limit=1e308)
+    assert result.diverged_at is not None
+    assert np.isfinite(result.output).all()
+    assert np.isfinite(result.error).all()
+    assert np.isfinite(result.weights).all()
+
+
+def test_overflow_in_the_last_update_counts_as_divergence(case):
+    adaptive = make(case, 0, 8e307)
+    result = adaptive.run([-0.6, 0.6], [0.0, 1e10])
+    assert result.diverged_at == 2
+    assert np.isfinite(result.weights).all()
+
+
+def test_divergence_is_where_the_plain_loop_passes_the_limit(case, signals):
+    x, d = signals
+    adaptive = stable(case, 6, x[:200], share=20.0)
+    h = plain_regressors(case, adaptive, x[:200])
+    w = np.zeros(adaptive.size)
+    for k in range(200):
+        e = d[k] - w @ h[k]
+        if abs(e) > 100:
+            break
+        w = w + 2 * adaptive.steps * e * h[k]
+    else:
+        pytest.fail("the plain loop did not diverge")
+    assert adaptive.run(x, d, limit=100.0).diverged_at == k
+
+
+def test_limit_is_kept_from_chunk_to_chunk(signals):
+    x, d = signals
+    adaptive = make(CASES[0], 3, 1e-3)
+    first = adaptive.run(x[:10], d[:10])
+    assert first.state.limit == 1e6 * np.abs(d[:10]).max()
+    assert adaptive.run(x[10:], d[10:], first.state).state.limit == first.state.limit
+    assert adaptive.run(x, 0 * d).state.limit == 1e6
+
+
+# --- Eq. 19
+
+
+@pytest.mark.parametrize("order", [0, 4, 30])
+def test_bound_by_plain_numpy(case, order, signals):
+    x = signals[0][: 150 if order == 30 and case[0] == "volterra" else 1500]
+    adaptive = make(case, order)
+    h = plain_regressors(case, adaptive, x)
+    correlation = h.T @ h / len(h)
+    values = np.linalg.eigvalsh(correlation)
+    bound = adaptive.bound(x)
+    assert bound.size == len(values)
+    assert bound.trace == pytest.approx(np.trace(correlation), rel=1e-12)
+    assert bound.bound == pytest.approx(1 / np.trace(correlation), rel=1e-12)
+    assert bound.largest == pytest.approx(values[-1], rel=1e-10)
+    assert bound.bound <= 1 / bound.largest
+    assert bound.rank <= np.linalg.matrix_rank(correlation, tol=1e-14 * values[-1])
+    if case[0] == "volterra":
+        taps = order + 1
+        parts = h[:, :taps], h[:, taps:]
+        first, second = (np.mean(np.sum(part**2, axis=1)) for part in parts)
+        assert bound.first_order == pytest.approx(first, rel=1e-12)
+        assert bound.second_order == pytest.approx(second, rel=1e-12)
+        assert bound.first_order + bound.second_order == pytest.approx(bound.trace)
+        margin = bound.margin(0.1, 0.2)
+        assert margin == pytest.approx(0.1 * first + 0.2 * second)
+
+
+def test_bound_of_white_input_by_hand():
+    # x is -1 or 1 and white: R is near the identity, the bound near 1 / (N + 1)
+    x = np.random.default_rng(2).choice([-1.0, 1.0], 200_000)
+    bound = FILTERS["delayed"](order=3, step_size=1).bound(x)
+    assert bound.trace == pytest.approx(4, rel=1e-4)
+    assert bound.spread == pytest.approx(1, abs=0.03)
+    assert bound.rank == 4
+
+
+def test_spectrum_of_volterra_without_its_duplicates(signals):
+    # 3 taps: 12 weights, 3 products twice, so rank 9 at most and 3 zeros at least
+    x = np.random.default_rng(4).uniform(-1, 1, 5000)
+    adaptive = make(("volterra", {"second_order_step": 1.0}), 2)
+    h = plain_regressors(("volterra", {}), adaptive, x)
+    values = np.linalg.eigvalsh(h.T @ h / len(h))
+    bound = adaptive.bound(x)
+    assert bound.rank == 9
+    assert bound.smallest == 0
+    assert bound.spread == np.inf
+    assert bound.smallest_nonzero == pytest.approx(values[3], rel=1e-9)
+    assert bound.spread_nonzero == pytest.approx(values[-1] / values[3], rel=1e-9)
+
+
+def test_bound_of_a_constant_input():
+    # all taps equal: one eigenvalue 4 * 0.25, the rest zero
+    bound = FILTERS["delayed"](order=3, step_size=1, x_before=0.5).bound(
+        np.full(50, 0.5)
+    )
+    assert bound.rank == 1
+    assert bound.largest == pytest.approx(1.0)
+    assert bound.spread_nonzero == pytest.approx(1.0)
+    assert bound.spread == np.inf
+
+
+def test_bound_of_a_zero_input():
+    bound = FILTERS["delayed"](order=3, step_size=1).bound(np.zeros(50))
+    assert (bound.trace, bound.rank, bound.bound) == (0, 0, np.inf)
+
+
+@pytest.mark.parametrize("name", sorted(OPTIONS))
+def test_mean_converges_below_the_margin_and_not_far_above(name):
+    # E[v(k)] = (I - 2 M R)^k v(0): the largest eigenvalue of M R decides, not luck
+    x = np.random.default_rng(6).uniform(-0.7, 0.7, 4000)
+    case = (name, OPTIONS[name][0])
+    adaptive = stable(case, 4, x, share=0.99)
+    h = plain_regressors(case, adaptive, x)
+    step = np.diag(adaptive.steps)
+    values = np.linalg.eigvals(np.eye(adaptive.size) - 2 * step @ (h.T @ h / len(h)))
+    assert np.abs(values).max() <= 1 + 1e-12
+    values = np.linalg.eigvals(step @ (h.T @ h / len(h)))
+    assert values.real.sum() == pytest.approx(0.99)
+
+
+# --- many at once
+
+
+def test_many_at_once_are_the_same_bytes_with_any_number_of_workers(signals):
+    x, d = signals
+    jobs = [(stable(case, order, x, 0.1), x, d) for case in CASES for order in (3, 30)]
+    one, two = run_many(jobs, workers=1), run_many(jobs, workers=2)
+    again = [adaptive.run(x, d) for adaptive, _, _ in jobs]
+    for a, b, c in zip(one, two, again, strict=True):
+        assert a.output.tobytes() == b.output.tobytes() == c.output.tobytes()
+        assert a.weights.tobytes() == b.weights.tobytes() == c.weights.tobytes()
+
+
+# --- the registry and what is refused
+
+
+def test_every_filter_is_tried_here():
+    assert set(OPTIONS) == set(FILTERS)
+
+
+def test_thirtieth_order_volterra_has_992_weights():
+    assert make(("volterra", {"second_order_step": 1.0}), 30).size == 992
+
+
+@pytest.mark.parametrize(
+    ("kind", "more", "told"),
+    [
+        (("delayed", {}), {"order": -1}, "order: -1"),
+        (("delayed", {}), {"step_size": 0.0}, "step_size: 0.0"),
+        (("delayed", {}), {"step_size": np.nan}, "step_size: nan"),
+        (("delayed", {}), {"regularization": 0.0}, "regularization: 0.0"),
+        (("delayed", {}), {"x_before": np.inf}, "x_before: inf"),
+        (("gpo", {"amplitude": -1.0}), {}, "amplitude: -1.0"),
+        (("gpo", {"amplitude": 1.0, "form": "eq3"}), {}, "did you mean 'eq4'"),
+        (("gpo", {"amplitude": 1.0, "initial_state": "zer"}), {}, "mean 'zero'"),
+        (("backlash", {"amplitude": 1.0, "structure": "x"}), {}, "structure: 'x'"),
+        (("volterra", {"second_order_step": -1.0}), {}, "second_order_step: -1.0"),
+    ],
+)
+def test_parameters_out_of_range_are_refused(kind, more, told):
+    settings = {"order": 3, "step_size": 1e-3, **more}
+    with pytest.raises(InputError, match=told):
+        make(kind, **settings)
+
+
+def test_signals_that_do_not_fit_are_refused():
+    adaptive = make(CASES[0], 3)
+    with pytest.raises(InputError, match="x: sample 1 is nan"):
+        adaptive.run([0, np.nan], [0, 0])
+    with pytest.raises(InputError, match="d: sample 0 is inf"):
+        adaptive.run([0, 1], [np.inf, 0])
+    with pytest.raises(InputError, match="d: 3 samples given, x has 2"):
+        adaptive.run([0, 1], [0, 1, 2])
+    with pytest.raises(InputError, match="x: 2 dimensions"):
+        adaptive.run([[0, 1]], [0, 1])
+    with pytest.raises(InputError, match="limit: -1"):
+        adaptive.run([0, 1], [0, 1], limit=-1)
+    with pytest.raises(InputError, match="x: no samples"):
+        adaptive.bound([])
+    with pytest.raises(InputError, match="4 finite numbers expected"):
+        adaptive.start([1, 2])

@@ -1,0 +1,363 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from hystbench.errors import InputError
+from hystbench.operators import (
+    PUBLISHED_ENVELOPE,
+    Envelope,
+    generalized_play,
+    generalized_prandtl_ishlinskii,
+    play,
+    play_thresholds,
+    rate_dependent_prandtl_ishlinskii,
+    state_space,
+    thresholds,
+)
+
+# Steps of 1/1024: equal values then are equal, and differences are exact.
+VALUES = st.integers(-640, 640).map(lambda value: value / 1024)
+INPUTS = st.lists(VALUES, min_size=1, max_size=60).map(np.array)
+# tanh envelopes that never cross: the same slope, the left one higher
+ENVELOPES = st.builds(
+    lambda slope, height, gap, place: Envelope(
+        height, slope, 0.1, place + gap, height, slope, 0.1, place
+    ),
+    st.floats(0.1, 3),
+    st.floats(0.1, 2),
+    st.floats(0.01, 1),
+    st.floats(-0.5, 0.5),
+)
+THRESHOLDS = arrays(float, st.integers(1, 12), elements=st.floats(0, 0.8)).map(np.sort)
+
+
+def plain_equation_4(left, right, r, w):
+    out = np.empty((len(left), len(r)))
+    w = np.array(w, dtype=float)
+    for k in range(len(left)):
+        for i in range(len(r)):
+            w[i] = max(right[k] - r[i], min(left[k] + r[i], w[i]))
+        out[k] = w
+    return out
+
+
+def plain_equation_12(v, before, left, right, r, w):
+    out = np.empty((len(left), len(r)))
+    w = np.array(w, dtype=float)
+    for k in range(len(left)):
+        for i in range(len(r)):
+            if v[k] > before and right[k] - r[i] > w[i]:
+                w[i] = right[k] - r[i]
+            elif v[k] < before and left[k] + r[i] < w[i]:
+                w[i] = left[k] + r[i]
+        before = v[k]
+        out[k] = w
+    return out
+
+
+def on(envelope, v):
+    return envelope.left(v), envelope.right(v)
+
+
+# --- envelopes and thresholds
+
+
+def test_published_envelope_is_the_papers():
+    u = np.linspace(-0.632, 0.632, 7)
+    left, right = on(PUBLISHED_ENVELOPE, u)
+    assert left == pytest.approx(1.2878 * np.tanh(0.36 * u + 0.6025) - 0.6671)
+    assert right == pytest.approx(0.3223 * np.tanh(1.2233 * u + 0.1104) - 0.0248)
+
+
+def test_published_envelopes_cross_where_the_facts_say():
+    low, high = PUBLISHED_ENVELOPE.crossings(-0.632, 0.632)
+    assert low == pytest.approx(0.384, abs=5e-4)
+    assert high == pytest.approx(0.439, abs=5e-4)
+    assert PUBLISHED_ENVELOPE.gap(-0.632, 0.632).min() == pytest.approx(
+        -9.3e-5, rel=0.01
+    )
+    assert not PUBLISHED_ENVELOPE.ordered(-0.632, 0.632)
+    assert PUBLISHED_ENVELOPE.ordered(-0.632, 0.38)
+
+
+def test_a_crossing_is_found_to_the_last_bits():
+    # tanh(v) and 0.5 tanh(v) + 0.25 meet where tanh(v) = 0.5
+    envelope = Envelope(1, 1, 0, 0, 0.5, 1, 0, 0.25)
+    assert envelope.crossings(-1, 1) == pytest.approx([np.arctanh(0.5)], rel=1e-15)
+
+
+def test_envelope_goes_to_a_dictionary_and_back():
+    assert Envelope.from_dict(PUBLISHED_ENVELOPE.to_dict()) == PUBLISHED_ENVELOPE
+
+
+def test_envelope_from_a_bad_dictionary():
+    good = PUBLISHED_ENVELOPE.to_dict()
+    with pytest.raises(
+        InputError, match=r"envelope\.b1: unknown; expected one of a0, a1"
+    ):
+        Envelope.from_dict({**good, "b1": 1.0})
+    del good["a3"]
+    with pytest.raises(InputError, match=r"envelope\.a3: missing"):
+        Envelope.from_dict(good)
+    with pytest.raises(InputError, match=r"envelope\.a0: nan"):
+        Envelope(np.nan, 1, 1, 1, 1, 1, 1, 1)
+
+
+def test_thresholds_by_equation_10():
+    envelope = Envelope(1, 1, 0, 0.5, 3, 1, 0, 0)  # at 1: 1.26 left, 2.28 right
+    r = thresholds(envelope, 1.0, 3)
+    assert r == pytest.approx(np.array([0, 1, 2, 3]) / 4 * 3 * np.tanh(1))
+    assert play_thresholds(0.8, 3) == pytest.approx([0, 0.2, 0.4, 0.6])
+
+
+@pytest.mark.parametrize("amplitude", [0.0, -1.0, np.nan, np.inf])
+def test_thresholds_need_a_positive_amplitude(amplitude):
+    with pytest.raises(InputError, match="amplitude"):
+        play_thresholds(amplitude, 3)
+    with pytest.raises(InputError, match="order: -1"):
+        play_thresholds(1.0, -1)
+
+
+# --- the operators against plain loops
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS, st.floats(-2, 2))
+def test_equation_4_as_written(v, envelope, r, start):
+    left, right = on(envelope, v)
+    state = np.full(len(r), start)
+    expected = plain_equation_4(left, right, r, state)
+    outputs, end = generalized_play(left, right, r, state)
+    np.testing.assert_array_equal(outputs, expected)
+    np.testing.assert_array_equal(end, expected[-1])
+
+
+@given(INPUTS, VALUES, THRESHOLDS, st.floats(-2, 2))
+def test_equation_12_as_written(v, before, r, start):
+    # the published envelopes cross: Eq. 12 must be right there as well
+    left, right = on(PUBLISHED_ENVELOPE, v)
+    state = np.full(len(r), start)
+    expected = plain_equation_12(v, before, left, right, r, state)
+    outputs, end = generalized_play(left, right, r, state, "eq12", v, before)
+    np.testing.assert_array_equal(outputs, expected)
+    np.testing.assert_array_equal(end, expected[-1])
+
+
+@given(INPUTS, THRESHOLDS)
+def test_play_as_written(v, r):
+    outputs, _ = play(v, r)
+    expected = plain_equation_4(v, v, r, np.zeros(len(r)))
+    np.testing.assert_array_equal(outputs, expected)
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS, st.data())
+def test_prandtl_ishlinskii_is_the_weighted_sum(v, envelope, r, data):
+    weights = data.draw(arrays(float, len(r), elements=st.floats(-3, 3)))
+    left, right = on(envelope, v)
+    outputs, end = generalized_play(left, right, r)
+    y, state = generalized_prandtl_ishlinskii(left, right, r, weights)
+    np.testing.assert_allclose(y, outputs @ weights, rtol=1e-12, atol=1e-13)
+    np.testing.assert_array_equal(state, end)
+
+
+@given(INPUTS, ENVELOPES, st.integers(1, 60), st.sampled_from([0, 1]), st.data())
+def test_rate_dependent_model_as_written(v, envelope, count, first, data):
+    n = len(v)
+    spacing = data.draw(arrays(float, n, elements=st.floats(0, 0.2)))
+    ratio = data.draw(arrays(float, n, elements=st.floats(0, 1.1)))
+    left, right = on(envelope, v)
+    state, expected = np.zeros(count), np.empty(n)
+    i = np.arange(first, first + count)
+    for k in range(n):
+        r = i * spacing[k]
+        state = np.maximum(right[k] - r, np.minimum(left[k] + r, state))
+        expected[k] = np.sum(ratio[k] ** i * state)
+    y, end = rate_dependent_prandtl_ishlinskii(
+        left, right, spacing, ratio, count, first
+    )
+    np.testing.assert_allclose(y, expected, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(end, state, rtol=1e-12, atol=1e-13)
+
+
+def test_rate_dependent_model_of_constant_rate_is_the_plain_one():
+    v = 0.6 * np.sin(np.linspace(0, 20, 300))
+    left, right = on(PUBLISHED_ENVELOPE, v)
+    r = 0.01 * np.arange(31)
+    plain, _ = generalized_prandtl_ishlinskii(left, right, r, 0.9 ** np.arange(31))
+    spacing, ratio = np.full(300, 0.01), np.full(300, 0.9)
+    y, _ = rate_dependent_prandtl_ishlinskii(left, right, spacing, ratio, 31)
+    np.testing.assert_allclose(y, plain, rtol=1e-13, atol=1e-14)
+
+
+# --- what makes them hysteresis operators
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS, st.sampled_from(["eq4", "eq12"]), st.data())
+def test_rate_independence(v, envelope, r, form, data):
+    # a slower pass through the same values, each step cut and each value held
+    repeats = data.draw(
+        st.lists(st.integers(1, 3), min_size=len(v), max_size=len(v)), label="repeats"
+    )
+    slow = np.repeat(v, repeats)
+    middle = (slow[1:] + slow[:-1]) / 2
+    slower = np.insert(slow, np.arange(1, len(slow)), middle)
+    fast, _ = generalized_play(*on(envelope, v), r, form=form, v=v, v_before=0.0)
+    other, _ = generalized_play(
+        *on(envelope, slower), r, form=form, v=slower, v_before=0.0
+    )
+    last = 2 * (np.cumsum(repeats) - 1)
+    np.testing.assert_array_equal(other[last], fast)
+
+
+@given(INPUTS, VALUES, VALUES, ENVELOPES, THRESHOLDS, st.sampled_from(["eq4", "eq12"]))
+def test_wiping_out(v, one, other, envelope, r, form):
+    # an inner loop between the last two extremes leaves no trace
+    low, high = v.min(), v.max()
+    inner = np.clip([one, other, one, high], low, high)
+    short = np.concatenate((v, [low, high]))
+    long = np.concatenate((v, [low, high], inner))
+    _, plain = generalized_play(*on(envelope, short), r, form=form, v=short)
+    _, looped = generalized_play(*on(envelope, long), r, form=form, v=long)
+    np.testing.assert_array_equal(looped, plain)
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS, st.data())
+def test_order_is_kept(v, envelope, r, data):
+    # a greater input and a greater start never give a smaller output (Eq. 4)
+    more = v + data.draw(arrays(float, len(v), elements=st.floats(0, 0.3)))
+    start = data.draw(arrays(float, len(r), elements=st.floats(-1, 1)))
+    less_out, _ = generalized_play(*on(envelope, v), r, start)
+    more_out, _ = generalized_play(*on(envelope, more), r, start + 0.1)
+    assert (more_out >= less_out).all()
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS, st.floats(-2, 2))
+def test_extremes_by_equations_7_and_8(v, envelope, r, start):
+    # max F = f(at max v, w(0)) where w(0) is the first output, min F likewise
+    left, right = on(envelope, v)
+    outputs, _ = generalized_play(left, right, r, np.full(len(r), start))
+    first = outputs[0]
+    np.testing.assert_array_equal(
+        outputs.max(axis=0), np.maximum(right.max() - r, first)
+    )
+    np.testing.assert_array_equal(
+        outputs.min(axis=0), np.minimum(left.min() + r, first)
+    )
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS)
+def test_outputs_stay_between_the_envelopes(v, envelope, r):
+    left, right = on(envelope, v)
+    outputs, _ = generalized_play(left, right, r)
+    assert (outputs >= right[:, None] - r).all()
+    assert (outputs <= left[:, None] + r).all()
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS, VALUES, st.data())
+def test_equations_4_and_12_agree_from_inside_the_band(v, envelope, r, before, data):
+    share = data.draw(arrays(float, len(r), elements=st.floats(0, 1)))
+    left, right = on(envelope, np.array([before]))
+    low, high = right - r, left + r
+    start = np.clip(low + share * (high - low), low, high)
+    four, _ = generalized_play(*on(envelope, v), r, start)
+    twelve, _ = generalized_play(*on(envelope, v), r, start, "eq12", v, before)
+    np.testing.assert_array_equal(four, twelve)
+
+
+def test_equations_4_and_12_differ_at_the_start():
+    # H = 0, x = 0, r = 0: gamma_r(0) = 0.3223 tanh(0.1104) - 0.0248 = 0.0106
+    v = np.zeros(3)
+    left, right = on(PUBLISHED_ENVELOPE, v)
+    four, _ = generalized_play(left, right, [0.0])
+    twelve, _ = generalized_play(left, right, [0.0], form="eq12", v=v)
+    assert four.ravel() == pytest.approx(np.full(3, 0.0106), abs=5e-5)
+    assert not twelve.any()
+
+
+def test_play_loop_by_hand():
+    outputs, end = play([0, 1, 2, 1, 0, -1, 0], [0.5])
+    assert outputs.ravel() == pytest.approx([0, 0.5, 1.5, 1.5, 0.5, -0.5, -0.5])
+    assert end == pytest.approx([-0.5])
+
+
+@given(INPUTS, ENVELOPES, THRESHOLDS, st.sampled_from(["eq4", "eq12"]), st.data())
+def test_state_goes_on(v, envelope, r, form, data):
+    cut = data.draw(st.integers(0, len(v) - 1))
+    weights = np.linspace(1, 2, len(r))
+    left, right = on(envelope, v)
+    rest = {"form": form, "v": v, "v_before": 0.0}
+    whole, _ = generalized_prandtl_ishlinskii(left, right, r, weights, **rest)
+    state, y = np.zeros(len(r)), []
+    for part, before in (
+        (slice(cut), 0.0),
+        (slice(cut, None), v[cut - 1] if cut else 0),
+    ):
+        rest = {"form": form, "v": v[part], "v_before": before}
+        piece, state = generalized_prandtl_ishlinskii(
+            left[part], right[part], r, weights, state, **rest
+        )
+        y.append(piece)
+    np.testing.assert_array_equal(np.concatenate(y), whole)
+
+
+# --- linear dynamics
+
+
+@given(st.integers(0, 20), st.integers(0, 2**32 - 1))
+def test_state_space_as_written(size, seed):
+    rng = np.random.default_rng(seed)
+    a = rng.standard_normal((size, size)) / (size + 1)
+    b, c, u = rng.standard_normal(size), rng.standard_normal(size), rng.random(40)
+    x = x0 = rng.standard_normal(size)
+    expected = np.empty(40)
+    for k in range(40):
+        expected[k] = c @ x + 0.3 * u[k]
+        x = a @ x + b * u[k]
+    y, end = state_space(a, b, c, 0.3, u, x0)
+    np.testing.assert_allclose(y, expected, rtol=1e-10, atol=1e-11)
+    np.testing.assert_allclose(end, x, rtol=1e-10, atol=1e-11)
+
+
+def test_state_space_step_of_a_first_order_lag():
+    y, _ = state_space([[0.5]], [0.5], [1.0], 0.0, np.ones(20))
+    assert y == pytest.approx(1 - 0.5 ** np.arange(20))
+
+
+# --- what is refused
+
+
+@pytest.mark.parametrize(
+    ("broken", "told"),
+    [
+        (lambda: generalized_play([1, 2], [1], [0]), "right: "),
+        (lambda: generalized_play([[1]], [1], [0]), "left: 2 dimensions"),
+        (lambda: generalized_play([1], [1], [-1]), "thresholds: a negative"),
+        (lambda: generalized_play([1], [1], [np.nan]), "thresholds: a negative"),
+        (lambda: generalized_play([1], [1], [0], [1, 2]), "state: "),
+        (lambda: generalized_play([1], [1], [0], form="eq12"), "v: Eq. 12 needs"),
+        (lambda: generalized_play([1], [1], [0], form="eq12", v=[1, 2]), "v: "),
+        (lambda: generalized_play([1], [1], [0], form="eq13"), "did you mean 'eq1"),
+        (lambda: generalized_prandtl_ishlinskii([1], [1], [0], [1, 2]), "weights: "),
+        (
+            lambda: rate_dependent_prandtl_ishlinskii([1], [1], [-1], [1], 3),
+            "spacing: a negative",
+        ),
+        (
+            lambda: rate_dependent_prandtl_ishlinskii([1], [1], [1], [1, 2], 3),
+            "ratio: ",
+        ),
+        (
+            lambda: rate_dependent_prandtl_ishlinskii([1], [1], [1], [1], 0),
+            "count: 0",
+        ),
+        (
+            lambda: rate_dependent_prandtl_ishlinskii([1], [1], [1], [1], 2, 2),
+            "first: 2",
+        ),
+        (lambda: state_space(np.eye(2), [1], [1], 0.0, [1]), "do not fit"),
+    ],
+)
+def test_what_does_not_fit_is_refused(broken, told):
+    with pytest.raises(InputError, match=told):
+        broken()
