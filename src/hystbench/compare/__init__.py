@@ -13,7 +13,7 @@ from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.evidence import Evidence, read_evidence
 from hystbench.compare.summary import summarise
-from hystbench.compare.tables import Table, tables
+from hystbench.compare.tables import Table, paper_tables
 from hystbench.compare.verdict import print_tables, verdict_markdown, verdict_rst
 from hystbench.files import atomic_path, write_json, write_text
 from hystbench.published.audit import write_audit
@@ -47,7 +47,7 @@ class Comparison:
         return print_tables(self.tables, self.claims, self.summary)
 
     def write(self, out_dir: str | Path) -> None:
-        """Write cells, claims, audit, summary, verdict and tables into a folder."""
+        """Write what was found into a folder; see :func:`compare`."""
         out = Path(out_dir)
         write_cells(self.cells, out / "cells.csv")
         write_claims(self.claims, out / "claims.csv")
@@ -55,6 +55,7 @@ class Comparison:
         write_json(out / "summary.json", self.summary)
         write_text(out / "verdict.rst", verdict_rst(self.summary))
         write_text(out / "verdict.md", verdict_markdown(self.summary))
+        write_text(out / "tables.txt", self.text())
         for table in self.tables:
             table.write(out / "tables")
 
@@ -80,7 +81,7 @@ def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Compar
         cells=cells,
         claims=claims,
         summary=summarise(cells, claims, held_out),
-        tables=tuple(tables(cells, evidence.runs)),
+        tables=paper_tables(cells),
     )
 
 
@@ -99,7 +100,8 @@ def compare(
     ----------
     out_dir : path
         Folder for ``cells.csv``, ``claims.csv``, ``audit.csv``, ``summary.json``,
-        ``verdict.rst``, ``verdict.md`` and ``tables/``.
+        ``verdict.rst``, ``verdict.md``, ``tables.txt`` for the terminal and
+        ``tables/`` (Tables 1-4 as CSV, Markdown and LaTeX).
     runs : iterable of paths
         One JSON file for each signal and model.
     records : iterable of paths

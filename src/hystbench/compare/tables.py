@@ -1,20 +1,15 @@
-"""Tables 1-4 with ours beside the paper's, and tables of measured records.
-
-Each is written as CSV, Markdown and LaTeX.
-"""
+"""Tables 1-4 with ours beside the paper's, as CSV, Markdown and LaTeX."""
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 import pandas as pd
 
 from hystbench.compare.cells import NOT_RUN, ComparedCell
-from hystbench.compare.evidence import Cell, Run
 from hystbench.files import write_text
 from hystbench.published import METRICS, MODELS, Metric
 
@@ -186,58 +181,7 @@ def paper_table(number: int, cells: Iterable[ComparedCell]) -> Table:
     )
 
 
-def measured_table(record: str, runs: Sequence[Run]) -> Table:
-    """List the errors of all models on one measured record."""
-    content = []
-    for run in runs:
-        finite = run.diverged is None
-        values = {
-            f"MSE ({run.unit})": run.mse,
-            "RE": run.re,
-            f"MSE after transient ({run.unit})": run.mse_after_transient,
-            "RE after transient": run.re_after_transient,
-        }
-        content.append(
-            {"model": run.model, "errors are": run.error_kind}
-            | {
-                name: "diverged" if not finite else _maybe(value)
-                for name, value in values.items()
-            }
-        )
-    models = [run.model for run in runs]
-    return Table(
-        name=f"measured-{record}",
-        caption=(
-            f"Errors of all models on the measured record {record}. "
-            f"{error_kind(models)}. The paper has no numbers for it."
-        ),
-        legend="; ".join(
-            f"{run.model} {run.diverged}" for run in runs if run.diverged is not None
-        ),
-        frame=pd.DataFrame(content, dtype=str),
-    )
-
-
-def _maybe(value: float | None) -> str:
-    if value is None or not math.isfinite(value):
-        return "none"
-    return f"{value:.4g}"
-
-
-def tables(cells: Sequence[ComparedCell], runs: Mapping[Cell, Run]) -> list[Table]:
-    """Make Tables 1-4 and one table for each measured record."""
-    by_record: dict[str, list[Run]] = {}
-    for run in runs.values():
-        if run.origin == "measured":
-            by_record.setdefault(run.signal, []).append(run)
-    return [
-        *(paper_table(number, cells) for number in TITLES),
-        *(
-            measured_table(record, sorted(found, key=lambda r: _rank(r.model)))
-            for record, found in sorted(by_record.items())
-        ),
-    ]
-
-
-def _rank(model: str) -> tuple[int, str]:
-    return (MODELS.index(model) if model in MODELS else len(MODELS), model)
+def paper_tables(cells: Iterable[ComparedCell]) -> tuple[Table, ...]:
+    """Make Tables 1-4."""
+    listed = list(cells)
+    return tuple(paper_table(number, listed) for number in TITLES)

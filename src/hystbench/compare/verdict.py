@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from tabulate import tabulate
+import pandas as pd
 
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.tables import Table
@@ -107,7 +107,13 @@ def verdict_markdown(summary: Mapping[str, Any]) -> str:
 def _table(summary: Mapping[str, Any], style: str) -> str:
     """Write the small table; a bar has a meaning of its own in both markups."""
     headers = [header.replace("|", r"\|") for header in HEADERS]
-    return str(tabulate(rows(summary), headers, style, disable_numparse=True))
+    return _grid(rows(summary), headers, style)
+
+
+def _grid(lines: Sequence[Sequence[str]], headers: Sequence[str], style: str) -> str:
+    """Write a table of text in one of the styles of tabulate."""
+    frame = pd.DataFrame(lines, columns=list(headers), dtype=str)
+    return str(frame.to_markdown(index=False, tablefmt=style, disable_numparse=True))
 
 
 def _page(said: Sequence[str], table: str) -> str:
@@ -122,18 +128,13 @@ def print_tables(
     """Write ours beside theirs and the claims for a terminal."""
     parts = []
     for table in tables:
-        body = tabulate(
-            [list(row) for row in table.frame.itertuples(index=False)],
-            list(table.frame.columns),
-            tablefmt="simple",
-            disable_numparse=True,
-            stralign="right",
-        )
+        lines = table.frame.to_numpy().tolist()
+        body = _grid(lines, list(table.frame.columns), "simple")
         parts.append("\n".join(filter(None, (table.caption, body, table.legend))))
-    ledger = tabulate(
+    ledger = _grid(
         [(j.verdict, j.claim.id, j.published_bears_out) for j in judgements],
         ("verdict", "claim", "paper's own tables bear it out"),
-        tablefmt="simple",
+        "simple",
     )
-    numbers = tabulate(rows(summary), HEADERS, tablefmt="simple", disable_numparse=True)
+    numbers = _grid(rows(summary), HEADERS, "simple")
     return "\n\n".join((*parts, ledger, numbers, "\n".join(sentences(summary)))) + "\n"

@@ -11,7 +11,12 @@ from hystbench.record import FloatArray
 
 
 def rank_correlation(x: Sequence[float], y: Sequence[float]) -> float:
-    """Spearman's rank correlation; ties take ranks in the order given."""
+    """Spearman's rank correlation; ties take ranks in the order given.
+
+    One point has no trend: zero.
+    """
+    if len(x) < 2:
+        return 0.0
     ranks = [np.argsort(np.argsort(values, kind="stable")) for values in (x, y)]
     return float(np.corrcoef(ranks[0], ranks[1])[0, 1])
 
