@@ -16,6 +16,7 @@ EXAMPLES = {
     },
     "resonance": {"frequency_hz": 65.0, "damping_ratio": 0.03, "participation": 0.1},
     "sensor-noise": {"rms": 0.05},
+    "sensor-nonlinearity": {"quadratic": -0.01, "cubic": 0.002},
     "transfer-function": {
         "numerator": [1.0e3, 4.0e5],
         "denominator": [1.0, 1.2e3, 4.0e5],

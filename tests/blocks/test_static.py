@@ -7,6 +7,7 @@ from hystbench.blocks.asymmetry import Asymmetry
 from hystbench.blocks.calibration_error import CalibrationError
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.sensor_noise import SensorNoise
+from hystbench.blocks.sensor_nonlinearity import SensorNonlinearity
 
 Z = np.array([-2.0, 0.0, 0.5, 3.0])
 
@@ -18,6 +19,7 @@ Z = np.array([-2.0, 0.0, 0.5, 3.0])
         (Gain(value=3.0), [-6.0, 0.0, 1.5, 9.0]),
         (CalibrationError(gain=2.0, offset=-1.0), [-5.0, -1.0, 0.0, 5.0]),
         (Asymmetry(coefficient=0.5), [0.0, 0.0, 0.625, 7.5]),
+        (SensorNonlinearity(quadratic=0.5, cubic=-1.0), [8.0, 0.0, 0.5, -19.5]),
     ],
 )
 def test_values_worked_out_by_hand(block, expected):

@@ -1,0 +1,33 @@
+"""Block ``sensor-nonlinearity``: a sensor whose reading is a curve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class SensorNonlinearity(Block):
+    """Static polynomial of the true output: ``y = z + quadratic z^2 + cubic z^3``.
+
+    References
+    ----------
+    .. [1] A. J. Fleming, "A review of nanometer resolution position sensors",
+       Sensors and Actuators A 190 (2013) 106-126, on the nonlinearity of
+       displacement sensors and its polynomial calibration.
+    """
+
+    name: ClassVar = "sensor-nonlinearity"
+    place: ClassVar = "sensor"
+    reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
+
+    quadratic: float = number("1/Y", "weight of the square", -1e3, 1e3)
+    cubic: float = number("1/Y^2", "weight of the cube", -1e3, 1e3)
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the polynomial."""
+        return z + self.quadratic * z**2 + self.cubic * z**3
