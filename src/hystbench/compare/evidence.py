@@ -170,6 +170,7 @@ def read_run(path: str | Path) -> Run:
 
 
 _STATUSES = ("finite", "diverged")
+_PARAMETERS = tuple(f"a{j}" for j in range(8))
 _ERRORS = ("mse", "re", "mse_after_transient", "re_after_transient")
 
 
@@ -220,8 +221,9 @@ def read_identification(path: str | Path) -> Identification:
     def array(key: str) -> FloatArray:
         return np.asarray(_need(content, key, path), dtype=float)
 
+    envelope = _need(content, "envelope", path)
     return Identification(
-        envelope=_need(content, "envelope", path),
+        envelope={key: float(_need(envelope, key, path)) for key in _PARAMETERS},
         thresholds=array("thresholds"),
         weights=array("weights"),
         sums=array("J"),

@@ -1,0 +1,92 @@
+"""Cells: ours beside every printed number."""
+
+import csv
+import math
+
+import pytest
+
+from hystbench.compare import write_cells
+from hystbench.compare.cells import compare_cells
+from hystbench.compare.evidence import Evidence
+
+from .made import make_run, published_runs
+
+FIRST = ("sine-010hz", "gpo")
+
+
+def cell(evidence, signal, model, metric="mse"):
+    (found,) = [
+        c
+        for c in compare_cells(evidence)
+        if (c.signal, c.model, c.metric) == (signal, model, metric)
+    ]
+    return found
+
+
+def test_every_printed_number_has_a_row_even_when_nothing_ran():
+    cells = compare_cells(Evidence())
+    assert len(cells) == 124
+    assert all(c.ours is None and c.status == "not run" for c in cells)
+    assert all(math.isinf(c.distance) and not c.ran for c in cells)
+
+
+def test_ratio_by_hand():
+    # printed 0.0094; ten times that is a log10 ratio of 1
+    found = cell(Evidence(runs={FIRST: make_run(*FIRST, 0.094)}), *FIRST)
+    assert found.published == "0.0094"
+    assert found.log10_ratio == pytest.approx(1)
+    assert found.distance == pytest.approx(1)
+    assert found.status == "finite"
+
+
+def test_digits_stay_as_printed():
+    assert cell(Evidence(), "sine-100hz", "rdgpi", "re").published == "0.1"
+
+
+def test_a_diverged_run_has_no_number_and_says_where():
+    found = cell(Evidence(runs={FIRST: make_run(*FIRST, None)}), *FIRST)
+    assert found.ours is None
+    assert found.log10_ratio is None
+    assert found.ran
+    assert found.status == "diverged at sample 7, mu = 1"
+
+
+def test_a_perfect_run_is_infinitely_below():
+    found = cell(Evidence(runs={FIRST: make_run(*FIRST, 0.0)}), *FIRST)
+    assert found.log10_ratio == -math.inf
+
+
+def test_measured_records_stay_out():
+    run = make_run(*FIRST, 0.01, origin="measured")
+    assert not cell(Evidence(runs={FIRST: run}), *FIRST).ran
+
+
+def test_consistency_of_the_printed_pair_goes_along():
+    evidence = Evidence()
+    assert cell(evidence, "sine-200hz", "delayed").published_consistent == "no"
+    assert (
+        cell(evidence, "multisine-10-30-50hz", "volterra").published_consistent
+        == "undecided"
+    )
+    assert cell(evidence, *FIRST).published_consistent == "yes"
+
+
+def test_cells_as_csv(tmp_path):
+    runs = published_runs({FIRST: None})
+    write_cells(compare_cells(Evidence(runs=runs)), tmp_path / "cells.csv")
+    with (tmp_path / "cells.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == 124
+    assert rows[0] == {
+        "table": "1",
+        "signal": "sine-010hz",
+        "model": "gpo",
+        "metric": "mse",
+        "published": "0.0094",
+        "ours": "",
+        "log10_ratio": "",
+        "published_consistent": "yes",
+        "status": "diverged at sample 7, mu = 1",
+    }
+    assert rows[2]["ours"] == "0.4248"
+    assert float(rows[2]["log10_ratio"]) == 0

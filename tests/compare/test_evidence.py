@@ -1,0 +1,210 @@
+"""Readers of the runs' files, and a comparison from files to files."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from hystbench.compare import compare
+from hystbench.compare.evidence import (
+    read_envelope_errors,
+    read_evidence,
+    read_identification,
+    read_order_sweep,
+    read_run,
+)
+from hystbench.errors import InputError
+
+from .made import sum_records
+
+RUN = {
+    "signal": "sine-010hz",
+    "model": "gpo",
+    "origin": "twin",
+    "error_kind": "one-step a priori",
+    "samples": 3,
+    "dt_s": 1e-4,
+    "order": 30,
+    "taps": 31,
+    "step_size": {"mu": 1.0},
+    "bound": {"mu": 2.0},
+    "status": "finite",
+    "diverged": None,
+    "mse": 0.01,
+    "re": 0.02,
+    "mse_after_transient": 0.005,
+    "re_after_transient": 0.01,
+    "convergence_s": 0.5,
+    "transient_s": 0.5,
+    "eigenvalues": {"largest": 0.4, "spread": None, "spread_nonzero": 1e3},
+    "units": {"mse": "um^2"},
+}
+FREE_RUN = {
+    key: value
+    for key, value in {
+        **RUN,
+        "model": "rdgpi",
+        "error_kind": "free-run simulation",
+    }.items()
+    if key not in ("order", "taps", "step_size", "bound", "eigenvalues")
+}
+DIVERGED = {
+    **RUN,
+    "status": "diverged",
+    "diverged": {"sample": 9, "sentence": "diverged at sample 9, mu = 1"},
+    **dict.fromkeys(
+        ("mse", "re", "mse_after_transient", "re_after_transient", "convergence_s")
+    ),
+}
+IDENTIFIED = {
+    "envelope": {f"a{j}": 1.0 for j in range(8)},
+    "thresholds": [0.0, 0.1],
+    "weights": [1.0, 2.0],
+    "J": [3.0, 2.0],
+    "epsilon": 1.0,
+    "reached": False,
+    "relative_error": 0.01,
+    "published_relative_error": 0.03,
+}
+
+
+def write(path, content):
+    path.write_text(json.dumps(content), encoding="utf-8")
+    return path
+
+
+def test_run_is_read(tmp_path):
+    run = read_run(write(tmp_path / "run.json", RUN))
+    assert run.mse == run.error("mse") == 0.01
+    assert run.bound == {"mu": 2.0}
+    assert run.spread == 1e3
+    assert run.status == "finite"
+
+
+def test_free_run_needs_nothing_of_a_filter(tmp_path):
+    run = read_run(write(tmp_path / "run.json", FREE_RUN))
+    assert run.order is None
+    assert run.step_size == {}
+
+
+def test_diverged_run_is_read(tmp_path):
+    run = read_run(write(tmp_path / "run.json", DIVERGED))
+    assert run.status == "diverged at sample 9, mu = 1"
+    assert math.isinf(run.error("mse"))
+    assert math.isinf(run.error("re"))
+
+
+@pytest.mark.parametrize("key", sorted(set(RUN) - {"samples", "dt_s", "transient_s"}))
+def test_missing_key_is_named(tmp_path, key):
+    path = write(tmp_path / "run.json", {k: v for k, v in RUN.items() if k != key})
+    with pytest.raises(InputError, match=rf"run.json: no key '{key}'"):
+        read_run(path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"status": "finit"}, "did you mean 'finite'"),
+        ({"status": "diverged"}, "disagree"),
+        ({"mse": None}, "needs an MSE"),
+    ],
+)
+def test_run_that_contradicts_itself_is_refused(tmp_path, changes, message):
+    path = write(tmp_path / "run.json", RUN | changes)
+    with pytest.raises(InputError, match=message):
+        read_run(path)
+
+
+def test_file_that_is_no_json_object_is_refused(tmp_path):
+    path = tmp_path / "run.json"
+    path.write_text("{", encoding="utf-8")
+    with pytest.raises(InputError, match="not a readable JSON file"):
+        read_run(path)
+    with pytest.raises(InputError, match="expected a JSON object"):
+        read_run(write(path, [1]))
+    with pytest.raises(InputError, match="not a readable JSON file"):
+        read_run(tmp_path / "none.json")
+
+
+def test_two_runs_of_one_cell_are_refused(tmp_path):
+    paths = [write(tmp_path / f"{n}.json", RUN) for n in (1, 2)]
+    with pytest.raises(InputError, match=r"2.json: a second run of gpo on sine-010hz"):
+        read_evidence(paths)
+
+
+def test_order_sweep_is_read(tmp_path):
+    path = tmp_path / "errors.csv"
+    path.write_text(
+        "model,order,mse,status\ngpo,1,0.5,finite\ngpo,2,,diverged at sample 4\n",
+        encoding="utf-8",
+    )
+    first, second = read_order_sweep(path)
+    assert (first.model, first.order, first.mse) == ("gpo", 1, 0.5)
+    assert math.isinf(second.mse)
+
+
+def test_bad_number_and_missing_column_are_named(tmp_path):
+    path = tmp_path / "errors.csv"
+    path.write_text("model,order,mse,status\ngpo,1,x,finite\n", encoding="utf-8")
+    with pytest.raises(InputError, match="row 1: 'x' is not a number"):
+        read_order_sweep(path)
+    path.write_text("model,ordr,mse,status\n", encoding="utf-8")
+    with pytest.raises(InputError, match="no column 'order'; did you mean 'ordr'"):
+        read_order_sweep(path)
+
+
+def test_envelope_errors_are_read(tmp_path):
+    path = tmp_path / "envelopes.csv"
+    path.write_text(
+        "signal,envelopes,mse,re,status\na,identified,0.5,0.1,finite\n",
+        encoding="utf-8",
+    )
+    assert read_envelope_errors(path) == {("a", "identified"): 0.5}
+
+
+def test_identification_is_read(tmp_path):
+    found = read_identification(write(tmp_path / "identified.json", IDENTIFIED))
+    np.testing.assert_array_equal(found.sums, [3.0, 2.0])
+    assert not found.reached
+
+
+def test_missing_envelope_parameter_is_named(tmp_path):
+    envelope = {k: v for k, v in IDENTIFIED["envelope"].items() if k != "a5"}
+    path = write(tmp_path / "identified.json", IDENTIFIED | {"envelope": envelope})
+    with pytest.raises(InputError, match="no key 'a5'"):
+        read_identification(path)
+
+
+def test_from_files_to_files(tmp_path):
+    runs = [
+        write(tmp_path / "gpo.json", RUN),
+        write(tmp_path / "rdgpi.json", FREE_RUN),
+    ]
+    records = []
+    for name, record in sum_records().items():
+        record.save(tmp_path / f"{name}.npz")
+        records.append(tmp_path / f"{name}.npz")
+    out = tmp_path / "compare"
+    compare(
+        out,
+        runs,
+        records,
+        identified=write(tmp_path / "identified.json", IDENTIFIED),
+        held_out=["sine-060hz"],
+    )
+    assert {p.name for p in out.iterdir()} == {
+        "audit.csv",
+        "cells.csv",
+        "claims.csv",
+        "summary.json",
+        "tables",
+        "tables.txt",
+        "verdict.md",
+        "verdict.rst",
+    }
+    assert len(list((out / "tables").iterdir())) == 12
+    summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+    assert summary["cells"] == 1
+    assert summary["rdgpi"]["cells"] == 1
+    assert summary["held_out"]["cells_published"] == 4

@@ -1,0 +1,164 @@
+"""Tables and verdict: what a reader sees."""
+
+import csv
+import io
+
+import docutils.core
+import pytest
+
+from hystbench.compare import compare_evidence
+from hystbench.compare.cells import compare_cells
+from hystbench.compare.evidence import Evidence
+from hystbench.compare.tables import Table, paper_table, paper_tables
+from hystbench.compare.verdict import sentences, verdict_markdown, verdict_rst
+
+from .made import published_runs
+
+
+def table(number, changes=None, missing=()):
+    runs = published_runs(changes)
+    for cell in missing:
+        del runs[cell]
+    return paper_table(number, compare_cells(Evidence(runs=runs)))
+
+
+def row(number, signal, error, **options):
+    frame = table(number, **options).frame
+    (found,) = frame[(frame.signal == signal) & (frame.error == error)].to_dict(
+        "records"
+    )
+    return found
+
+
+def test_shapes_are_those_of_the_paper():
+    # two lines a signal; signal, error and two columns a model
+    shapes = [t.frame.shape for t in paper_tables(compare_cells(Evidence()))]
+    assert shapes == [(18, 10), (2, 10), (6, 10), (20, 6)]
+
+
+def test_paper_and_ours_by_hand():
+    found = row(
+        2,
+        "chirp-1-100hz",
+        "MSE (um^2)",
+        changes={("chirp-1-100hz", "gpo"): 0.123456},
+    )
+    assert found["gpo paper"] == "0.0646"
+    assert found["gpo ours"] == "0.1235"
+    assert found["volterra paper"] == "0.4882"
+
+
+@pytest.mark.parametrize(
+    ("ours", "text"),
+    [(0.00012345, "0.00012"), (1e-3, "0.0010"), (12345.6, "1.235e+04"), (None, "d")],
+)
+def test_very_small_and_very_large_errors_keep_digits(ours, text):
+    changes = {("chirp-1-100hz", "gpo"): ours}
+    found = row(2, "chirp-1-100hz", "MSE (um^2)", changes=changes)
+    assert found["gpo ours"] == (text if ours is not None else "diverged")
+
+
+def test_marks():
+    found = row(1, "sine-200hz", "RE")
+    assert found["delayed paper"] == "0.0736†"
+    assert found["gpo paper"] == "0.0246"
+    found = row(3, "multisine-10-30-50hz", "MSE (um^2)")
+    assert found["volterra paper"] == "1.6099‡"
+
+
+def test_missing_run_is_told():
+    cell = ("sine-200hz", "gpo")
+    assert row(1, "sine-200hz", "RE", missing=[cell])["gpo ours"] == "not run"
+
+
+def test_table_4_repeats_the_gpo_filter():
+    found = row(4, "sine-100hz", "RE")
+    assert found["rdgpi paper"] == "0.1"
+    assert found["gpo paper"] == "0.0141"
+
+
+def test_captions_name_the_kind_of_error_and_the_twin():
+    for number in (1, 2, 3, 4):
+        caption = table(number).caption
+        assert "one-step a priori" in caption.lower()
+        assert "twin, a simulation" in caption
+    assert "rdgpi: errors of a free-run simulation" in table(4).caption
+
+
+def test_csv_has_the_same_cells_and_the_caption():
+    made = table(1)
+    rows = list(csv.DictReader(io.StringIO(made.csv())))
+    assert len(rows) == 18
+    assert rows[0]["gpo paper"] == "0.0094"
+    assert "one-step" in rows[0]["note"].lower()
+
+
+def test_markdown_keeps_digits():
+    text = table(1).markdown()
+    assert "0.2880" in text
+    assert "0.0736†" in text
+    assert "‡ one of several" in text
+
+
+def test_latex_marks_and_escapes():
+    import pandas as pd
+
+    made = Table("t_1", "a_b 5 % um^2", "", pd.DataFrame({"x_y": ["1†"], "z": ["2^3"]}))
+    text = made.latex()
+    assert r"\caption{a\_b 5 \% \textmu m$^2$}" in text
+    assert r"x\_y & z \\" in text
+    assert r"1$^\dagger$ & 2\textasciicircum{}3 \\" in text
+
+
+def test_tables_are_written_in_three_formats(tmp_path):
+    written = table(3).write(tmp_path)
+    assert [p.name for p in written] == ["table-3.csv", "table-3.md", "table-3.tex"]
+    assert all(p.read_text(encoding="utf-8") for p in written)
+
+
+@pytest.fixture
+def comparison():
+    return compare_evidence(Evidence(runs=published_runs()))
+
+
+def test_verdict_takes_its_numbers_from_the_summary(comparison):
+    summary = comparison.summary | {"within_factor_2": 0.25, "claims_reproduced": 777}
+    text = " ".join(sentences(summary))
+    assert "25 % of them are within a factor of 2" in text
+    assert "777 are reproduced" in text
+    assert "78 of 78 pairs" in text
+    assert "typical MSE is off by a factor of 1.00" in text
+
+
+def test_verdict_without_runs_says_so():
+    summary = compare_evidence(Evidence()).summary
+    assert "No filter was run" in sentences(summary)[0]
+
+
+def test_verdict_where_most_diverged_says_so(comparison):
+    text = sentences(comparison.summary | {"median_abs_log10_ratio": None})[0]
+    assert "the typical run diverged" in text
+
+
+def test_verdict_is_valid_rst(comparison):
+    document = docutils.core.publish_string(
+        verdict_rst(comparison.summary),
+        writer="html",
+        settings_overrides={"halt_level": 2, "report_level": 2},
+    ).decode()
+    assert "<table" in document
+    assert "median |log10(ours/paper)|" in document
+
+
+def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
+    text = verdict_markdown(comparison.summary)
+    for model in ("gpo", "backlash", "volterra", "delayed", "rdgpi"):
+        assert f"| {model} " in text
+
+
+def test_text_for_the_terminal(comparison):
+    text = comparison.text()
+    assert "sine-010hz" in text
+    assert "0.0094" in text
+    assert "gpo-best-anywhere" in text
+    assert text.count("with ours beside it") == 4
