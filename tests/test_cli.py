@@ -4,8 +4,7 @@ import pytest
 
 from hystbench.cli import COMMANDS, LazyGroup
 from hystbench.options import SettingsType
-
-from conftest import run_hystbench
+from tests.conftest import run_hystbench
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -5,8 +5,7 @@ from hypothesis import strategies as st
 
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
-
-from conftest import csv_text
+from tests.conftest import csv_text
 
 TIME = np.arange(50) / 1000
 U = np.sin(40 * TIME)

@@ -5,8 +5,7 @@ import yaml
 
 from hystbench.errors import InputError
 from hystbench.settings import read_settings
-
-from conftest import ROOT
+from tests.conftest import ROOT
 
 SCHEMA = ROOT / "workflow" / "schemas" / "config.schema.yaml"
 CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())

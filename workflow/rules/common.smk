@@ -17,17 +17,18 @@ os.environ["PATH"] = os.pathsep.join(
 
 PACKAGE = Path(os.path.relpath(Path(hystbench.__file__).parent))
 GRAPH = grimp.build_graph("hystbench", cache_dir=".snakemake/imports")
+SCHEMA = workflow.source_path("../schemas/config.schema.yaml")
 KERNELS = sorted(PACKAGE.glob("kernels/*.so"))
 
 try:
     if not KERNELS:
-        raise InputError(f"{PACKAGE}/kernels: not compiled; expected 'make' to have run")
+        raise InputError(
+            f"{PACKAGE}/kernels: not compiled; expected 'make' to have run"
+        )
     for source in PACKAGE.glob("kernels/*.[ch]"):
         if source.stat().st_mtime > KERNELS[0].stat().st_mtime:
             raise InputError(f"{source}: newer than the compiled kernels; run 'make'")
-    SETTINGS = read_settings(
-        config, Path(workflow.basedir, "..", "schemas", "config.schema.yaml")
-    )
+    SETTINGS = read_settings(config, SCHEMA)
 except InputError as error:
     sys.exit(f"hystbench: {error}")
 
@@ -88,5 +89,7 @@ def options(name, files):
 
 # The paper's own numbers, an input of all that is compared with them.
 PUBLISHED = sorted(
-    str(file) for file in PACKAGE.glob("published/*") if file.suffix in {".csv", ".yaml"}
+    str(file)
+    for file in PACKAGE.glob("published/*")
+    if file.suffix in {".csv", ".yaml"}
 )

@@ -37,7 +37,9 @@ if TWIN:
                 caption="../report/tables.rst",
                 category="Tables",
             ),
-            markdown=expand(f"{COMPARE}/tables/table-{{number}}.md", number=[1, 2, 3, 4]),
+            markdown=expand(
+                f"{COMPARE}/tables/table-{{number}}.md", number=[1, 2, 3, 4]
+            ),
             latex=expand(f"{COMPARE}/tables/table-{{number}}.tex", number=[1, 2, 3, 4]),
         log:
             f"{RESULTS}/logs/tables.log",
@@ -45,6 +47,8 @@ if TWIN:
             runs=lambda wildcards, input: options("--run", input.runs),
             records=lambda wildcards, input: options("--record", input.records),
             folder=COMPARE,
+        message:
+            "tables, claims and audit"
         shell:
             "hystbench compare {params.runs} {params.records}"
             " --order-sweep {input.order_sweep} --identified {input.identified}"
@@ -75,6 +79,8 @@ else:
             runs=lambda wildcards, input: options("--run", input.runs),
             dataset=SETTINGS.name,
             folder=COMPARE,
+        message:
+            "tables, claims and audit"
         shell:
             "hystbench compare-measured {params.dataset} {params.runs}"
             " --out {params.folder} 2> {log}"
@@ -86,5 +92,7 @@ rule compare:
         rules.tables.output.text,
     log:
         f"{RESULTS}/logs/compare.log",
+    message:
+        "ours beside theirs"
     shell:
         "hystbench show {input} 2> {log}"

@@ -16,6 +16,8 @@ rule filter:
         identified=lambda wildcards, input: (
             f"--identified {input.identified}" if input.identified else ""
         ),
+    message:
+        "{wildcards.filter} on {wildcards.signal}"
     shell:
         "hystbench filter {input.record} --model {wildcards.filter}"
         " {params.identified} --settings {params.settings:q}"
@@ -35,9 +37,11 @@ rule order_sweep:
         f"{RESULTS}/order-sweep/errors.csv",
     log:
         f"{RESULTS}/logs/order-sweep.log",
+    threads: 2
     params:
         settings=settings_text(SETTINGS.order_sweep_job),
-    threads: 2
+    message:
+        "error against order"
     shell:
         "hystbench order-sweep {input.record} --identified {input.identified}"
         " --settings {params.settings:q} --threads {threads} --out {output} 2> {log}"

@@ -8,6 +8,8 @@ rule identify:
         f"{RESULTS}/logs/identify/identify.log",
     params:
         settings=settings_text(SETTINGS.identification_job),
+    message:
+        "identification by Algorithm 1"
     shell:
         "hystbench identify {input.record} --settings {params.settings:q}"
         " --out {output} 2> {log}"
@@ -25,6 +27,8 @@ rule envelopes:
         f"{RESULTS}/logs/identify/envelopes.log",
     params:
         settings=settings_text(SETTINGS.filter_job("gpo")),
+    message:
+        "GPO filter with identified and published envelopes"
     shell:
         "hystbench envelopes {input.records} --identified {input.identified}"
         " --settings {params.settings:q} --out {output} 2> {log}"

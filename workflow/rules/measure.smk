@@ -12,6 +12,8 @@ if TWIN:
             f"{RESULTS}/logs/measure/{{signal}}.log",
         params:
             settings=settings_text(SETTINGS.measure_job),
+        message:
+            "record {wildcards.signal}"
         shell:
             "hystbench measure {input.signal} --model {input.model}"
             " --settings {params.settings:q} --out {output} 2> {log}"
@@ -21,13 +23,13 @@ else:
     rule measure:
         input:
             dataset=str(SETTINGS.dataset.path),
-            file=lambda wildcards: str(
-                SETTINGS.dataset.record_files[wildcards.signal]
-            ),
+            file=lambda wildcards: str(SETTINGS.dataset.record_files[wildcards.signal]),
             code=code("hystbench.commands.load"),
         output:
             f"{RESULTS}/records/{{signal}}.npz",
         log:
             f"{RESULTS}/logs/measure/{{signal}}.log",
+        message:
+            "record {wildcards.signal}"
         shell:
             "hystbench load {input.dataset} {wildcards.signal} --out {output} 2> {log}"

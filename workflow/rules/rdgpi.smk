@@ -8,6 +8,8 @@ rule rdgpi_identify:
         f"{RESULTS}/logs/rdgpi/identify.log",
     params:
         settings=settings_text(SETTINGS.rdgpi_job),
+    message:
+        "identification of the RDGPI model"
     shell:
         "hystbench rdgpi-identify {input.records} --settings {params.settings:q}"
         " --out {output} 2> {log}"
@@ -25,6 +27,8 @@ rule rdgpi:
         f"{RESULTS}/logs/rdgpi/{{signal}}.log",
     params:
         settings=settings_text(SETTINGS.error_job),
+    message:
+        "rdgpi on {wildcards.signal}"
     shell:
         "hystbench rdgpi {input.record} --identified {input.identified}"
         " --settings {params.settings:q}"
@@ -40,5 +44,7 @@ rule rdgpi_published:
         f"{RESULTS}/rdgpi/published-parameters.csv",
     log:
         f"{RESULTS}/logs/rdgpi/published.log",
+    message:
+        "RDGPI model with the published parameters"
     shell:
         "hystbench rdgpi-published {input.records} --out {output} 2> {log}"

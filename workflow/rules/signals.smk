@@ -7,6 +7,8 @@ rule signal:
         f"{RESULTS}/logs/signal/{{signal}}.log",
     params:
         settings=lambda wildcards: settings_text(SETTINGS.signal_job(wildcards.signal)),
+    message:
+        "signal {wildcards.signal}"
     shell:
         "hystbench signal {wildcards.signal} --settings {params.settings:q}"
         " --out {output} 2> {log}"

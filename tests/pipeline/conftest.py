@@ -1,0 +1,109 @@
+"""Run the real workflow on a small config in a folder of its own."""
+
+from __future__ import annotations
+
+import copy
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).parents[2]
+
+
+def small_config() -> dict:
+    """The project's config, cut down to seconds."""
+    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config["signals"] = ["sine-100hz", "sine-200hz"]
+    config["excitation"] |= {"duration_s": 0.2}
+    config["excitations"]["sine-001hz"] = {"sine": {"frequency_hz": 1, "duration_s": 1}}
+    config["identification"] |= {"starts": 1, "max_iterations": 5}
+    config["filters"]["order"] = 6
+    config["rdgpi"] |= {"fit_signals": ["sine-100hz"], "starts": 1}
+    config["order_sweep"] |= {"signal": "sine-050hz", "orders": [1, 3]}
+    return config
+
+
+@dataclass
+class Workflow:
+    """A folder in which the project's workflow runs."""
+
+    folder: Path
+    environment: dict[str, str] = field(default_factory=dict)
+
+    def configure(self, config: dict) -> None:
+        (self.folder / "config.yaml").write_text(yaml.safe_dump(config))
+
+    def snakemake(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [
+                sys.executable,
+                "-m",
+                "snakemake",
+                "--snakefile",
+                str(ROOT / "Snakefile"),
+                "--cores",
+                "2",
+                *arguments,
+            ],
+            cwd=self.folder,
+            env=os.environ | self.environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    def run(self, *arguments: str) -> dict[str, int]:
+        """Run to the end and count the jobs of each rule."""
+        result = self.snakemake(*arguments)
+        assert result.returncode == 0, result.stdout + result.stderr
+        return jobs(result.stderr + result.stdout)
+
+    def would_run(self, *arguments: str) -> dict[str, int]:
+        return self.run("--dry-run", *arguments)
+
+    def files(self) -> dict[str, bytes]:
+        """Content of each file of results, logs aside."""
+        results = self.folder / "results"
+        return {
+            str(path.relative_to(results)): path.read_bytes()
+            for path in sorted(results.rglob("*"))
+            if path.is_file() and "logs" not in path.parts
+        }
+
+
+def jobs(printed: str) -> dict[str, int]:
+    """Count jobs by rule from Snakemake's table of them."""
+    table = re.search(r"^job +count\n-+ +-+\n(.*?)^total +\d+$", printed, re.M | re.S)
+    if table is None:
+        return {}
+    rows = [line.split() for line in table[1].splitlines()]
+    return {name: int(count) for name, count in rows if name != "all"}
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory) -> Workflow:
+    """A folder in which the small config has run; tests copy it before they write."""
+    workflow = Workflow(tmp_path_factory.mktemp("workflow"))
+    workflow.configure(small_config())
+    workflow.run()
+    return workflow
+
+
+@pytest.fixture
+def workflow(finished, tmp_path) -> Workflow:
+    """A copy of the finished folder that a test may change."""
+    folder = tmp_path / "copy"
+    shutil.copytree(finished.folder, folder, symlinks=True)
+    return Workflow(folder)
+
+
+@pytest.fixture
+def config() -> dict:
+    return copy.deepcopy(small_config())

@@ -1,0 +1,228 @@
+"""The real pipeline on a small config: what is made, and what is made again."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from .conftest import ROOT, Workflow
+
+FILTERS = ["gpo", "backlash", "volterra", "delayed"]
+
+
+def load(path):
+    return json.loads(path.read_text())
+
+
+def test_every_stage_leaves_its_files(finished):
+    results = finished.folder / "results"
+    for signal in ["sine-100hz", "sine-200hz"]:
+        for model in [*FILTERS, "rdgpi"]:
+            run = load(results / "filters" / signal / f"{model}.json")
+            assert (run["signal"], run["model"], run["origin"]) == (
+                signal,
+                model,
+                "twin",
+            )
+            assert run["status"] in ("finite", "diverged")
+    for file in [
+        "identify/identified.json",
+        "identify/envelopes.csv",
+        "order-sweep/errors.csv",
+        "rdgpi/identified.json",
+        "rdgpi/published-parameters.csv",
+        "compare/cells.csv",
+        "compare/claims.csv",
+        "compare/audit.csv",
+        "compare/summary.json",
+        "compare/verdict.rst",
+        "compare/tables/table-1.md",
+        "compare/tables/table-4.tex",
+    ]:
+        assert (results / file).stat().st_size > 0, file
+
+
+def test_errors_are_those_of_the_kept_arrays(finished):
+    results = finished.folder / "results"
+    for signal in ["sine-100hz", "sine-200hz"]:
+        d = np.load(results / "records" / f"{signal}.npz")["y"]
+        for model in [*FILTERS, "rdgpi"]:
+            run = load(results / "filters" / signal / f"{model}.json")
+            arrays = np.load(results / "filters" / signal / f"{model}.npz")
+            error = d - arrays["output"]
+            np.testing.assert_allclose(error, arrays["error"], atol=1e-12)
+            assert run["mse"] == pytest.approx(np.mean(error**2), rel=1e-9)
+            assert run["re"] == pytest.approx(
+                np.sqrt(np.sum(error**2) / np.sum(d**2)), rel=1e-9
+            )
+
+
+def test_the_tables_hold_the_errors_of_the_runs(finished):
+    results = finished.folder / "results"
+    with (results / "compare" / "cells.csv").open() as stream:
+        cells = list(csv.DictReader(stream))
+    ran = [
+        cell
+        for cell in cells
+        if cell["metric"] == "mse" and cell["signal"] == "sine-200hz"
+    ]
+    assert {cell["model"] for cell in ran} == set(FILTERS)
+    for cell in ran:
+        run = load(results / "filters" / "sine-200hz" / f"{cell['model']}.json")
+        assert float(cell["ours"]) == pytest.approx(run["mse"], rel=1e-9)
+        assert float(cell["log10_ratio"]) == pytest.approx(
+            np.log10(run["mse"] / float(cell["published"])), abs=1e-6
+        )
+
+
+def test_afterwards_there_is_nothing_to_do(finished):
+    assert finished.would_run() == {}
+
+
+def test_one_cell_can_be_made_again_alone(workflow):
+    before = workflow.files()
+    done = workflow.run("-f", "results/filters/sine-100hz/gpo.json")
+    assert done == {"filter": 1}
+    assert workflow.files() == before
+
+
+def test_a_changed_step_size_reruns_its_filter_and_what_follows(workflow, config):
+    config["filters"]["convergence_factor"]["delayed"]["mu"] *= 0.5
+    workflow.configure(config)
+    planned = workflow.would_run()
+    assert planned.pop("filter") == len(config["signals"])
+    assert planned.pop("order_sweep") == 1
+    assert planned.pop("tables") == 1
+    assert all(name.startswith("figure") for name in planned)
+
+
+def test_a_changed_seed_of_the_noise_reruns_all_from_the_records(workflow, config):
+    config["twin"]["seed"] += 1
+    workflow.configure(config)
+    planned = workflow.would_run()
+    assert planned["measure"] == 4
+    assert planned["identify"] == 1
+    assert "signal" not in planned
+
+
+def test_a_narrower_config_runs_no_filter_again(workflow):
+    planned = workflow.would_run(
+        "--config", 'signals=["sine-100hz"]', 'models=["gpo", "delayed"]'
+    )
+    assert "filter" not in planned
+    assert "tables" in planned
+
+
+def test_an_edited_module_reruns_what_imports_it(workflow):
+    source = workflow.folder / "src"
+    shutil.copytree(ROOT / "src", source, ignore=shutil.ignore_patterns("__pycache__"))
+    copied = Workflow(workflow.folder, {"PYTHONPATH": str(source)})
+    # The first run sees other paths of the same files; touch makes it up to date.
+    assert copied.snakemake("--touch").returncode == 0
+    assert copied.would_run("--rerun-triggers", "mtime") == {}
+    with (source / "hystbench" / "filters" / "volterra.py").open("a") as stream:
+        stream.write("\n# edited\n")
+    planned = copied.would_run("--rerun-triggers", "mtime")
+    assert planned.pop("filter") == 2
+    assert planned.pop("order_sweep") == 1
+    assert planned.pop("tables") == 1
+    assert all(name.startswith("figure") for name in planned)
+
+
+def test_compare_prints_the_tables_though_nothing_is_to_do(finished):
+    result = finished.snakemake("--quiet", "all", "compare")
+    assert result.returncode == 0, result.stderr
+    run = load(finished.folder / "results" / "filters" / "sine-200hz" / "gpo.json")
+    assert f"{run['mse']:.4f}" in result.stdout
+    assert "0.0221" in result.stdout
+
+
+def test_a_filter_that_diverges_is_a_visible_entry(workflow, config):
+    config["filters"]["convergence_factor"]["delayed"]["mu"] = 50.0
+    config["models"] = ["delayed"]
+    workflow.configure(config)
+    workflow.run()
+    results = workflow.folder / "results"
+    run = load(results / "filters" / "sine-100hz" / "delayed.json")
+    assert run["status"] == "diverged"
+    assert run["mse"] is None
+    assert run["diverged"]["sentence"].startswith("diverged at sample")
+    assert "mu = 50 above 1/tr[R] =" in run["diverged"]["sentence"]
+    for file in (results / "compare").rglob("*"):
+        if file.is_file():
+            assert "nan" not in file.read_text().lower().split(), file
+    assert "diverged" in (results / "compare" / "tables" / "table-1.md").read_text()
+
+
+def test_the_report_holds_the_verdict_and_says_twin(finished):
+    result = finished.snakemake("--report", "results/report.html")
+    assert result.returncode == 0, result.stderr
+    text = (finished.folder / "results" / "report.html").read_text()
+    assert "twin" in text
+    assert "figure-07-order" in text
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (("filters", {"ordre": 3}), "unknown key 'ordre'; did you mean 'order'?"),
+        (("signals", ["sine-40hz"]), "did you mean 'sine-040hz'?"),
+        (("source", "missing/dataset.yaml"), "missing/dataset.yaml"),
+    ],
+)
+def test_a_bad_config_is_one_line_and_costs_nothing(workflow, config, change, expected):
+    key, value = change
+    config[key] = config[key] | value if isinstance(value, dict) else value
+    workflow.configure(config)
+    before = workflow.files()
+    result = workflow.snakemake()
+    assert result.returncode != 0
+    told = [line for line in result.stderr.splitlines() if "hystbench:" in line]
+    assert len(told) == 1
+    assert expected in told[0]
+    assert "Traceback" not in result.stderr
+    assert workflow.files() == before
+
+
+def measured_csv(frequency: float) -> str:
+    time = np.arange(800) / 1000
+    u = 3 * np.sin(2 * np.pi * frequency * time)
+    y = 5 * np.tanh(u) + 0.4 * np.gradient(u)
+    rows = [f"{t:.6f},{a:.9g},{b:.9g}" for t, a, b in zip(time, u, y, strict=True)]
+    return "\n".join(["time_s,current_A,displacement_um", *rows]) + "\n"
+
+
+def test_measured_records_go_the_same_way_beside_the_reproduction(
+    workflow, write_dataset
+):
+    files = {"slow.csv": measured_csv(2), "fast.csv": measured_csv(20)}
+    dataset = write_dataset(files)
+    before = workflow.files()
+    workflow.run("--config", f"source={dataset}")
+    after = workflow.files()
+    assert {name: after[name] for name in before} == before
+    results = workflow.folder / "results" / "datasets" / "bench"
+    for signal in ["slow", "fast"]:
+        for model in [*FILTERS, "rdgpi"]:
+            run = load(results / "filters" / signal / f"{model}.json")
+            assert run["origin"] == "measured"
+    table = (results / "compare" / "tables" / "errors.md").read_text()
+    assert "slow" in table
+    assert "rdgpi" in table
+    assert workflow.would_run("--config", f"source={dataset}") == {}
+
+
+def test_a_bad_row_of_a_dataset_is_one_line(workflow, write_dataset):
+    text = measured_csv(2).splitlines()
+    text[50] = "0.049,,3"
+    dataset = write_dataset({"slow.csv": "\n".join(text) + "\n"})
+    result = workflow.snakemake("--config", f"source={dataset}")
+    assert result.returncode != 0
+    told = [line for line in result.stderr.splitlines() if "hystbench:" in line]
+    assert len(told) == 1
+    assert "slow.csv: row 51: column 'current_A' is 'empty'" in told[0]
+    assert not (workflow.folder / "results" / "datasets").exists()

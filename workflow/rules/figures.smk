@@ -1,0 +1,93 @@
+# What each figure is drawn from: files by the option that takes them. Where the
+# settings leave out a signal or a model, the figures that need it are left out too.
+FIGURE_INPUTS = {
+    "identification": {
+        "record": [record(SETTINGS.identification_signal)],
+        "identified": rules.identify.output,
+    }
+}
+
+if SETTINGS.filters:
+    FIGURE_INPUTS |= {
+        "figure-07-order": {
+            "record": [record(SETTINGS.order_sweep_signal)],
+            "table": rules.order_sweep.output,
+        },
+        "learning-curves": {
+            "run": [
+                run(signal, model)
+                for signal in SETTINGS.signals
+                for model in SETTINGS.filters
+            ],
+        },
+    }
+
+if TWIN:
+    FIGURE_INPUTS |= {
+        "figure-03-play": {},
+        "figure-04-generalized-play": {},
+        "errors-heat-map": {"table": [rules.tables.output.cells]},
+    }
+    # The paper's figures of the GPO filter, and their signals.
+    FIGURE_INPUTS |= {
+        name: {
+            "record": [record(signal) for signal in signals],
+            "run": [run(signal, "gpo") for signal in signals],
+            "arrays": [run(signal, "gpo", "npz") for signal in signals],
+        }
+        for name, signals in {
+            "figure-08-loops": [s for s in SETTINGS.signals if s.startswith("sine-")],
+            "figure-09-chirp": ["chirp-1-100hz"],
+            "figure-10-sum": ["multisine-10-30-50hz"],
+            "figure-11-sum": ["multisine-5-25-50-75-100hz"],
+            "figure-12-random-sum": ["multisine-random-0-100hz"],
+        }.items()
+        if "gpo" in SETTINGS.models and signals and {*signals} <= {*SETTINGS.signals}
+    }
+else:
+    FIGURE_INPUTS |= {
+        "loops": {
+            "record": [record(signal) for signal in SETTINGS.signals],
+            "run": runs(),
+            "arrays": runs("npz"),
+        },
+        "errors-by-record": {"run": runs()},
+    }
+
+for NAME, GIVEN in FIGURE_INPUTS.items():
+
+    rule:
+        name:
+            f"draw_{NAME.replace('-', '_')}"
+        input:
+            **GIVEN,
+            published=PUBLISHED,
+            code=code(
+                "hystbench.commands.figure",
+                f"hystbench.figures.{NAME.replace('-', '_')}",
+            ),
+            style=PACKAGE / "figures" / "hystbench.mplstyle",
+        output:
+            png=report(
+                f"{RESULTS}/figures/{NAME}.png",
+                caption=f"../report/{NAME}.rst",
+                category="Figures",
+            ),
+            svg=f"{RESULTS}/figures/{NAME}.svg",
+        log:
+            f"{RESULTS}/logs/figures/{NAME}.log",
+        params:
+            name=NAME,
+            given=" ".join(
+                options(f"--{key}", GIVEN[key]) for key in GIVEN if key != "arrays"
+            ),
+        shell:
+            "hystbench figure {params.name} {params.given}"
+            " --out {output.png} --out {output.svg} 2> {log}"
+
+
+FIGURES = [
+    f"{RESULTS}/figures/{name}.{suffix}"
+    for name in FIGURE_INPUTS
+    for suffix in ("png", "svg")
+]
