@@ -23,7 +23,7 @@ def make_run(signal: str, model: str, mse: float | None, **changes) -> Run:
         origin="twin",
         error_kind="one-step a priori" if adaptive else "free-run simulation",
         order=30 if adaptive else None,
-        taps=(992 if model == "volterra" else 31) if adaptive else None,
+        weight_count=(992 if model == "volterra" else 31) if adaptive else None,
         step_size={"mu": 0.1} if adaptive else {},
         bound={"mu": 0.2} if adaptive else {},
         diverged="diverged at sample 7, mu = 1" if mse is None else None,

@@ -167,8 +167,8 @@ CASES = {
             | {(CHIRP, "gpo"): make_run(CHIRP, "gpo", 1.0, order=20)}
         ),
     ),
-    "volterra-length": (runs(), runs(taps=527)),
-    "other-length": (runs(), runs(order=29, taps=30)),
+    "volterra-length": (runs(), runs(weight_count=527)),
+    "other-length": (runs(), runs(order=29, weight_count=30)),
     "volterra-two-step-sizes": (
         runs(),
         runs(step_size={"first_order": 0.1, "second_order": 0.1}),

@@ -27,6 +27,7 @@ RUN = {
     "dt_s": 1e-4,
     "order": 30,
     "taps": 31,
+    "weights": [0.0] * 31,
     "step_size": {"mu": 1.0},
     "bound": {"mu": 2.0},
     "status": "finite",
@@ -47,7 +48,7 @@ FREE_RUN = {
         "model": "rdgpi",
         "error_kind": "free-run simulation",
     }.items()
-    if key not in ("order", "taps", "step_size", "bound", "eigenvalues")
+    if key not in ("order", "taps", "weights", "step_size", "bound", "eigenvalues")
 }
 DIVERGED = {
     **RUN,
@@ -79,6 +80,7 @@ def test_run_is_read(tmp_path):
     assert run.mse == run.error("mse") == 0.01
     assert run.bound == {"mu": 2.0}
     assert run.spread == 1e3
+    assert run.weight_count == 31
     assert run.status == "finite"
 
 
@@ -95,7 +97,9 @@ def test_diverged_run_is_read(tmp_path):
     assert math.isinf(run.error("re"))
 
 
-@pytest.mark.parametrize("key", sorted(set(RUN) - {"samples", "dt_s", "transient_s"}))
+@pytest.mark.parametrize(
+    "key", sorted(set(RUN) - {"samples", "dt_s", "taps", "transient_s"})
+)
 def test_missing_key_is_named(tmp_path, key):
     path = write(tmp_path / "run.json", {k: v for k, v in RUN.items() if k != key})
     with pytest.raises(InputError, match=rf"run.json: no key '{key}'"):

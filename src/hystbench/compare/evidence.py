@@ -31,7 +31,7 @@ class Run:
         What ran on what; ``origin`` is ``twin`` or ``measured``.
     error_kind : str
         ``one-step a priori`` or ``free-run simulation``.
-    order, taps : int or None
+    order, weight_count : int or None
         Order N and number of weights; None where the model has none.
     step_size, bound : dict of str to float
         Step sizes and their bounds by Eq. 19, by the same names.
@@ -52,7 +52,7 @@ class Run:
     origin: str
     error_kind: str
     order: int | None
-    taps: int | None
+    weight_count: int | None
     step_size: dict[str, float]
     bound: dict[str, float]
     diverged: str | None
@@ -157,7 +157,7 @@ def read_run(path: str | Path) -> Run:
         origin=need("origin"),
         error_kind=need("error_kind"),
         order=need("order") if adaptive else None,
-        taps=need("taps") if adaptive else None,
+        weight_count=len(need("weights")) if adaptive else None,
         step_size=need("step_size") if adaptive else {},
         bound=need("bound") if adaptive else {},
         diverged=_need(diverged, "sentence", path) if diverged else None,

@@ -132,11 +132,12 @@ def same_order(evidence: Evidence) -> Finding:
 def volterra_length(evidence: Evidence) -> Finding:
     """Count the weights of the Volterra filter."""
     run = lms_runs(evidence, ("volterra",))[0]
-    if run.order is None or run.taps is None:
-        raise NotTestable("the run of volterra does not tell its order and weights")
+    if run.order is None:
+        raise NotTestable("the run of volterra does not tell its order")
     wanted = run.order + 1 + (run.order + 1) ** 2
     return Finding(
-        run.taps == wanted, f"{run.taps} weights at order {run.order}; {wanted} claimed"
+        run.weight_count == wanted,
+        f"{run.weight_count} weights at order {run.order}; {wanted} claimed",
     )
 
 
@@ -150,11 +151,13 @@ def volterra_length(evidence: Evidence) -> Finding:
 def other_length(evidence: Evidence) -> Finding:
     """Read order and weights off the runs."""
     runs = lms_runs(evidence, ("gpo", "backlash", "delayed"))
-    sizes = sorted({(r.order, r.taps) for r in runs if r.order and r.taps})
+    sizes = sorted(
+        {(r.order, r.weight_count) for r in runs if r.order and r.weight_count}
+    )
     wanted = evidence.text.filter_length
     return Finding(
         sizes == [(wanted, wanted + 1)],
-        "; ".join(f"order {n} with {taps} weights" for n, taps in sizes)
+        "; ".join(f"order {n} with {count} weights" for n, count in sizes)
         + "; as length, 30 would be order 29",
     )
 

@@ -11,6 +11,7 @@ from hystbench.compare.claims.claim import Finding, NotTestable, claim_on
 from hystbench.compare.claims.statistics import (
     cycles,
     minor_turning_points,
+    most_prominent_peak,
     rank_correlation,
     turning_points,
 )
@@ -244,7 +245,7 @@ def chirp_times(evidence: Evidence) -> Finding:
     "'the first-order resonance frequency of 69.7 Hz of the GMA system'",
     "Section 4, Figure 9",
     "result",
-    "the gain of the chirp's spectra, output over input, has its largest local "
+    "the gain of the chirp's spectra, output over input, has its most prominent "
     "maximum from 40 to 95 Hz within 3.15 Hz of 69.7 Hz, half the distance to the dip "
     "at 63.4 Hz",
 )
@@ -255,16 +256,16 @@ def resonance(evidence: Evidence) -> Finding:
     frequency, gain = spectral_gain(record)
     band = (frequency >= 40) & (frequency <= 95)
     f, g = frequency[band], gain[band]
-    inner = np.flatnonzero((g[1:-1] > g[:-2]) & (g[1:-1] >= g[2:])) + 1
-    if len(inner) == 0:
+    top, prominence = most_prominent_peak(g)
+    if top < 0:
         return Finding(False, "the gain has no local maximum from 40 to 95 Hz")
-    top = int(inner[np.argmax(g[inner])])
     claimed = text.chirp_resonance.frequency_hz
     tolerance = (claimed - text.chirp_minimum.frequency_hz) / 2
     return Finding(
         bool(abs(f[top] - claimed) <= tolerance),
-        f"largest local maximum at {f[top]:.1f} Hz, {g[top]:.3g} "
-        f"{record.output.unit}/{record.input.unit}",
+        f"most prominent maximum at {f[top]:.1f} Hz: {g[top]:.3g} "
+        f"{record.output.unit}/{record.input.unit}, {prominence:.2g} above its "
+        "surroundings",
     )
 
 
