@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from hystbench.compare.claims.statistics import (
     cycles,
     minor_turning_points,
-    most_prominent_peak,
     rank_correlation,
     turning_points,
 )
@@ -70,25 +69,3 @@ def test_cycles_of_a_sine_on_an_offset():
     # rises through its middle at phase 0, so the first whole cycle's middle is half a
     # cycle after 1 / (2 pi 7.3)
     assert when[0] == pytest.approx((1 / (2 * np.pi) + 0.5) / 7.3, abs=1e-4)
-
-
-def test_most_prominent_peak_by_hand():
-    # the peak of 9 stands on a slope: 1 above its dip; the peak of 6 rises 4
-    x = np.array([10, 8, 9, 5, 2, 6, 1.0])
-    assert most_prominent_peak(x) == (5, 4.0)
-    assert most_prominent_peak(np.arange(5.0)) == (-1, 0.0)
-
-
-@given(st.lists(st.integers(-9, 9).map(float), min_size=3, max_size=25))
-def test_prominences_are_those_of_scipy(values):
-    from scipy.signal import find_peaks
-
-    x = np.array(values)
-    x = x + np.arange(len(x)) * 1e-6  # scipy takes plateaus at their middle
-    index, most = most_prominent_peak(x)
-    peaks, about = find_peaks(x, prominence=0)
-    if len(peaks) == 0:
-        assert index == -1
-    else:
-        assert most == pytest.approx(about["prominences"].max())
-        assert index in peaks

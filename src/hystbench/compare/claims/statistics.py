@@ -59,12 +59,14 @@ def minor_turning_points(x: FloatArray, tolerance: float = 0.1) -> int:
 def cycles(
     u: FloatArray, y: FloatArray, dt: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Split where u rises through the middle of its range: the cycles of a chirp.
+    """Split a chirp into its whole cycles: time, frequency and range of y.
+
+    A cycle starts where u rises through the middle of its range.
 
     Returns
     -------
     time : ndarray, shape (cycles,)
-        Middle of each whole cycle in seconds.
+        Middle of each cycle in seconds.
     frequency : ndarray, shape (cycles,)
         One over the length of the cycle, in Hz.
     peak_to_peak : ndarray, shape (cycles,)
@@ -74,29 +76,4 @@ def cycles(
     starts = np.flatnonzero((u[:-1] <= 0) & (u[1:] > 0))
     exact = (starts - u[starts] / (u[starts + 1] - u[starts])) * dt
     ranges = np.array([np.ptp(y[a : b + 1]) for a, b in pairwise(starts)], dtype=float)
-    time = (exact[:-1] + exact[1:]) / 2
-    return time, 1 / np.diff(exact), ranges
-
-
-def most_prominent_peak(x: FloatArray) -> tuple[int, float]:
-    """Find the local maximum that rises farthest above its surroundings.
-
-    The prominence of a maximum is its height above the higher of two minima: those
-    between it and the next higher value on each side, or the end.
-
-    Returns
-    -------
-    index : int
-        Of the maximum; -1 where x has no local maximum.
-    prominence : float
-        Zero where it has none.
-    """
-    best, most = -1, 0.0
-    for i in np.flatnonzero((x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])) + 1:
-        higher = np.flatnonzero(x > x[i])
-        left = higher[higher < i].max(initial=-1) + 1
-        right = higher[higher > i].min(initial=len(x))
-        prominence = float(x[i] - max(x[left : i + 1].min(), x[i:right].min()))
-        if prominence > most:
-            best, most = int(i), prominence
-    return best, most
+    return (exact[:-1] + exact[1:]) / 2, 1 / np.diff(exact), ranges
