@@ -81,6 +81,8 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
             given=" ".join(
                 options(f"--{key}", GIVEN[key]) for key in GIVEN if key != "arrays"
             ),
+        message:
+            f"figure {NAME}"
         shell:
             "hystbench figure {params.name} {params.given}"
             " --out {output.png} --out {output.svg} 2> {log}"

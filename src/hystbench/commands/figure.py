@@ -32,7 +32,7 @@ from hystbench.figures import drawer
 def figure(name: str, outs: tuple[Path, ...], **given: Any) -> None:
     """Draw the figure NAME and write it to every --out."""
     draw = drawer(name)
-    from hystbench.figures import style  # noqa: PLC0415  (a wrong name costs nothing)
+    from hystbench.figures import style
 
     with style.in_style():
         drawn = draw(**_inputs(name, inspect.signature(draw), given))

@@ -1,0 +1,129 @@
+"""What figures are drawn from: records, runs with their arrays, parts of records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.compare.evidence import Run, read_run
+from hystbench.errors import InputError, nearest
+from hystbench.record import FloatArray, Record, load_record
+
+
+@dataclass(frozen=True)
+class Output:
+    """A run and its arrays, which end early where the run diverged.
+
+    Parameters
+    ----------
+    run : Run
+        What ran on what, and its errors.
+    y, error : ndarray, shape (samples,)
+        Output of the model, and the record's output minus it.
+    """
+
+    run: Run
+    y: FloatArray
+    error: FloatArray
+
+
+def read_outputs(paths: Iterable[Path]) -> list[Output]:
+    """Read runs and the arrays beside them (same name, ``.npz``).
+
+    Raises
+    ------
+    InputError
+        If the arrays are missing or no such archive.
+    """
+    outputs = []
+    for path in paths:
+        run, arrays = read_run(path), path.with_suffix(".npz")
+        try:
+            with np.load(arrays, allow_pickle=False) as archive:
+                outputs.append(Output(run, archive["output"], archive["error"]))
+        except (OSError, KeyError, ValueError) as error:
+            raise InputError(f"{arrays}: not the arrays of a run ({error})") from error
+    return outputs
+
+
+def read_records(
+    paths: Iterable[Path], runs: Sequence[Path]
+) -> list[tuple[Record, list[Output]]]:
+    """Read records, each with the runs on it.
+
+    Raises
+    ------
+    InputError
+        If a run is of none of the records, or a record has no run.
+    """
+    records = {record.name: record for record in map(load_record, paths)}
+    found: dict[str, list[Output]] = {name: [] for name in records}
+    for path, output in zip(runs, read_outputs(runs), strict=True):
+        signal = output.run.signal
+        if signal not in found:
+            raise InputError(f"{path}: no record {signal!r}; {nearest(signal, found)}")
+        found[signal].append(output)
+    for name, outputs in found.items():
+        if not outputs:
+            raise InputError(f"record {name}: no run on it; expected one (--run)")
+    return [(record, found[name]) for name, record in records.items()]
+
+
+def read_pair(records: Sequence[Path], runs: Sequence[Path]) -> tuple[Record, Output]:
+    """Read one record and the one run on it.
+
+    Raises
+    ------
+    InputError
+        If there is not one of each.
+    """
+    if len(records) != 1 or len(runs) != 1:
+        raise InputError(
+            f"{len(records)} records and {len(runs)} runs; expected one --record and "
+            "one --run"
+        )
+    ((record, (output,)),) = read_records(records, runs)
+    return record, output
+
+
+def last_cycles(record: Record, cycles: int) -> slice:
+    """Find the last full cycles of the input; all samples where it has fewer.
+
+    A cycle starts where the input rises through its mean, having been clearly below
+    it (by a tenth of its standard deviation, so that noise starts none).
+    """
+    moving = record.u - record.u.mean()
+    side = np.sign(moving) * (np.abs(moving) > 0.1 * moving.std())
+    places = np.flatnonzero(side)
+    rises = places[1:][np.diff(side[places]) > 0]
+    if len(rises) <= cycles:
+        return slice(0, len(record))
+    return slice(int(rises[-cycles - 1]), int(rises[-1]) + 1)
+
+
+def last_seconds(record: Record, seconds: float) -> slice:
+    """Find the end of a record; all samples where it is shorter."""
+    return slice(max(0, len(record) - round(seconds / record.dt) - 1), len(record))
+
+
+def thin(
+    x: FloatArray, y: FloatArray, bins: int = 2000
+) -> tuple[FloatArray, FloatArray]:
+    """Keep the smallest and the largest sample of each bin, as they are.
+
+    With more bins than a printer has dots the line looks the same, and an SVG file
+    stays small.
+    """
+    if len(x) <= 2 * bins:
+        return x, y
+    edges = np.linspace(0, len(x), bins + 1).astype(int)
+    kept = {0, len(x) - 1}
+    for low, high in pairwise(edges):
+        part = y[low:high]
+        kept |= {low + int(part.argmin()), low + int(part.argmax())}
+    index = np.array(sorted(kept))
+    return x[index], y[index]

@@ -1,0 +1,121 @@
+"""Ours over the published MSE of every signal and model."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Rectangle
+
+from hystbench.errors import InputError
+from hystbench.figures import style
+
+_COLUMNS = (
+    "signal",
+    "model",
+    "metric",
+    "log10_ratio",
+    "published_consistent",
+    "status",
+)
+# Blue and red stay apart for all kinds of colour blindness, and white is agreement.
+_MAP = "RdBu_r"
+# A factor of ten; what is beyond has the colour of the end, and its number.
+_LIMIT = 1.0
+
+
+def draw(*, table: Path) -> Figure:
+    """Draw log10(ours / published) of the MSE, a number in each cell.
+
+    Parameters
+    ----------
+    table : Path
+        The compared cells, one row a signal, model and metric.
+    """
+    rows = [row for row in _read(table) if row["metric"] == "mse"]
+    signals = list(dict.fromkeys(row["signal"] for row in rows))
+    models = style.in_order(row["model"] for row in rows)
+    figure = Figure(figsize=(5.0, 1.5 + 0.24 * len(signals)))
+    axes = figure.subplots()
+    axes.grid(visible=False)
+    axes.spines[:].set_visible(False)
+    axes.tick_params(length=0)
+
+    values = np.full((len(signals), len(models)), np.nan)
+    for row in rows:
+        if row["log10_ratio"]:
+            place = signals.index(row["signal"]), models.index(row["model"])
+            values[place] = float(row["log10_ratio"])
+    image = axes.pcolormesh(
+        values, cmap=_MAP, norm=Normalize(-_LIMIT, _LIMIT), edgecolor="white"
+    )
+    axes.invert_yaxis()
+    for row in rows:
+        x, y = models.index(row["model"]), signals.index(row["signal"])
+        value = values[y, x]
+        axes.text(
+            x + 0.5,
+            y + 0.5,
+            _number(value) if math.isfinite(value) else _word(row["status"]),
+            horizontalalignment="center",
+            verticalalignment="center_baseline",
+            color="white" if abs(value) > 0.6 * _LIMIT else style.BLACK,
+            fontsize="small",
+        )
+        if row["published_consistent"] != "yes":
+            axes.add_patch(_frame(x, y, row["published_consistent"]))
+    axes.set_xticks(np.arange(len(models)) + 0.5, [_two_lines(m) for m in models])
+    axes.set_yticks(np.arange(len(signals)) + 0.5, [*map(style.signal_title, signals)])
+    axes.xaxis.tick_top()
+    axes.set(xlabel="model", ylabel="signal")
+    axes.xaxis.set_label_position("top")
+    bar = figure.colorbar(image, ax=axes, extend="both", pad=0.02, aspect=30)
+    bar.set_label(r"$\log_{10}$(MSE, ours / published) (-)")
+    bar.outline.set_visible(False)
+    figure.legend(
+        handles=[
+            Patch(fill=False, label="published pair of MSE and RE inconsistent"),
+            Patch(fill=False, label="perhaps inconsistent", linestyle=":"),
+        ],
+        loc="outside lower center",
+        ncols=2,
+    )
+    return figure
+
+
+def _frame(x: int, y: int, consistent: str) -> Rectangle:
+    """Frame a cell whose published pair cannot be true, or may not be."""
+    return Rectangle(
+        (x + 0.04, y + 0.08),
+        0.92,
+        0.84,
+        fill=False,
+        edgecolor=style.BLACK,
+        linewidth=1.0,
+        linestyle="-" if consistent == "no" else ":",
+    )
+
+
+def _two_lines(model: str) -> str:
+    return style.look(model).label.replace(" ", "\n")
+
+
+def _number(value: float) -> str:
+    return f"{value:+.2f}".replace("-", "\N{MINUS SIGN}")
+
+
+def _word(status: str) -> str:
+    return status if status == "not run" else "diverged"
+
+
+def _read(table: Path) -> list[dict[str, str]]:
+    with table.open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    for column in _COLUMNS:
+        if not rows or column not in rows[0]:
+            raise InputError(f"{table}: no column {column!r}; expected compared cells")
+    return rows

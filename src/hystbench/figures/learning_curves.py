@@ -1,0 +1,91 @@
+"""Learning curves: the smoothed squared error of the filters over time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hystbench.compare.evidence import Run, read_run
+from hystbench.errors import InputError
+from hystbench.figures import style
+from hystbench.files import read_json
+from hystbench.record import FloatArray
+
+_COLUMNS = 3
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A run, and its smoothed squared error ``value`` at each ``time`` (s)."""
+
+    run: Run
+    time: FloatArray
+    value: FloatArray
+
+
+def draw(*, runs: Sequence[Path]) -> Figure:
+    """Draw one panel a signal, on a logarithmic scale.
+
+    Only models that learn along the record are drawn: their errors are one-step a
+    priori. A diverged run is drawn as far as the scale of the finite ones goes, and
+    its end is marked at the upper edge.
+    """
+    curves = [curve for curve in map(_read, runs) if curve is not None]
+    if not curves:
+        raise InputError("no run of an adaptive filter; expected one (--run)")
+    signals = dict.fromkeys(curve.run.signal for curve in curves)
+    columns = min(_COLUMNS, len(signals))
+    rows = math.ceil(len(signals) / columns)
+    figure = Figure(figsize=(style.PAGE, 0.8 + 1.35 * rows))
+    grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    for axes in grid.flat[len(signals) :]:
+        axes.remove()
+    for axes, signal in zip(grid.flat, signals, strict=False):
+        axes.set_title(style.signal_title(signal))
+        for curve in curves:
+            if curve.run.signal == signal:
+                _draw(axes, curve)
+    grid[0, 0].set_yscale("log")
+    grid[0, 0].set_ylim(_limits(curves))
+    figure.supxlabel("time (s)", fontsize="medium")
+    unit = style.unit_text(curves[0].run.unit)
+    figure.supylabel(f"smoothed squared error ({unit})", fontsize="medium")
+    style.legend_above(
+        figure,
+        style.handles(
+            (curve.run.model for curve in curves),
+            diverged=any(curve.run.diverged for curve in curves),
+        ),
+    )
+    return figure
+
+
+def _read(path: Path) -> _Curve | None:
+    run = read_run(path)
+    if run.error_kind != "one-step a priori":
+        return None
+    about = read_json(path)["smoothed_squared_error"]
+    return _Curve(run, np.array(about["time_s"]), np.array(about["value"]))
+
+
+def _draw(axes: Axes, curve: _Curve) -> None:
+    look = style.look(curve.run.model)
+    axes.plot(curve.time, curve.value, **look.line)
+    if curve.run.diverged:
+        style.mark_above(axes, curve.time[-1:], look.color)
+
+
+def _limits(curves: Sequence[_Curve]) -> tuple[float, float]:
+    """Span the finite runs; all of them where every one diverged."""
+    spanned = [curve for curve in curves if not curve.run.diverged] or curves
+    values = np.concatenate([curve.value for curve in spanned])
+    values = values[np.isfinite(values) & (values > 0)]
+    if not len(values):
+        raise InputError("no squared error above zero; nothing to draw")
+    return float(values.min()) / 2, float(values.max()) * 2

@@ -1,0 +1,67 @@
+"""Panels that several figures share: a record with a model's output over it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from hystbench.figures import style
+from hystbench.figures.data import Output, thin
+from hystbench.record import Record
+
+
+def loop(axes: Axes, record: Record, output: Output, part: slice) -> None:
+    """Draw output against input."""
+    axes.plot(record.u[part], record.y[part], **style.BEHIND)
+    if len(output.y) < part.stop:
+        say_diverged(axes, record, output)
+    else:
+        axes.plot(record.u[part], output.y[part], **style.look(output.run.model).line)
+
+
+def in_time(
+    axes: Axes, record: Record, output: Output, part: slice, width: float = 1.0
+) -> None:
+    """Draw both outputs over time; thinner lines (points) keep dense ones apart."""
+    behind = {**style.BEHIND, "linewidth": width * style.BEHIND["linewidth"]}
+    axes.plot(*thin(record.time[part], record.y[part]), **behind)
+    if len(output.y) < part.stop:
+        say_diverged(axes, record, output)
+    else:
+        line = style.look(output.run.model).line
+        axes.plot(*thin(record.time[part], output.y[part]), linewidth=width, **line)
+
+
+def error_in_time(axes: Axes, record: Record, output: Output, part: slice) -> None:
+    """Draw the error, the record's output minus the model's, over time."""
+    if len(output.error) < part.stop:
+        say_diverged(axes, record, output)
+    else:
+        x, y = thin(record.time[part], output.error[part])
+        axes.plot(x, y, color=style.look(output.run.model).color, linewidth=0.6)
+
+
+def say_diverged(axes: Axes, record: Record, output: Output) -> None:
+    """Mark a panel whose run ended before the part that is shown."""
+    axes.text(
+        0.5,
+        0.5,
+        f"\N{MULTIPLICATION SIGN} diverged\nafter {len(output.y) * record.dt:.3g} s",
+        color=style.look(output.run.model).color,
+        fontsize="small",
+        transform=axes.transAxes,
+        horizontalalignment="center",
+        verticalalignment="center",
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1},
+        in_layout=False,
+    )
+
+
+def handles(record: Record, models: Iterable[str]) -> list[Line2D]:
+    """Legend of a record, named by its origin, and of models."""
+    return [
+        Line2D([], [], label=record.origin, **style.BEHIND),
+        *style.handles(models),
+    ]

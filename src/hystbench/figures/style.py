@@ -1,0 +1,184 @@
+"""How every figure looks, and how it is written: the same bytes each time."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
+
+from hystbench.errors import InputError, nearest
+from hystbench.files import atomic_path
+from hystbench.record import Channel
+
+#: Widths of a journal's column and page (inches).
+COLUMN = 3.5
+PAGE = 7.2
+
+#: Colours that the colour-blind can tell apart: M. Okabe, K. Ito, "Color universal
+#: design", 2008; https://jfly.uni-koeln.de/color/. Grey stands behind a model's line.
+BLACK = "#000000"
+GREY = "#999999"
+ORANGE = "#E69F00"
+GREEN = "#009E73"
+BLUE = "#0072B2"
+VERMILION = "#D55E00"
+PURPLE = "#CC79A7"
+PALETTE = (BLACK, GREY, ORANGE, GREEN, BLUE, VERMILION, PURPLE)
+
+_STYLE = Path(__file__).with_name("hystbench.mplstyle")
+_METADATA: dict[str, dict[str, None]] = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None, "Creator": None},
+}
+
+
+@dataclass(frozen=True)
+class Look:
+    """Name and line of a model, the same in every figure."""
+
+    label: str
+    color: str
+    dashes: str | tuple[int, tuple[float, ...]]
+    marker: str
+
+    @property
+    def line(self) -> dict[str, Any]:
+        """Keywords for a line."""
+        return {"label": self.label, "color": self.color, "linestyle": self.dashes}
+
+    @property
+    def marked(self) -> dict[str, Any]:
+        """Keywords for a line with markers."""
+        return {**self.line, "marker": self.marker}
+
+
+#: In the order of the paper's tables.
+LOOKS = {
+    "gpo": Look("GPO filter", BLUE, "-", "o"),
+    "backlash": Look("backlash filter", ORANGE, (0, (5, 1.5)), "s"),
+    "volterra": Look("Volterra filter", GREEN, (0, (5, 1.5, 1, 1.5)), "^"),
+    "delayed": Look("delayed filter", VERMILION, (0, (1, 1.2)), "D"),
+    "rdgpi": Look("RDGPI model", PURPLE, (0, (3, 1.2, 1, 1.2, 1, 1.2)), "v"),
+}
+
+#: A record lies behind the models' lines, so that what they miss stands out.
+BEHIND: dict[str, Any] = {"color": GREY, "linewidth": 2.6, "linestyle": "-"}
+#: Where a run diverged.
+DIVERGED: dict[str, Any] = {"marker": "x", "markersize": 5, "linestyle": "none"}
+
+
+@contextmanager
+def in_style() -> Iterator[None]:
+    """Draw and save inside: matplotlib's defaults and ours, no user's own."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rc_file(_STYLE, use_default_template=False)
+        yield
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as PNG or SVG without date or version.
+
+    Raises
+    ------
+    InputError
+        If the suffix is neither.
+    """
+    if path.suffix not in _METADATA:
+        raise InputError(
+            f"{path}: {path.suffix!r} is no format; {nearest(path.suffix, _METADATA)}"
+        )
+    with atomic_path(path) as temporary:
+        figure.savefig(temporary, metadata=_METADATA[path.suffix])
+
+
+def unit_text(unit: str) -> str:
+    """Write a unit as it is printed: ``um^2`` and ``um2`` as µm²."""
+    micro = re.sub(r"\bu(?=[A-Z]|[gms]\b|[gms]\^?\d)", "µ", unit)
+    return re.sub(
+        r"(?<=[A-Za-z])\^?([23])\b", lambda match: "²³"[int(match[1]) - 2], micro
+    )
+
+
+def axis_label(channel: Channel) -> str:
+    """Label an axis with a channel's name and unit."""
+    return f"{channel.name} ({unit_text(channel.unit)})"
+
+
+def signal_title(name: str) -> str:
+    """Write the name of a signal of the paper in words; others stay as they are."""
+    patterns = {
+        r"sine-0*(\d+)hz": r"\1 Hz sine",
+        r"chirp-(\d+)-(\d+)hz": r"\1 to \2 Hz chirp",
+        r"multisine-random-(\d+)-(\d+)hz": r"random sum, \1 to \2 Hz",
+        r"multisine-([\d-]+)hz": r"sum of \1 Hz",
+    }
+    for pattern, words in patterns.items():
+        if match := re.fullmatch(pattern, name):
+            text = match.expand(words)
+            return text.replace("-", ", ") if text.startswith("sum") else text
+    return name
+
+
+def look(model: str) -> Look:
+    """Give the look of a model.
+
+    Raises
+    ------
+    InputError
+        If there is no such model.
+    """
+    if model not in LOOKS:
+        raise InputError(f"no model {model!r}; {nearest(model, LOOKS)}")
+    return LOOKS[model]
+
+
+def in_order(models: Iterable[str]) -> list[str]:
+    """Put models in the order of the paper's tables, each once."""
+    there = set(models)
+    for model in there:
+        look(model)
+    return [model for model in LOOKS if model in there]
+
+
+def handles(
+    models: Iterable[str], *, marked: bool = False, diverged: bool = False
+) -> list[Line2D]:
+    """Make the legend of models: lines, or marked lines; and what a cross is."""
+    looks = [look(model) for model in in_order(models)]
+    lines = [Line2D([], [], **(each.marked if marked else each.line)) for each in looks]
+    if diverged:
+        lines.append(Line2D([], [], color=BLACK, label="diverged", **DIVERGED))
+    return lines
+
+
+def mark_above(axes: Axes, x: ArrayLike, color: str) -> None:
+    """Mark a divergence below the upper edge: it has no value to stand at."""
+    y = np.full(np.shape(x), 0.95)
+    axes.plot(x, y, color=color, transform=axes.get_xaxis_transform(), **DIVERGED)
+
+
+def letter(axes: Sequence[Axes]) -> None:
+    """Letter panels (a), (b), ... before their titles."""
+    for index, panel in enumerate(axes):
+        title = panel.get_title(loc="left")
+        panel.set_title(f"({chr(ord('a') + index)}) {title}".rstrip(), loc="left")
+
+
+def legend_above(figure: Figure, handles: Sequence[Line2D], columns: int = 0) -> None:
+    """Put one legend above all panels, where it hides no data."""
+    figure.legend(
+        handles=list(handles),
+        loc="outside upper center",
+        ncols=columns or len(handles),
+    )
