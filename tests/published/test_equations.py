@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from hystbench.published import load_text
 from hystbench.published.equations import (
@@ -50,3 +52,29 @@ def test_thresholds_are_equally_spaced_from_zero():
     r = thresholds(3, 0.632, ENVELOPE)
     top = max(f(np.array([0.632]), ENVELOPE)[0] for f in (gamma_left, gamma_right))
     np.testing.assert_allclose(r, [0, top / 4, top / 2, 3 * top / 4])
+
+
+def test_published_envelope_is_the_one_the_filters_run_with():
+    from hystbench.operators import PUBLISHED_ENVELOPE
+
+    assert PUBLISHED_ENVELOPE.to_dict() == ENVELOPE
+
+
+@given(
+    st.lists(st.floats(-0.632, 0.632), min_size=1, max_size=60),
+    st.lists(st.floats(0, 0.5), min_size=1, max_size=4),
+)
+def test_plain_equations_and_compiled_operators_agree(values, radii):
+    from hystbench import operators
+
+    v, r = np.array(values), np.array(radii)
+    left, right = gamma_left(v, ENVELOPE), gamma_right(v, ENVELOPE)
+    compiled, _ = operators.play(v, r)
+    np.testing.assert_allclose(play(v, r), compiled, atol=1e-14)
+    compiled, _ = operators.generalized_play(left, right, r)
+    np.testing.assert_allclose(generalized_play(v, r, ENVELOPE), compiled, atol=1e-14)
+    compiled, _ = operators.generalized_play(
+        left, right, r, form="eq12", v=v, v_before=0.0
+    )
+    plain = generalized_play_eq12(v, r, ENVELOPE)
+    np.testing.assert_allclose(plain, compiled, atol=1e-14)

@@ -8,19 +8,32 @@ from pathlib import Path
 
 from hystbench.compare.claims import (
     device,
+    equations,
     errors,
     filters,
     identification,
     operators,
+    response,
     signals,
 )
 from hystbench.compare.claims.claim import Claim, Judgement, judge
 from hystbench.compare.evidence import Evidence
 from hystbench.files import atomic_path
 
+_MODULES = (
+    operators,
+    equations,
+    identification,
+    filters,
+    signals,
+    response,
+    errors,
+    device,
+)
+
 CLAIMS: tuple[Claim, ...] = tuple(
     item
-    for module in (operators, identification, filters, signals, errors, device)
+    for module in _MODULES
     for item in vars(module).values()
     if isinstance(item, Claim)
 )
