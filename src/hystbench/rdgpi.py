@@ -1,0 +1,388 @@
+"""Rate-dependent generalized Prandtl-Ishlinskii model (RDGPI), the paper's baseline.
+
+The paper gives eleven parameters and points to another paper for the equations. What
+is here is a reading of those parameters, made from descriptions of the same family
+of models; docs/rdgpi.md says what supports it and what does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import least_squares
+
+from hystbench.errors import InputError, nearest
+from hystbench.operators import rate_dependent_prandtl_ishlinskii
+from hystbench.record import FloatArray, Record
+
+#: The paper's symbols where the names here differ; its mu is no convergence factor.
+PAPER_SYMBOLS = {"envelope_gain": "xi", "envelope_offset": "mu"}
+
+
+Start = Literal["rest", "settled"]
+STARTS: tuple[Start, ...] = ("rest", "settled")
+
+
+class Path(NamedTuple):
+    """An input and the magnitude of its rate, both of shape (n,)."""
+
+    u: FloatArray
+    rate: FloatArray
+
+
+@dataclass(frozen=True)
+class RateDependentGPI:
+    """Prandtl-Ishlinskii model whose thresholds and weights follow the input's rate.
+
+    With the rate ``|dv/dt|`` in units of the input per second,
+
+    - envelope: ``gamma(v) = envelope_gain v + envelope_offset``, both sides alike;
+    - thresholds: ``r_i = i c alpha1 ln(beta1 + lambda1 |dv/dt|)``, i from 0 to N;
+    - weights: ``w_i = rho exp(-tau r_i) (1 - alpha2 ln(beta2 + lambda2 |dv/dt|)) /
+      (N + 1)``;
+    - output: ``y = sum of w_i F_i``, F_i the generalized play operator of Eq. 4.
+
+    At rate zero it is the generalized Prandtl-Ishlinskii model of Eq. 9 with evenly
+    spaced thresholds and exponential weights.
+
+    Parameters
+    ----------
+    alpha1, beta1, lambda1, c : float
+        Spacing of the thresholds; ``lambda1`` in seconds per unit of the input.
+    alpha2, beta2, lambda2 : float
+        Loss of weight with the rate; ``lambda2`` in seconds per unit of the input.
+    rho, tau : float
+        Weight of the first operator times N + 1, and its decay over the thresholds.
+    envelope_gain, envelope_offset : float
+        The paper's xi and mu.
+    order : int
+        Order N.
+    start : {"rest", "settled"}
+        Operators before the first sample: at zero, or as the same input leaves them.
+
+    Raises
+    ------
+    InputError
+        If a parameter is not finite, a spacing could be negative or a logarithm
+        undefined.
+    """
+
+    alpha1: float
+    beta1: float
+    lambda1: float
+    alpha2: float
+    beta2: float
+    lambda2: float
+    c: float
+    rho: float
+    tau: float
+    envelope_gain: float
+    envelope_offset: float
+    order: int = 30
+    start: Start = "rest"
+
+    def __post_init__(self) -> None:
+        """Refuse parameters that define no model."""
+        for name, value in asdict(self).items():
+            if name != "start" and not np.isfinite(value):
+                raise InputError(f"rdgpi.{name}: {value} is not a finite number")
+        if self.start not in STARTS:
+            raise InputError(
+                f"rdgpi.start: {self.start!r} unknown; {nearest(self.start, STARTS)}"
+            )
+        if self.order < 0:
+            raise InputError(f"rdgpi.order: {self.order} given, expected 0 or more")
+        for name in ("lambda1", "lambda2"):
+            if getattr(self, name) < 0:
+                raise InputError(f"rdgpi.{name}: expected 0 or more")
+        if self.beta1 < 1 or self.alpha1 * self.c < 0:
+            raise InputError(
+                "rdgpi: beta1 of 1 or more and alpha1 c of 0 or more expected, "
+                "or thresholds are negative"
+            )
+        if self.beta2 <= 0:
+            raise InputError("rdgpi.beta2: expected above 0, a logarithm is taken")
+
+    def spacing(self, rate: ArrayLike) -> FloatArray:
+        """Distance of neighbouring thresholds at each rate of the input."""
+        growth = np.log(self.beta1 + self.lambda1 * np.abs(rate))
+        return self.c * self.alpha1 * growth
+
+    def gain(self, rate: ArrayLike) -> FloatArray:
+        """Weight of the operator of threshold zero at each rate of the input."""
+        loss = self.alpha2 * np.log(self.beta2 + self.lambda2 * np.abs(rate))
+        return self.rho * (1 - loss) / (self.order + 1)
+
+    def simulate(self, u: ArrayLike, dt: float) -> FloatArray:
+        """Compute the output for an input.
+
+        Parameters
+        ----------
+        u : array_like, shape (n,)
+            Input.
+        dt : float
+            Sampling interval in seconds.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Output, in free run: no measured output goes in.
+
+        Raises
+        ------
+        InputError
+            If the input has fewer than two samples or is not finite.
+        """
+        u = np.ascontiguousarray(u, dtype=np.float64)
+        path = Path(u, input_rate(u, dt))
+        return self.respond(path, path)
+
+    def respond(self, path: Path, lead: Path) -> FloatArray:
+        """Compute the output along a path; a settled start follows the lead."""
+        _, state = self._operators(lead) if self.start == "settled" else (None, None)
+        total, _ = self._operators(path, state)
+        return self.gain(path.rate) * total
+
+    def _operators(
+        self, path: Path, state: FloatArray | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        envelope = self.envelope_gain * path.u + self.envelope_offset
+        spacing = self.spacing(path.rate)
+        ratio = np.exp(-self.tau * spacing)
+        return rate_dependent_prandtl_ishlinskii(
+            envelope, envelope, spacing, ratio, self.order + 1, state=state
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the parameters by name."""
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, parameters: Mapping[str, Any]) -> RateDependentGPI:
+        """Make a model from its parameters by name.
+
+        Raises
+        ------
+        InputError
+            If a name is missing or unknown.
+        """
+        known = [field.name for field in fields(cls)]
+        for name in parameters:
+            if name not in known:
+                raise InputError(f"rdgpi.{name}: unknown; {nearest(name, known)}")
+        for name in known:
+            if name not in parameters and name not in ("order", "start"):
+                raise InputError(f"rdgpi.{name}: missing")
+        return cls(**parameters)
+
+
+PUBLISHED_RDGPI = RateDependentGPI(
+    alpha1=8.3721,
+    beta1=1.002,
+    lambda1=0.2494e-5,
+    alpha2=0.0785,
+    beta2=1.2443,
+    lambda2=0.94e-2,
+    c=1.1867,
+    rho=3.3478,
+    tau=0.1910,
+    envelope_gain=7.0270,
+    envelope_offset=-0.1284,
+)
+"""The eleven values that the paper prints, under the reading of this module."""
+
+
+def input_rate(u: FloatArray, dt: float) -> FloatArray:
+    """Magnitude of the input's rate: central differences, one-sided at the ends.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two samples or one is not finite.
+    """
+    if u.ndim != 1 or len(u) < 2:
+        raise InputError(f"rdgpi: input of shape {u.shape}, two samples expected")
+    if not np.isfinite(u).all():
+        raise InputError("rdgpi: the input is not finite")
+    if not dt > 0:
+        raise InputError(f"rdgpi: sampling interval {dt}, expected above 0")
+    return np.abs(np.gradient(u, dt))
+
+
+@dataclass(frozen=True)
+class RateDependentFit:
+    """A model fitted to records, and how well it fits them.
+
+    Parameters
+    ----------
+    model : RateDependentGPI
+        The fitted model.
+    relative_error : dict of str to float
+        RE of the free-run output by record, over the whole record.
+    starts : int
+        Starting points that were tried.
+    """
+
+    model: RateDependentGPI
+    relative_error: dict[str, float]
+    starts: int
+
+
+#: Largest step of the input between samples of a fit, as a share of its range, and
+#: the most samples of a record that are used.
+LARGEST_STEP, MOST_SAMPLES = 0.03, 1000
+
+# log alpha1, log(beta1 - 1), log lambda1, tau, envelope_offset, log lambda2, with
+# the largest magnitude of the input and the largest rate as units
+_LOWER = np.array([np.log(1e-3), np.log(1e-4), np.log(1e-3), -10.0, -2.0, np.log(1e-2)])
+_UPPER = np.array([np.log(50.0), np.log(10.0), np.log(1e3), 30.0, 2.0, np.log(1e3)])
+_FIRST = np.array([np.log(0.5), np.log(0.05), np.log(0.1), 3.0, 0.0, 0.0])
+
+
+def identify_rdgpi(
+    records: Sequence[Record],
+    order: int = 30,
+    *,
+    starts: int = 6,
+    seed: int = 0,
+    start: Start | None = None,
+) -> RateDependentFit:
+    """Fit the model to records by least squares of its free-run output.
+
+    The mean squared errors of the records are summed. The data cannot tell
+    ``envelope_gain`` from the scale of all else, ``c`` from ``alpha1``, nor
+    ``beta2`` from ``rho``; those three are set to 1. ``rho`` and ``alpha2`` enter
+    linearly and are solved for at each step, so the search is over six parameters,
+    from several starting points, within bounds.
+
+    The fit uses every so many samples, with steps of the input below 3 % of its
+    range, and the first 1000 of those; the relative errors are over whole records.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Records to fit, such as the paper's sines of 10 to 100 Hz.
+    order : int
+        Order N.
+    starts : int
+        Starting points: a plain one, then random ones.
+    seed : int
+        Seed of the random ones.
+    start : {"rest", "settled"}, optional
+        Operators before the first sample; by default whichever fits better from
+        the plain starting point.
+
+    Returns
+    -------
+    RateDependentFit
+        The best model.
+
+    Raises
+    ------
+    InputError
+        If there is no record or an input is constant.
+    """
+    if not records or starts < 1:
+        raise InputError("rdgpi: expected one record or more, one start or more")
+    for record in records:
+        if np.ptp(record.u) == 0:
+            raise InputError(f"rdgpi: record {record.name}: the input is constant")
+    random = np.random.default_rng(seed)
+    points = [_FIRST]
+    while len(points) < starts:
+        drawn = _FIRST + random.normal(0.0, [1.5, 1.5, 2.0, 2.0, 0.2, 1.5])
+        points.append(np.clip(drawn, _LOWER + 1e-9, _UPPER - 1e-9))
+    kinds = STARTS if start is None else (start,)
+    tried: list[tuple[float, RateDependentGPI]] = []
+    for point in points:
+        for kind in kinds:
+            fit = _Fit.of(records, order, kind)
+            found = least_squares(
+                fit.error, point, bounds=(_LOWER, _UPPER), max_nfev=40
+            )
+            tried.append((float(found.cost), fit.model(found.x)))
+        model = min(tried, key=lambda pair: pair[0])[1]
+        kinds = (model.start,)
+    errors = {}
+    for record in records:
+        error = model.simulate(record.u, record.dt) - record.y
+        errors[record.name] = float(np.sqrt(np.sum(error**2) / np.sum(record.y**2)))
+    return RateDependentFit(model, errors, starts)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Thinned records, and the largest input and rate among them as units."""
+
+    order: int
+    start: Start
+    largest: float
+    fastest: float
+    parts: tuple[tuple[Path, Path, FloatArray], ...]
+
+    @classmethod
+    def of(cls, records: Sequence[Record], order: int, start: Start) -> _Fit:
+        """Thin records and find the units."""
+        parts = []
+        for record in records:
+            step = LARGEST_STEP * np.ptp(record.u) / np.max(np.abs(np.diff(record.u)))
+            keep = slice(0, None, max(1, int(step)))
+            u, rate = record.u[keep], input_rate(record.u, record.dt)[keep]
+            first, last = slice(0, MOST_SAMPLES), slice(-MOST_SAMPLES, None)
+            path, lead = Path(u[first], rate[first]), Path(u[last], rate[last])
+            parts.append((path, lead, record.y[keep][first]))
+        largest = max(float(np.max(np.abs(record.u))) for record in records)
+        fastest = max(float(path.rate.max()) for path, _, _ in parts)
+        return cls(order, start, largest, fastest, tuple(parts))
+
+    def model(self, point: FloatArray) -> RateDependentGPI:
+        """Build the model at a point, with the rho and alpha2 that fit best."""
+        plain, design, target = self._linear(point)
+        first, second = _least_squares(design, target)
+        return replace(plain, rho=first, alpha2=-second / first if first else 0.0)
+
+    def error(self, point: FloatArray) -> FloatArray:
+        """Error of all samples, scaled to add up to the sum of mean squares."""
+        _, design, target = self._linear(point)
+        return design @ _least_squares(design, target) - target
+
+    def _linear(
+        self, point: FloatArray
+    ) -> tuple[RateDependentGPI, FloatArray, FloatArray]:
+        """Columns that rho and -rho alpha2 multiply, and what they should give."""
+        alpha1, beta1, lambda1 = np.exp(point[:3])
+        plain = RateDependentGPI(
+            alpha1=float(alpha1 * self.largest),
+            beta1=float(1 + beta1),
+            lambda1=float(lambda1 / self.fastest),
+            alpha2=0.0,
+            beta2=1.0,
+            lambda2=float(np.exp(point[5]) / self.fastest),
+            c=1.0,
+            rho=1.0,
+            tau=float(point[3] / self.largest),
+            envelope_gain=1.0,
+            envelope_offset=float(point[4] * self.largest),
+            order=self.order,
+            start=self.start,
+        )
+        columns, targets = [], []
+        for path, lead, y in self.parts:
+            weight = 1 / np.sqrt(len(y))
+            output = plain.respond(path, lead) * weight
+            columns.append([output, output * np.log(1 + plain.lambda2 * path.rate)])
+            targets.append(y * weight)
+        return plain, np.hstack(columns).T, np.concatenate(targets)
+
+
+def _least_squares(design: FloatArray, target: FloatArray) -> tuple[float, float]:
+    """Solve for two unknowns; nearly parallel columns share what they explain."""
+    size = np.maximum(np.linalg.norm(design, axis=0), np.finfo(np.float64).tiny)
+    columns = design / size
+    normal = columns.T @ columns + 1e-12 * np.eye(2)
+    first, second = np.linalg.solve(normal, columns.T @ target) / size
+    return float(first), float(second)
