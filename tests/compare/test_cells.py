@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from hystbench.compare import write_cells
+from hystbench.compare.comparison import write_cells
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.evidence import Evidence
 

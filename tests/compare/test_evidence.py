@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from hystbench.compare import compare
+from hystbench.compare.comparison import compare
 from hystbench.compare.evidence import (
     read_envelope_errors,
     read_evidence,

@@ -6,7 +6,7 @@ import io
 import docutils.core
 import pytest
 
-from hystbench.compare import compare_evidence
+from hystbench.compare.comparison import compare_evidence
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.evidence import Evidence
 from hystbench.compare.tables import Table, paper_table, paper_tables

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from hystbench import compare as comparison
 from hystbench import options
+from hystbench.compare import comparison
 
 
 @click.command()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from pathlib import Path
 
 import click
@@ -15,7 +16,9 @@ BLOCK = re.compile(
     r"(?P<open><!-- from (?P<source>\S+) -->\n).*?(?P<close><!-- end -->)", re.DOTALL
 )
 #: A picture in docs/ that is a copy of one in results/.
-PICTURE = re.compile(r"<!-- picture (?P<source>\S+) -->\n!\[[^\]]*\]\((?P<copy>[^)]+)\)")
+PICTURE = re.compile(
+    r"<!-- picture (?P<source>\S+) -->\n!\[[^\]]*\]\((?P<copy>[^)]+)\)"
+)
 
 
 @click.command()
@@ -31,7 +34,7 @@ def docs(pages: tuple[Path, ...]) -> None:
     """
     for page in pages or [Path("README.md"), *sorted(Path("docs").glob("*.md"))]:
         text = page.read_text(encoding="utf-8")
-        filled = BLOCK.sub(lambda found: _filled(page, found), text)
+        filled = BLOCK.sub(partial(_filled, page), text)
         for found in PICTURE.finditer(filled):
             _copy(page, Path(found["source"]), page.parent / found["copy"])
         if filled != text:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import click
 
 from hystbench import options
 from hystbench.adaptive import make_filter, run_filter
-from hystbench.files import atomic_path
+from hystbench.files import write_csv
 from hystbench.record import load_record
 
 COLUMNS = ["signal", "envelopes", "mse", "re", "status"]
@@ -38,10 +37,4 @@ def envelopes(
             told = kept["diverged"]
             status = told["sentence"] if told else "finite"
             rows.append([record.name, source, kept["mse"], kept["re"], status])
-    with (
-        atomic_path(out) as temporary,
-        temporary.open("w", newline="", encoding="utf-8") as stream,
-    ):
-        writer = csv.writer(stream)
-        writer.writerow(COLUMNS)
-        writer.writerows(rows)
+    write_csv(out, COLUMNS, rows)

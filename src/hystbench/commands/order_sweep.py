@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import click
 
 from hystbench import options
 from hystbench.adaptive import make_filter
-from hystbench.files import atomic_path
+from hystbench.files import write_csv
 from hystbench.filters import run_many
 from hystbench.metrics import mean_square_error
 from hystbench.record import load_record
@@ -34,24 +33,18 @@ def order_sweep(
     """Run each filter on RECORD at each order."""
     measured = load_record(record)
     cells = [
-        (model, order)
-        for model in settings["filters"]
-        for order in settings["orders"]
+        (model, order) for model in settings["filters"] for order in settings["orders"]
     ]
     filters = [
         make_filter(model, settings["filters"][model], measured, identified, order)
         for model, order in cells
     ]
     results = run_many(((each, measured.u, measured.y) for each in filters), threads)
-    with (
-        atomic_path(out) as temporary,
-        temporary.open("w", newline="", encoding="utf-8") as stream,
-    ):
-        writer = csv.writer(stream)
-        writer.writerow(COLUMNS)
-        for (model, order), result in zip(cells, results, strict=True):
-            if result.diverged_at is None:
-                row = [mean_square_error(result.error), "finite"]
-            else:
-                row = ["", f"diverged at sample {result.diverged_at}"]
-            writer.writerow([model, order, *row])
+    rows: list[list[Any]] = []
+    for (model, order), result in zip(cells, results, strict=True):
+        if result.diverged_at is None:
+            rows.append([model, order, mean_square_error(result.error), "finite"])
+        else:
+            told = f"diverged at sample {result.diverged_at}"
+            rows.append([model, order, None, told])
+    write_csv(out, COLUMNS, rows)

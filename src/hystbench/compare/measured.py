@@ -83,7 +83,9 @@ def errors_table(dataset: str, runs: Sequence[Run]) -> Table:
             f"Errors on the measured records of {dataset}. {error_kind(models)}. "
             "The paper has no numbers for them."
         ),
-        legend="; ".join(f"{run.signal}, {run.model}: {run.diverged}" for run in diverged),
+        legend="; ".join(
+            f"{run.signal}, {run.model}: {run.diverged}" for run in diverged
+        ),
         frame=pd.DataFrame(content, dtype=str),
     )
 

@@ -1,0 +1,125 @@
+"""Ours beside theirs: cells, claims, summary, tables and verdict of a comparison."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hystbench.compare.cells import ComparedCell, compare_cells
+from hystbench.compare.claims import judge_all, write_claims
+from hystbench.compare.claims.claim import Judgement
+from hystbench.compare.evidence import Evidence, read_evidence
+from hystbench.compare.summary import summarise
+from hystbench.compare.tables import Table, paper_tables
+from hystbench.compare.verdict import print_tables, verdict_markdown, verdict_rst
+from hystbench.files import atomic_path, write_json, write_text
+from hystbench.published.audit import write_audit
+
+__all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
+
+CELL_COLUMNS = (
+    "table",
+    "signal",
+    "model",
+    "metric",
+    "published",
+    "ours",
+    "log10_ratio",
+    "published_consistent",
+    "status",
+)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All that a comparison finds."""
+
+    cells: tuple[ComparedCell, ...]
+    claims: tuple[Judgement, ...]
+    summary: dict[str, Any]
+    tables: tuple[Table, ...]
+
+    def text(self) -> str:
+        """Give the comparison for a terminal."""
+        return print_tables(self.tables, self.claims, self.summary)
+
+    def write(self, out_dir: str | Path) -> None:
+        """Write what was found into a folder; see :func:`compare`."""
+        out = Path(out_dir)
+        write_cells(self.cells, out / "cells.csv")
+        write_claims(self.claims, out / "claims.csv")
+        write_audit(out / "audit.csv")
+        write_json(out / "summary.json", self.summary)
+        write_text(out / "verdict.rst", verdict_rst(self.summary))
+        write_text(out / "verdict.md", verdict_markdown(self.summary))
+        write_text(out / "tables.txt", self.text())
+        for table in self.tables:
+            table.write(out / "tables")
+
+
+def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
+    """Write the cells as CSV; a cell without a finite run has no ours."""
+    with (
+        atomic_path(path) as temporary,
+        temporary.open("w", encoding="utf-8", newline="") as stream,
+    ):
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(CELL_COLUMNS)
+        writer.writerows(
+            [getattr(cell, column) for column in CELL_COLUMNS] for cell in cells
+        )
+
+
+def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Comparison:
+    """Compare evidence that is already read; ``held_out`` as in ``summarise``."""
+    cells = compare_cells(evidence)
+    claims = judge_all(evidence)
+    return Comparison(
+        cells=cells,
+        claims=claims,
+        summary=summarise(cells, claims, held_out),
+        tables=paper_tables(cells),
+    )
+
+
+def compare(
+    out_dir: str | Path,
+    runs: Iterable[str | Path],
+    records: Iterable[str | Path] = (),
+    order_sweep: str | Path | None = None,
+    identified: str | Path | None = None,
+    envelopes: str | Path | None = None,
+    held_out: Iterable[str] = (),
+) -> Comparison:
+    """Read the files of the runs, compare them with the paper, write what came out.
+
+    Parameters
+    ----------
+    out_dir : path
+        Folder for ``cells.csv``, ``claims.csv``, ``audit.csv``, ``summary.json``,
+        ``verdict.rst``, ``verdict.md``, ``tables.txt`` for the terminal and
+        ``tables/`` (Tables 1-4 as CSV, Markdown and LaTeX).
+    runs : iterable of paths
+        One JSON file for each signal and model.
+    records : iterable of paths
+        Records of the signals.
+    order_sweep, identified, envelopes : path, optional
+        Order sweep, identification, and errors by envelopes; claims on what is left
+        out are not testable.
+    held_out : iterable of str
+        Signals whose published errors were not used in choosing the twin; the
+        summary then tells both groups apart.
+
+    Raises
+    ------
+    InputError
+        If a file is not what it should be.
+    """
+    found = compare_evidence(
+        read_evidence(runs, records, order_sweep, identified, envelopes), held_out
+    )
+    found.write(out_dir)
+    return found
