@@ -351,8 +351,11 @@ def rate_dependent_prandtl_ishlinskii(
         raise InputError(f"first: {first} given, 0 or 1 expected")
     end = kernels.pad(_state(state, count))
     y = np.empty(len(left))
-    sizes = (len(left), len(end) // kernels.WIDTH, first, count)
-    kernels.call("hb_rate_dependent", *sizes, left, right, spacing, ratio, end, y)
+    number = np.arange(first, first + len(end), dtype=np.float64)
+    operators = number, kernels.pad(np.ones(count))
+    sizes = (len(left), len(end) // kernels.WIDTH)
+    rates = (spacing, ratio, end, y)
+    kernels.call("hb_rate_dependent", *sizes, *operators, left, right, *rates)
     return y, end[:count].copy()
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.filters import FILTERS, run_many
+from hystbench.filters import FILTERS, AdaptiveFilter, run_many
 from hystbench.operators import PUBLISHED_ENVELOPE
 
 OPTIONS = {
@@ -162,16 +162,12 @@ def test_regressor_equals_the_definitions(case, order, signals):
 def test_fused_loop_equals_the_general_one(case, signals):
     x, d = signals
     adaptive = stable(case, 9, x)
-    general = adaptive._adapt  # the loop of the base, that any new filter gets
-    base = [
-        kind for kind in type(adaptive).__mro__ if kind.__name__ == "AdaptiveFilter"
-    ]
-    state = adaptive.start()
-    line = np.concatenate((state.past, x))
-    fused = general(line, d, state, 1e9)
-    plain = base[0]._adapt(adaptive, line, d, state, 1e9)
-    for one, other in zip(fused, plain, strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-10, atol=1e-12)
+    whole = adaptive.run(x, d)
+    general = type("General", (type(adaptive),), {"_adapt": AdaptiveFilter._adapt})
+    plain = general(**vars(adaptive)).run(x, d)
+    np.testing.assert_allclose(plain.output, whole.output, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(plain.weights, whole.weights, rtol=1e-10, atol=1e-12)
+    np.testing.assert_array_equal(plain.state.operators, whole.state.operators)
 
 
 @pytest.mark.parametrize("order", [0, 7, 30])
@@ -189,8 +185,10 @@ def test_chunks_equal_the_whole(case, order, cuts, normalized, signals):
         result = adaptive.run(x[part], d[part], state, limit=1e6)
         state = result.state
         output.append(result.output)
-    np.testing.assert_array_equal(np.concatenate(output), whole.output)
-    np.testing.assert_array_equal(state.weights, whole.weights)
+    # where a chunk ends a sum is cut in two, so the last bits may differ
+    alike = {"rtol": 1e-12, "atol": 1e-13}
+    np.testing.assert_allclose(np.concatenate(output), whole.output, **alike)
+    np.testing.assert_allclose(state.weights, whole.weights, **alike)
     np.testing.assert_array_equal(state.operators, whole.state.operators)
 
 

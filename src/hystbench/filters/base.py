@@ -21,8 +21,8 @@ from hystbench import kernels
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
-CHUNK = 4096
-"""Samples whose regressors are held at a time."""
+CHUNK = 8192
+"""Samples taken at a time: what is made of them stays in the processor's cache."""
 
 FILTERS: dict[str, type[AdaptiveFilter]] = {}
 """Every filter by its name."""
@@ -256,15 +256,26 @@ class AdaptiveFilter(ABC):
             largest = float(np.abs(d).max(initial=0.0))
             limit = 1e6 * (largest or 1.0)
         positive("limit", limit)
-        line = np.concatenate((state.past, x))
-        output, error, weights, operators = self._adapt(line, d, state, limit)
-        diverged_at = len(output) if len(output) < len(d) else None
+        output, error = np.empty(len(d)), np.empty(len(d))
+        weights, past, operators = state.weights, state.past, state.operators
+        done = 0
+        while done < len(d):
+            part = slice(done, done + CHUNK)
+            line = np.concatenate((past, x[part]))
+            past = line[-self.taps :].copy()
+            taken, weights, operators = self._adapt(
+                line, d[part], weights, operators, limit, output[part], error[part]
+            )
+            done += taken
+            if taken < len(line) - self.taps:
+                break
+        diverged_at = done if done < len(d) else None
         if not np.isfinite(weights).all():
             # overflow in the last update of all: the next prediction would show it
-            diverged_at = len(output)
+            diverged_at = done
             weights = np.nan_to_num(weights)
-        end = State(weights, line[len(x) :], operators, limit)
-        return Result(output, error, weights, diverged_at, end)
+        end = State(weights, past, operators, limit)
+        return Result(output[:done], error[:done], weights, diverged_at, end)
 
     def bound(self, x: ArrayLike) -> Bound:
         """Bound on the step size for an input, Eq. 19.
@@ -299,30 +310,33 @@ class AdaptiveFilter(ABC):
         return total / count
 
     def _adapt(
-        self, line: FloatArray, d: FloatArray, state: State, limit: float
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Run the LMS loop; output and error end where the filter diverges.
+        self,
+        line: FloatArray,
+        d: FloatArray,
+        weights: FloatArray,
+        operators: FloatArray,
+        limit: float,
+        output: FloatArray,
+        error: FloatArray,
+    ) -> tuple[int, FloatArray, FloatArray]:
+        """Run the LMS loop over a chunk, writing output and error.
 
         This one works with any regressor. The filters here have their own, which
         make the regressor inside the loop.
+
+        Returns
+        -------
+        taken : int
+            Samples before the filter diverged; all of them if it did not.
+        weights, operators : ndarray
+            Weights and outputs of the operators after them.
         """
-        output, error = np.empty(len(d)), np.empty(len(d))
-        weights, steps = kernels.pad(state.weights), kernels.pad(2 * self.steps)
-        operators, done = state.operators, 0
-        while done < len(d):
-            chunk = line[done : done + self.taps + CHUNK]
-            h, operators = self.regressor(chunk, operators)
-            rows = np.zeros((len(h), len(weights)))
-            rows[:, : self.size] = h
-            part = slice(done, done + len(h))
-            taken = self._rows(
-                rows, len(weights), steps, d[part], limit, weights,
-                output[part], error[part],
-            )  # fmt: skip
-            done += taken
-            if taken < len(h):
-                break
-        return output[:done], error[:done], weights[: self.size].copy(), operators
+        h, operators = self.regressor(line, operators)
+        lanes, steps = kernels.pad(weights), kernels.pad(2 * self.steps)
+        rows = np.zeros((len(h), len(lanes)))
+        rows[:, : self.size] = h
+        taken = self._rows(rows, len(lanes), steps, d, limit, lanes, output, error)
+        return taken, lanes[: self.size].copy(), operators
 
     def _rows(
         self,
@@ -339,9 +353,9 @@ class AdaptiveFilter(ABC):
         numbers = (self._kernel_regularization(), limit)
         arrays = (weights, output, error)
         sizes = (len(d), vectors)
-        return kernels.call(
-            "hb_lms_rows", *sizes, rows, stride, d, steps, *numbers, *arrays
-        )
+        used = (steps > 0).astype(np.float64)
+        signals = (rows, stride, d, steps, used)
+        return kernels.call("hb_lms_rows", *sizes, *signals, *numbers, *arrays)
 
     def _kernel_regularization(self) -> float:
         # the kernels take a negative one for the plain LMS

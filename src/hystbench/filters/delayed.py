@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.filters.base import AdaptiveFilter, State
+from hystbench.filters.base import AdaptiveFilter
 from hystbench.record import FloatArray
 
 
@@ -33,14 +33,19 @@ class DelayedFilter(AdaptiveFilter):
         return windows[:, ::-1], operators
 
     def _adapt(
-        self, line: FloatArray, d: FloatArray, state: State, limit: float
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        self,
+        line: FloatArray,
+        d: FloatArray,
+        weights: FloatArray,
+        operators: FloatArray,
+        limit: float,
+        output: FloatArray,
+        error: FloatArray,
+    ) -> tuple[int, FloatArray, FloatArray]:
         # rows are windows of the line itself, one sample apart, oldest first
-        weights = kernels.pad_front(state.weights[::-1])
+        lanes = kernels.pad_front(weights[::-1])
         steps = kernels.pad_front(2 * self.steps)
-        spare = len(weights) - self.taps
-        rows = np.concatenate((np.zeros(spare), line[1:])) if spare else line[1:]
-        output, error = np.empty(len(d)), np.empty(len(d))
-        done = self._rows(rows, 1, steps, d, limit, weights, output, error)
-        tail = weights[spare:][::-1].copy()
-        return output[:done], error[:done], tail, state.operators
+        spare = len(lanes) - self.taps
+        rows = np.concatenate((np.zeros(spare), line[1:]))
+        taken = self._rows(rows, 1, steps, d, limit, lanes, output, error)
+        return taken, lanes[spare:][::-1].copy(), operators

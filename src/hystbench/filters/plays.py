@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.errors import InputError, nearest
-from hystbench.filters.base import AdaptiveFilter, State, positive
+from hystbench.filters.base import AdaptiveFilter, positive
 from hystbench.operators import FORMS, Form, follow_direction
 from hystbench.record import FloatArray
 
@@ -109,16 +109,21 @@ class PlayFilter(AdaptiveFilter):
         return left, right, r, state
 
     def _adapt(
-        self, line: FloatArray, d: FloatArray, state: State, limit: float
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        left, right, r, operators = self._lanes(line, state.operators)
-        weights = kernels.pad_front(state.weights[::-1])
-        output, error = np.empty(len(d)), np.empty(len(d))
+        self,
+        line: FloatArray,
+        d: FloatArray,
+        weights: FloatArray,
+        operators: FloatArray,
+        limit: float,
+        output: FloatArray,
+        error: FloatArray,
+    ) -> tuple[int, FloatArray, FloatArray]:
+        left, right, r, state = self._lanes(line, operators)
+        lanes = kernels.pad_front(weights[::-1])
         sizes = (len(d), len(r) // kernels.WIDTH)
         envelopes = (left, right, int(self.along_line))
         numbers = (2 * self.step_size, self._kernel_regularization(), limit)
-        arrays = (operators, weights, output, error)
-        done = kernels.call("hb_lms_play", *sizes, *envelopes, d, r, *numbers, *arrays)
-        last = slice(None, self.taps)
-        tail = weights[::-1][last].copy(), operators[::-1][last].copy()
-        return output[:done], error[:done], *tail
+        arrays = (state, lanes, output, error)
+        taken = kernels.call("hb_lms_play", *sizes, *envelopes, d, r, *numbers, *arrays)
+        used = slice(len(r) - self.taps, None)
+        return taken, lanes[used][::-1].copy(), state[used][::-1].copy()

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hystbench import kernels
 from hystbench.filters.base import (
     AdaptiveFilter,
     Bound,
-    State,
     eigenvalue_bound,
     positive,
 )
 from hystbench.record import FloatArray
 
-QUAD = 4  # the kernel keeps blocks of 4 x 4 second-order weights
+TILE = 4  # the kernel keeps tiles of 4 x 4 second-order weights
 
 
 @dataclass(frozen=True)
@@ -121,35 +119,57 @@ class VolterraFilter(AdaptiveFilter):
         return np.lib.stride_tricks.sliding_window_view(line[1:], self.taps)[:, ::-1]
 
     def _adapt(
-        self, line: FloatArray, d: FloatArray, state: State, limit: float
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        kept, diagonal = _blocks(self.taps)
-        full, spare = len(kept), len(kept) - self.taps
+        self,
+        line: FloatArray,
+        d: FloatArray,
+        weights: FloatArray,
+        operators: FloatArray,
+        limit: float,
+        output: FloatArray,
+        error: FloatArray,
+    ) -> tuple[int, FloatArray, FloatArray]:
+        spare = -self.taps % TILE
         # the kernel's taps run from the oldest to the newest
-        first = np.zeros(full)
-        first[spare:] = state.weights[: self.taps][::-1]
-        second = np.zeros((full, full))
-        square = state.weights[self.taps :].reshape(self.taps, self.taps)
+        first = np.concatenate((np.zeros(spare), weights[: self.taps][::-1]))
+        second = np.zeros((len(first), len(first)))
+        square = weights[self.taps :].reshape(self.taps, self.taps)
         second[spare:, spare:] = square[::-1, ::-1]
-        symmetric = np.where(diagonal, second, 0.5 * (second + second.T))
-        unmoved = second - symmetric
-        packed = symmetric[kept]
+        packed, unmoved = _pack(second)
         rows = np.concatenate((np.zeros(spare), line[1:]))
-        output, error = np.empty(len(d)), np.empty(len(d))
-        sizes = (len(d), full // QUAD, self.taps)
+        sizes = (len(d), len(first) // TILE, self.taps)
         steps = (2 * self.step_size, 2 * self.second_order_step)
         numbers = (*steps, self._kernel_regularization(), limit)
         arrays = (first, packed, output, error)
-        done = kernels.call("hb_lms_volterra", *sizes, rows, d, *numbers, *arrays)
-        symmetric[kept] = packed
-        second = np.where(kept, symmetric, symmetric.T) + unmoved
-        square = second[spare:, spare:][::-1, ::-1]
-        weights = np.concatenate((first[spare:][::-1], square.ravel()))
-        return output[:done], error[:done], weights, state.operators
+        taken = kernels.call("hb_lms_volterra", *sizes, rows, d, *numbers, *arrays)
+        second = (_unpack(packed, len(first)) + unmoved)[spare:, spare:]
+        after = np.concatenate((first[spare:][::-1], second[::-1, ::-1].ravel()))
+        return taken, after, operators
 
 
-@lru_cache
-def _blocks(taps: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Masks of the block lower triangle, which the kernel keeps, and its diagonal."""
-    block = np.arange(-(-taps // QUAD) * QUAD) // QUAD
-    return block[:, None] >= block[None, :], block[:, None] == block[None, :]
+def _tiles(matrix: FloatArray) -> FloatArray:
+    """Matrix as tiles, a view: [block row, block column, row, column]."""
+    blocks = len(matrix) // TILE
+    return matrix.reshape(blocks, TILE, blocks, TILE).swapaxes(1, 2)
+
+
+def _pack(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Split weights into the tiles that the kernel wants and what it leaves alone.
+
+    Off the diagonal tiles the kernel keeps the symmetric part, once; the rest
+    predicts nothing and never changes.
+    """
+    block = np.arange(len(matrix)) // TILE
+    mean = 0.5 * (matrix + matrix.T)
+    kept = np.where(block[:, None] == block, matrix, mean)
+    tiles = _tiles(kept)
+    return tiles[np.tril_indices(len(tiles))], matrix - kept
+
+
+def _unpack(packed: FloatArray, size: int) -> FloatArray:
+    """Give the whole matrix from the tiles that the kernel keeps."""
+    matrix = np.empty((size, size))
+    tiles = _tiles(matrix)
+    rows, columns = np.tril_indices(len(tiles))
+    tiles[columns, rows] = packed.swapaxes(1, 2)
+    tiles[rows, columns] = packed
+    return matrix

@@ -9,30 +9,32 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #define INLINE static inline __attribute__((always_inline))
 #define EXPORT __attribute__((visibility("default")))
 #define WIDTH 8 /* lanes of a vector; the Python side pads to it */
+#define QUAD 4
 
 typedef ptrdiff_t index_t;
-typedef double lanes __attribute__((vector_size(64), aligned(8), may_alias));
-typedef int64_t masks __attribute__((vector_size(64), aligned(8), may_alias));
-typedef double quad __attribute__((vector_size(32), aligned(8), may_alias));
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+typedef double lanes __attribute__((vector_size(64)));
+typedef double quad __attribute__((vector_size(32)));
+typedef double pair __attribute__((vector_size(16)));
 
-INLINE lanes load(const double *p) { return *(const lanes *)p; }
-INLINE void store(double *p, lanes v) { *(lanes *)p = v; }
-INLINE quad load_quad(const double *p) { return *(const quad *)p; }
-INLINE void store_quad(double *p, quad v) { *(quad *)p = v; }
-INLINE lanes fill(double a) { return (lanes){a, a, a, a, a, a, a, a}; }
-
-INLINE lanes choose(masks m, lanes a, lanes b)
+/* Arrays lie anywhere: a copy is one unaligned instruction. */
+INLINE lanes load(const double *p)
 {
-    return (lanes)((m & (masks)a) | (~m & (masks)b));
+    lanes v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
 }
-INLINE lanes smaller(lanes a, lanes b) { return choose(a < b, a, b); }
-INLINE lanes larger(lanes a, lanes b) { return choose(a > b, a, b); }
+INLINE quad load_quad(const double *p)
+{
+    quad v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+}
+INLINE void store(double *p, lanes v) { __builtin_memcpy(p, &v, sizeof v); }
+INLINE void store_quad(double *p, quad v) { __builtin_memcpy(p, &v, sizeof v); }
 
 INLINE double sum_quad(quad v)
 {
@@ -45,17 +47,28 @@ INLINE double sum(lanes v)
                     + __builtin_shufflevector(v, v, 4, 5, 6, 7));
 }
 
-/* Eq. 4: the generalized play operator f(v, w) = max(gr - r, min(gl + r, w)). */
-INLINE lanes play_step(lanes left, lanes right, lanes r, lanes w)
+/* Eq. 4: every generalized play operator to max(gr - r, min(gl + r, w)).
+ * Operator i reads the envelopes at [i * pace], pace being 0 or 1. */
+INLINE void play_step(index_t size, const double *left, const double *right,
+                      index_t pace, const double *restrict r, double *restrict w)
 {
-    return larger(right - r, smaller(left + r, w));
+    for (index_t i = 0; i < size; i++) {
+        double low = right[i * pace] - r[i], high = left[i * pace] + r[i];
+        double lower = high < w[i] ? high : w[i];
+        w[i] = low > lower ? low : lower;
+    }
+}
+
+INLINE void copy(index_t size, const double *from, double *to)
+{
+    for (index_t i = 0; i < size; i++) to[i] = from[i];
 }
 
 /* An error beyond the limit, or one that compares with nothing. */
 INLINE int diverged(double error, double limit) { return !(fabs(error) <= limit); }
 
-/* Call body(..., vectors) with a constant for the usual sizes, so that the
- * compiler keeps weights and states in registers. */
+/* Call a body with a constant for the usual sizes, so that the compiler keeps
+ * weights and states in registers. */
 #define FOR_VECTORS(vectors, call) \
     switch (vectors) {             \
     case 1: return call(1);        \
@@ -66,5 +79,6 @@ INLINE int diverged(double error, double limit) { return !(fabs(error) <= limit)
     case 6: return call(6);        \
     default: return call(vectors); \
     }
+#define UNROLL _Pragma("GCC unroll 8")
 
 #endif

@@ -1,123 +1,138 @@
 /* The LMS loop, Eqs. 13 and 18: predict, compare, correct.
  *
- * Each function returns the number of samples it took: fewer than n where the
- * error grew past the limit or is not a number at all.  Weights are then those
- * that made the bad prediction.
+ * Written as it stands, each prediction would wait for the whole sum of the one
+ * before.  Instead w(k)'H(k) is had as w(k-1)'H(k) + c(k-1) H(k-1)'H(k), where
+ * w(k) = w(k-1) + c(k-1) H(k-1): both sums run beside the loop, and from one error
+ * to the next there is a single product.  Each function returns the number of
+ * samples it took: fewer than n where the error grew past the limit or is not a
+ * number at all; weights are then those that made the bad prediction.
  */
 #include "lanes.h"
 
-
 INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const double *d,
-                        const double *step, double regularization, double limit,
-                        double *weights, double *y, double *e, index_t vectors)
+                        const double *step, const double *used, double regularization,
+                        double limit, double *weights, double *y, double *e,
+                        index_t vectors)
 {
-    lanes own[6];
-    lanes *w = vectors <= 6 ? own : (lanes *)weights;
+    lanes w[vectors], last[vectors];
+    double correction = 0;
     index_t k;
-#pragma GCC unroll 6
-    for (index_t j = 0; j < vectors; j++) w[j] = load(weights + j * WIDTH);
+    UNROLL
+    for (index_t j = 0; j < vectors; j++) {
+        w[j] = load(weights + j * WIDTH);
+        last[j] = (lanes){0};
+    }
     for (k = 0; k < n; k++) {
-        const double *h = rows + k * stride;
-        lanes total = {0};
-#pragma GCC unroll 6
-        for (index_t j = 0; j < vectors; j++) total += w[j] * load(h + j * WIDTH);
-        double output = sum(total), error = d[k] - output;
+        const double *row = rows + k * stride;
+        lanes before = {0}, overlap = {0}, power = {0};
+        UNROLL
+        for (index_t j = 0; j < vectors; j++) {
+            lanes h = load(row + j * WIDTH);
+            before += w[j] * h;
+            overlap += last[j] * h;
+            w[j] += correction * last[j];
+            last[j] = load(step + j * WIDTH) * h;
+        }
+        double output = sum(before) + correction * sum(overlap);
+        double error = d[k] - output;
+        correction = 0;
         if (diverged(error, limit)) break;
         y[k] = output;
         e[k] = error;
+        correction = error;
         if (regularization >= 0) {
-            lanes power = {0};
-#pragma GCC unroll 6
+            UNROLL
             for (index_t j = 0; j < vectors; j++) {
-                lanes used = choose(load(step + j * WIDTH) != 0.0,
-                                    load(h + j * WIDTH), (lanes){0});
-                power += used * used;
+                lanes h = load(row + j * WIDTH);
+                power += load(used + j * WIDTH) * h * h;
             }
-            error /= regularization + sum(power);
+            correction *= 1 / (regularization + sum(power));
         }
-#pragma GCC unroll 6
-        for (index_t j = 0; j < vectors; j++)
-            w[j] += error * (load(step + j * WIDTH) * load(h + j * WIDTH));
     }
-#pragma GCC unroll 6
-    for (index_t j = 0; j < vectors; j++) store(weights + j * WIDTH, w[j]);
+    UNROLL
+    for (index_t j = 0; j < vectors; j++)
+        store(weights + j * WIDTH, w[j] + correction * last[j]);
     return k;
 }
 
 /* Regressor k is rows[k * stride], padded to WIDTH; with stride 1 a delay line.
- * step is 2 mu for each weight and zero in the padding.  A regularization of
- * zero or more makes it the normalized LMS. */
-EXPORT index_t hb_lms_rows(index_t n, index_t vectors, const double *rows, index_t stride,
-                           const double *d, const double *step, double regularization,
-                           double limit, double *weights, double *y, double *e)
+ * step is 2 mu for each weight and zero in the padding, used 1 and zero.  A
+ * regularization of zero or more makes it the normalized LMS. */
+EXPORT index_t hb_lms_rows(index_t n, index_t vectors, const double *rows,
+                           index_t stride, const double *d, const double *step,
+                           const double *used, double regularization, double limit,
+                           double *weights, double *y, double *e)
 {
-#define CALL(size) \
-    lms_rows(n, rows, stride, d, step, regularization, limit, weights, y, e, size)
+#define CALL(size)                                                                     \
+    lms_rows(n, rows, stride, d, step, used, regularization, limit, weights, y, e, size)
     FOR_VECTORS(vectors, CALL)
 #undef CALL
 }
 
-INLINE index_t lms_play(index_t n, const double *left, const double *right, int delayed,
-                        const double *d, const double *r, double step,
+INLINE index_t lms_play(index_t n, const double *left, const double *right,
+                        index_t pace, const double *d, const double *r, double step,
                         double regularization, double limit, double *state,
                         double *weights, double *y, double *e, index_t vectors)
 {
-    lanes own_w[6], own_h[6];
-    lanes *w = vectors <= 6 ? own_w : (lanes *)weights;
-    lanes *h = vectors <= 6 ? own_h : (lanes *)state;
+    const index_t size = vectors * WIDTH;
+    double h[size], own_r[size];
+    lanes w[vectors], last[vectors];
+    double correction = 0;
     index_t k;
-#pragma GCC unroll 6
+    copy(size, state, h);
+    copy(size, r, own_r);
+    UNROLL
     for (index_t j = 0; j < vectors; j++) {
         w[j] = load(weights + j * WIDTH);
-        h[j] = load(state + j * WIDTH);
+        last[j] = (lanes){0};
     }
     for (k = 0; k < n; k++) {
-        lanes total = {0};
-#pragma GCC unroll 6
+        lanes before = {0}, overlap = {0}, power = {0};
+        play_step(size, left + k, right + k, pace, own_r, h);
+        UNROLL
         for (index_t j = 0; j < vectors; j++) {
-            lanes gl = delayed ? load(left + k + j * WIDTH) : fill(left[k]);
-            lanes gr = delayed ? load(right + k + j * WIDTH) : fill(right[k]);
-            h[j] = play_step(gl, gr, load(r + j * WIDTH), h[j]);
-            total += w[j] * h[j];
+            lanes now = load(h + j * WIDTH);
+            before += w[j] * now;
+            overlap += last[j] * now;
+            w[j] += correction * last[j];
+            last[j] = now;
         }
-        double output = sum(total), error = d[k] - output;
+        double output = sum(before) + correction * sum(overlap);
+        double error = d[k] - output;
+        correction = 0;
         if (diverged(error, limit)) break;
         y[k] = output;
         e[k] = error;
-        double change = step * error;
+        correction = step * error;
         if (regularization >= 0) {
-            lanes power = {0};
-#pragma GCC unroll 6
-            for (index_t j = 0; j < vectors; j++) power += h[j] * h[j];
-            change /= regularization + sum(power);
+            UNROLL
+            for (index_t j = 0; j < vectors; j++) power += last[j] * last[j];
+            correction *= 1 / (regularization + sum(power));
         }
-#pragma GCC unroll 6
-        for (index_t j = 0; j < vectors; j++) w[j] += change * h[j];
     }
-#pragma GCC unroll 6
-    for (index_t j = 0; j < vectors; j++) {
-        store(weights + j * WIDTH, w[j]);
-        store(state + j * WIDTH, h[j]);
-    }
+    copy(size, h, state);
+    UNROLL
+    for (index_t j = 0; j < vectors; j++)
+        store(weights + j * WIDTH, w[j] + correction * last[j]);
     return k;
 }
 
-/* Regressor = outputs of play operators.  Lane j at sample k reads the envelopes
- * at [k + j] (delayed: they run along the delay line) or all at [k].  Operators
- * in the padding have an infinite threshold and so stay at zero. */
+/* Regressor = outputs of play operators.  Operator j at sample k reads the
+ * envelopes at [k + j] (pace 1: they run along the delay line) or all at [k]
+ * (pace 0).  In the padding the threshold is infinite: outputs stay zero. */
 EXPORT index_t hb_lms_play(index_t n, index_t vectors, const double *left,
-                           const double *right, index_t delayed, const double *d,
+                           const double *right, index_t pace, const double *d,
                            const double *r, double step, double regularization,
                            double limit, double *state, double *weights, double *y,
                            double *e)
 {
-#define ALONG(size)                                                              \
+#define ALONG(size)                                                                \
     lms_play(n, left, right, 1, d, r, step, regularization, limit, state, weights, \
              y, e, size)
-#define TOGETHER(size)                                                           \
+#define TOGETHER(size)                                                             \
     lms_play(n, left, right, 0, d, r, step, regularization, limit, state, weights, \
              y, e, size)
-    if (delayed) FOR_VECTORS(vectors, ALONG)
+    if (pace) FOR_VECTORS(vectors, ALONG)
     FOR_VECTORS(vectors, TOGETHER)
 #undef ALONG
 #undef TOGETHER
@@ -125,15 +140,12 @@ EXPORT index_t hb_lms_play(index_t n, index_t vectors, const double *left,
 
 /* Outputs of those operators as rows, for the correlation matrix of Eq. 19. */
 EXPORT void hb_play_rows(index_t n, index_t vectors, const double *left,
-                         const double *right, index_t delayed, const double *r,
-                         double *state, double *rows)
+                         const double *right, index_t pace, const double *restrict r,
+                         double *restrict state, double *restrict rows)
 {
-    for (index_t k = 0; k < n; k++)
-        for (index_t j = 0; j < vectors * WIDTH; j += WIDTH) {
-            lanes gl = delayed ? load(left + k + j) : fill(left[k]);
-            lanes gr = delayed ? load(right + k + j) : fill(right[k]);
-            lanes h = play_step(gl, gr, load(r + j), load(state + j));
-            store(state + j, h);
-            store(rows + k * vectors * WIDTH + j, h);
-        }
+    const index_t size = vectors * WIDTH;
+    for (index_t k = 0; k < n; k++) {
+        play_step(size, left + k, right + k, pace, r, state);
+        copy(size, state, rows + k * size);
+    }
 }
