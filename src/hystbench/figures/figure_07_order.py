@@ -39,6 +39,8 @@ def draw(*, table: Path, records: Sequence[Path]) -> Figure:
         axes.plot([p.order for p in finite], [p.mse for p in finite], **look.marked)
         style.mark_above(axes, [p.order for p in mine if p not in finite], look.color)
     axes.set_yscale("log")
+    # Room above the data for the marks of what diverged.
+    axes.margins(y=0.15)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set(
         xlabel="order $N$ of the filters (-)",

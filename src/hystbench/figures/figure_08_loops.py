@@ -17,9 +17,10 @@ _COLUMNS = 3
 def draw(*, records: Sequence[Path], runs: Sequence[Path]) -> Figure:
     """Draw one panel a record, with one run on each; the last cycle is shown."""
     pairs = read_records(records, runs)
-    rows = math.ceil(len(pairs) / _COLUMNS)
+    columns = min(_COLUMNS, len(pairs))
+    rows = math.ceil(len(pairs) / columns)
     figure = Figure(figsize=(style.PAGE, 0.7 + 1.85 * rows))
-    grid = figure.subplots(rows, _COLUMNS, sharex=True, sharey=True, squeeze=False)
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes in grid.flat[len(pairs) :]:
         axes.remove()
     for axes, (record, outputs) in zip(grid.flat, pairs, strict=False):

@@ -82,10 +82,10 @@ def _draw(axes: Axes, curve: _Curve) -> None:
 
 
 def _limits(curves: Sequence[_Curve]) -> tuple[float, float]:
-    """Span the finite runs; all of them where every one diverged."""
+    """Span the finite runs (all, where every one diverged), with room for marks."""
     spanned = [curve for curve in curves if not curve.run.diverged] or curves
     values = np.concatenate([curve.value for curve in spanned])
     values = values[np.isfinite(values) & (values > 0)]
     if not len(values):
         raise InputError("no squared error above zero; nothing to draw")
-    return float(values.min()) / 2, float(values.max()) * 2
+    return float(values.min()) / 2, float(values.max()) * 4

@@ -1,0 +1,157 @@
+"""Small inputs of every figure, made as the jobs of the workflow make them."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.files import write_json
+from hystbench.identification import identify
+from hystbench.operators import PUBLISHED_ENVELOPE
+from hystbench.record import Channel, FloatArray, Record
+from hystbench.results import run_result, save_run
+
+SIGNALS = ("sine-010hz", "sine-020hz", "sine-040hz")
+MODELS = ("gpo", "backlash", "volterra", "delayed", "rdgpi")
+#: The run that diverged, after this many samples.
+DIVERGED, SAMPLES = ("sine-020hz", "volterra"), 500
+UNIT = "um"
+
+
+def a_record(
+    name: str, frequency: float = 10.0, count: int = 4000, origin: str = "twin"
+) -> Record:
+    """A sine and an output that lags behind it."""
+    time = np.arange(count) * 1e-3
+    u = 0.6 * np.sin(2 * np.pi * frequency * time)
+    y = 9 * np.sin(2 * np.pi * frequency * time - 0.4) + 0.5
+    given, measured = Channel("current", "A"), Channel("displacement", UNIT)
+    return Record(name, 1e-3, u, y, given, measured, origin)
+
+
+def save_a_run(
+    folder: Path, record: Record, model: str, diverged: bool = False
+) -> tuple[Path, FloatArray]:
+    """Write a run whose error falls along the record, or one that diverged."""
+    error = (1 + MODELS.index(model)) * np.cos(np.arange(len(record)) / 7)
+    error = error / (1 + np.arange(len(record)) / 50)
+    about = None
+    if diverged:
+        error = 0.1 * 1.02 ** np.arange(SAMPLES)
+        about = {"sample": SAMPLES, "sentence": f"diverged at sample {SAMPLES}"}
+    output = record.y[: len(error)] - error
+    adaptive = model != "rdgpi"
+    result = run_result(
+        record,
+        model,
+        error,
+        "one-step a priori" if adaptive else "free-run simulation",
+        transient_fraction=0.25,
+        smoothing_fraction=0.025,
+        diverged=about,
+    )
+    if adaptive:
+        result |= {"order": 1, "weights": [0.1, 0.2]}
+        result |= {"step_size": {"mu": 0.1}, "bound": {"mu": 1.0}}
+        result |= {"eigenvalues": {"largest": 1.0, "spread_nonzero": 2.0}}
+    path = folder / record.name / f"{model}.json"
+    save_run(path, path.with_suffix(".npz"), result, output, error)
+    return path, output
+
+
+def write_order_sweep(path: Path) -> None:
+    """Write errors that fall with the order; the last one of a filter diverged."""
+    rows = [
+        [model, order, (1 + n) / order, "finite"]
+        for n, model in enumerate(MODELS[:4])
+        for order in (1, 2, 5, 10)
+    ]
+    rows[-1][2:] = ["", "diverged at sample 7"]
+    _write(path, ["model", "order", "mse", "status"], rows)
+
+
+def write_cells(path: Path) -> None:
+    """Write compared cells of which one diverged and one was not run."""
+    columns = "table,signal,model,metric,published,ours,log10_ratio"
+    columns += ",published_consistent,status"
+    rows = [
+        [1, signal, model, metric, 1.0, 2.0, -0.5 + 0.1 * (n + k), "yes", "finite"]
+        for n, signal in enumerate(SIGNALS)
+        for k, model in enumerate(MODELS)
+        for metric in ("mse", "re")
+    ]
+    rows[0][7] = "no"
+    rows[2][7] = "undecided"
+    rows[4][5:9] = ["", "", "yes", "diverged at sample 7"]
+    rows[6][5:9] = ["", "", "yes", "not run"]
+    _write(path, columns.split(","), rows)
+
+
+def write_identified(path: Path, record: Record) -> None:
+    """Run a short Algorithm 1 on a record."""
+    found = identify(
+        record.u, record.y, 4, starts=1, max_iterations=5, published=PUBLISHED_ENVELOPE
+    )
+    write_json(path, found.to_dict())
+
+
+def _write(path: Path, header: list[str], rows: list[list[object]]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(header)
+        writer.writerows(rows)
+
+
+class Inputs:
+    """All files that figures take, below a folder."""
+
+    def __init__(self, folder: Path, origin: str = "twin") -> None:
+        """Write the files."""
+        self.records = {}
+        for n, name in enumerate(SIGNALS):
+            record = a_record(name, 10.0 * 2**n, origin=origin)
+            self.records[name] = record
+            record.save(folder / "records" / f"{name}.npz")
+            for model in MODELS:
+                lost = (name, model) == DIVERGED
+                save_a_run(folder / "filters", record, model, lost)
+        self.folder = folder
+        write_order_sweep(folder / "errors.csv")
+        write_cells(folder / "cells.csv")
+        write_identified(folder / "identified.json", self.records[SIGNALS[0]])
+
+    def record(self, *names: str) -> list[Path]:
+        """Archives of records."""
+        return [self.folder / "records" / f"{name}.npz" for name in names]
+
+    def runs(self, names: tuple[str, ...], models: tuple[str, ...]) -> list[Path]:
+        """Runs of models on records."""
+        folder = self.folder / "filters"
+        return [folder / name / f"{model}.json" for name in names for model in models]
+
+    def of(self, figure: str) -> dict[str, object]:
+        """Give a figure what it is drawn from."""
+        one = {"records": self.record(SIGNALS[0])}
+        pair = one | {"runs": self.runs(SIGNALS[:1], ("gpo",))}
+        everything = {"runs": self.runs(SIGNALS, MODELS)}
+        return {
+            "figure-03-play": {},
+            "figure-04-generalized-play": {},
+            "figure-07-order": one | {"table": self.folder / "errors.csv"},
+            "figure-08-loops": {
+                "records": self.record(*SIGNALS),
+                "runs": self.runs(SIGNALS, ("gpo",)),
+            },
+            "figure-09-chirp": pair,
+            "figure-10-sum": pair,
+            "figure-11-sum": pair,
+            "figure-12-random-sum": pair,
+            "identification": one | {"identified": self.folder / "identified.json"},
+            "learning-curves": everything,
+            "errors-heat-map": {"table": self.folder / "cells.csv"},
+            "loops": everything | {"records": self.record(*SIGNALS)},
+            "errors-by-record": everything,
+        }[figure]
