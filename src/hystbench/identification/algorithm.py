@@ -19,6 +19,7 @@ from hystbench.identification import shape
 from hystbench.identification.result import Identification
 from hystbench.identification.search import Progress, Search
 from hystbench.identification.weights import Samples, Start, lead_in, solve
+from hystbench.metrics import relative_error
 from hystbench.operators import Envelope, thresholds
 from hystbench.record import FloatArray
 
@@ -136,7 +137,8 @@ def identify(
             break
         used += 1
         for kind in kinds:
-            search.descend(point, kind, SEARCH_SAMPLES)
+            if not search.ended:
+                search.descend(point, kind, SEARCH_SAMPLES)
         kinds = [search.best.start]
     # the valley of the best point is long: down it on few samples, then on all
     for count, steps in ((SEARCH_SAMPLES, 200), (len(u), 40)):
@@ -220,7 +222,7 @@ def fit_weights(
         cost=cost,
         cost_history=(cost,),
         epsilon=0.0,
-        relative_error=float(np.sqrt(cost / np.sum(y**2))),
+        relative_error=relative_error(error, y),
         starts=0,
     )
 

@@ -8,6 +8,7 @@ from typing import cast
 
 import numpy as np
 
+from hystbench.bounded_least_squares import damped_step
 from hystbench.identification import shape
 from hystbench.identification.weights import Samples, Start, lead_in, reduced, solve
 from hystbench.operators import Envelope, thresholds
@@ -109,7 +110,9 @@ class Search:
                 return
             jacobian = self._jacobian(samples, fit)
             for _ in range(8):
-                step = _step(jacobian, fit, damping)
+                step = damped_step(
+                    jacobian, fit.error, fit.point, shape.LOWER, shape.UPPER, damping
+                )
                 trial = self._fit(samples, step)
                 if trial.cost < fit.cost:
                     break
@@ -178,16 +181,3 @@ class Search:
             fit = self._fit(replace(self.record, lead=samples.lead), fit.point)
         if self._best is None or fit.cost < self._best.cost:
             self._best = Found(fit.point, start, fit.cost)
-
-
-def _step(jacobian: FloatArray, fit: _Fit, damping: float) -> FloatArray:
-    """Take one step of Levenberg and Marquardt within the bounds."""
-    gradient = jacobian.T @ fit.error
-    held = (fit.point <= shape.LOWER) & (gradient > 0)
-    held |= (fit.point >= shape.UPPER) & (gradient < 0)
-    free = np.flatnonzero(~held)
-    normal = jacobian[:, free].T @ jacobian[:, free]
-    strength = np.diag(normal) + 1e-12 * np.trace(normal) + TINY
-    move = np.zeros(len(fit.point))
-    move[free] = np.linalg.solve(normal + damping * np.diag(strength), -gradient[free])
-    return np.clip(fit.point + move, shape.LOWER, shape.UPPER)
