@@ -11,9 +11,9 @@ import numpy as np
 
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
-from hystbench.filters import FILTERS, AdaptiveFilter, Bound, Result
+from hystbench.filters import FILTERS, AdaptiveFilter, Result
 from hystbench.operators import PUBLISHED_ENVELOPE, Envelope
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
 from hystbench.results import run_result
 
 #: Step sizes of a filter in settings and results, and the filter's own names.
@@ -90,20 +90,42 @@ def make_filter(
     )
     if "convergence_factor" in settings:
         return adaptive
-    bounds = step_bounds(model, adaptive.bound(record.u))
-    fraction = settings["fraction_of_bound"]
-    return replace(
-        adaptive, **{own: fraction * bounds[name] for name, own in names.items()}
+    return with_fraction_of_bound(
+        adaptive, record.u, dict.fromkeys(names, settings["fraction_of_bound"])
     )
 
 
-def step_bounds(model: str, bound: Bound) -> dict[str, float]:
-    """Bound of Eq. 19 on each step size; of the Volterra filter's, part by part."""
-    if model == "volterra":
-        traces = {name: getattr(bound, name) for name in _VOLTERRA_STEP_NAMES}
-    else:
-        traces = {"mu": bound.trace}
-    return {name: 1 / trace for name, trace in traces.items()}
+def step_bounds(adaptive: AdaptiveFilter, x: FloatArray) -> dict[str, float]:
+    """Bound of Eq. 19, 1 / tr R, on each step size of a filter for an input.
+
+    Each part of the Volterra filter has the bound of its own part of R. Its traces
+    are the means of ``s(k)`` and ``s(k)^2``, where s is the sum of the squared taps.
+    """
+    if adaptive.name != "volterra":
+        return {"mu": adaptive.bound(x).bound}
+    before = np.full(adaptive.taps, adaptive.x_before)
+    total = np.cumsum(np.concatenate([before, x]) ** 2)
+    power = total[adaptive.taps :] - total[: -adaptive.taps]
+    traces = {"first_order": power.mean(), "second_order": (power**2).mean()}
+    return {name: float(1 / trace) for name, trace in traces.items()}
+
+
+def with_fraction_of_bound(
+    adaptive: AdaptiveFilter, x: FloatArray, fractions: Mapping[str, float]
+) -> AdaptiveFilter:
+    """Set each step size of a filter to a fraction of its bound for an input."""
+    bounds = step_bounds(adaptive, x)
+    names = step_names(adaptive.name)
+    return replace(
+        adaptive, **{own: fractions[name] * bounds[name] for name, own in names.items()}
+    )
+
+
+def fraction_of_bound(adaptive: AdaptiveFilter, x: FloatArray) -> dict[str, float]:
+    """Give each step size of a filter as a fraction of its bound for an input."""
+    bounds = step_bounds(adaptive, x)
+    names = step_names(adaptive.name)
+    return {name: getattr(adaptive, own) / bounds[name] for name, own in names.items()}
 
 
 def run_filter(
@@ -123,7 +145,7 @@ def run_filter(
     result = adaptive.run(record.u, record.y)
     bound = adaptive.bound(record.u)
     steps = {name: getattr(adaptive, own) for name, own in step_names(model).items()}
-    bounds = step_bounds(model, bound)
+    bounds = step_bounds(adaptive, record.u)
     kept = run_result(
         record,
         model,
@@ -169,4 +191,3 @@ def _divergence(
     )
     sentence = f"diverged at sample {result.diverged_at}, {told}"
     return {"sample": result.diverged_at, "sentence": sentence}
-

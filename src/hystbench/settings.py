@@ -152,8 +152,10 @@ class Settings:
     @property
     def order_sweep_job(self) -> dict[str, Any]:
         """Settings of Figure 7: its orders and each filter's settings."""
+        sweep = self.config["order_sweep"]
         return {
-            "orders": self.config["order_sweep"]["orders"],
+            "orders": sweep["orders"],
+            "convergence_factor": sweep["convergence_factor"],
             "filters": {name: self.filter_job(name) for name in self.filters},
         }
 

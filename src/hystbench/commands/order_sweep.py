@@ -8,7 +8,11 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.adaptive import make_filter
+from hystbench.adaptive import (
+    fraction_of_bound,
+    make_filter,
+    with_fraction_of_bound,
+)
 from hystbench.files import write_csv
 from hystbench.filters import run_many
 from hystbench.metrics import mean_square_error
@@ -30,15 +34,24 @@ def order_sweep(
     threads: int,
     out: Path,
 ) -> None:
-    """Run each filter on RECORD at each order."""
+    """Run each filter on RECORD at each order.
+
+    tr[R] grows with the order, so that a constant convergence factor nears Eq. 19's
+    bound; ``same-fraction-of-bound`` keeps it as far from it as at the usual order.
+    """
     measured = load_record(record)
     cells = [
         (model, order) for model in settings["filters"] for order in settings["orders"]
     ]
-    filters = [
-        make_filter(model, settings["filters"][model], measured, identified, order)
-        for model, order in cells
-    ]
+    filters = []
+    for model, order in cells:
+        job = settings["filters"][model]
+        adaptive = make_filter(model, job, measured, identified, order)
+        if settings["convergence_factor"] == "same-fraction-of-bound":
+            usual = make_filter(model, job, measured, identified)
+            fractions = fraction_of_bound(usual, measured.u)
+            adaptive = with_fraction_of_bound(adaptive, measured.u, fractions)
+        filters.append(adaptive)
     results = run_many(((each, measured.u, measured.y) for each in filters), threads)
     rows: list[list[Any]] = []
     for (model, order), result in zip(cells, results, strict=True):
