@@ -321,7 +321,9 @@ def test_a_record_that_cannot_serve_is_refused(record, change, message):
         identify(*change(*record), ORDER)
 
 
-@pytest.mark.parametrize("bad", [{"order": -1}, {"starts": 0}, {"max_iterations": 0}])
+@pytest.mark.parametrize(
+    "bad", [{"order": -1}, {"starts": 0}, {"max_iterations": 0}, {"scale": 0.0}]
+)
 def test_settings_that_make_no_sense_are_refused(record, bad):
     with pytest.raises(InputError, match=next(iter(bad))):
         identify(*record, **{"order": ORDER, **bad})

@@ -25,6 +25,8 @@ from hystbench.record import FloatArray
 
 #: Samples of the thinned record on which starting points are improved.
 SEARCH_SAMPLES = 600
+#: Share of the iterations after which no new starting point is begun.
+SEARCH_SHARE = 0.6
 #: Relative error that is tolerable where the caller names no epsilon.
 TOLERABLE_RELATIVE_ERROR = 0.005
 #: A constant is fitted where the middle of the output is off zero by this share of
@@ -103,7 +105,8 @@ def identify(
     Raises
     ------
     InputError
-        If the record is too short, constant or not finite.
+        If the record is too short, constant or not finite, or a setting makes no
+        sense.
 
     References
     ----------
@@ -116,6 +119,8 @@ def identify(
     u, y = _checked(u, y, order)
     if starts < 1 or max_iterations < 1:
         raise InputError("starts, max_iterations: expected 1 or more")
+    if scale is not None and not 0 < scale < np.inf:
+        raise InputError(f"scale: {scale} given, expected above 0")
     if offset is None:
         offset = bool(abs(y.max() + y.min()) > OFFSET_SHARE * np.ptp(y))
     if nonnegative is None:
@@ -133,7 +138,7 @@ def identify(
     kinds: list[Start] = ["rest", "settled"] if start is None else [start]
     used = 0
     for point in points:
-        if search.ended:
+        if search.ended or len(search.history) >= SEARCH_SHARE * max_iterations:
             break
         used += 1
         for kind in kinds:
