@@ -37,7 +37,6 @@ rule order_sweep:
         f"{RESULTS}/order-sweep/errors.csv",
     log:
         f"{RESULTS}/logs/order-sweep.log",
-    threads: 2
     params:
         settings=settings_text(SETTINGS.order_sweep_job),
     message:
