@@ -60,11 +60,11 @@ class Envelope:
 
     def left(self, v: ArrayLike) -> FloatArray:
         """Left envelope, Eq. 5, at each input."""
-        return self.a0 * np.tanh(self.a1 * _array(v) + self.a2) + self.a3
+        return _curve(self.a0, self.a1, self.a2, self.a3, v)
 
     def right(self, v: ArrayLike) -> FloatArray:
         """Right envelope, Eq. 6, at each input."""
-        return self.a4 * np.tanh(self.a5 * _array(v) + self.a6) + self.a7
+        return _curve(self.a4, self.a5, self.a6, self.a7, v)
 
     def gap(self, low: float, high: float, points: int = 2001) -> FloatArray:
         """Left minus right envelope on an even grid from ``low`` to ``high``.
@@ -415,18 +415,27 @@ def state_space(
     return y, x[:size].copy()
 
 
-def follow_direction(
-    v: FloatArray, left: FloatArray, right: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Rewrite envelopes so that Eq. 4 on them is Eq. 12.
+def follow_direction(v: FloatArray, left: FloatArray, right: FloatArray) -> None:
+    """Rewrite envelopes in place so that Eq. 4 on them is Eq. 12.
 
     Where the input rises the left envelope goes to infinity, where it falls the
     right one to minus infinity, where it rests both: Eq. 4 then moves the output
     just as Eq. 12 does. The first sample has no direction and stays as it is.
     """
-    left, right = left.copy(), right.copy()
     kernels.call("hb_follow_direction", len(v), v, left, right)
-    return left, right
+
+
+def _curve(
+    height: float, slope: float, place: float, offset: float, v: ArrayLike
+) -> FloatArray:
+    # in place: fresh memory for each step would cost more than the tanh
+    v = _array(v)
+    curve = np.multiply(v, slope, out=np.empty(v.shape))
+    curve += place
+    np.tanh(curve, out=curve)
+    curve *= height
+    curve += offset
+    return curve
 
 
 def _array(values: ArrayLike) -> FloatArray:
@@ -485,9 +494,8 @@ def _envelopes(
         raise InputError(f"v: {v.shape} given, {left.shape} expected")
     first = v[:1] if v_before is None else [v_before]
     # one sample more in front, so that the first one has a direction
-    long = follow_direction(
-        np.concatenate((first, v)),
-        np.concatenate((left[:1], left)),
-        np.concatenate((right[:1], right)),
-    )
-    return long[0][1:], long[1][1:]
+    long_v = np.concatenate((first, v))
+    long_left = np.concatenate((left[:1], left))
+    long_right = np.concatenate((right[:1], right))
+    follow_direction(long_v, long_left, long_right)
+    return long_left[1:], long_right[1:]

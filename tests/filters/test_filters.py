@@ -154,7 +154,7 @@ def test_normalized_equals_the_equations_written_out(case, order, signals):
 def test_regressor_equals_the_definitions(case, order, signals):
     x = signals[0][:200]
     adaptive = make(case, order)
-    line = np.concatenate((np.full(order + 1, adaptive.x_before), x))
+    line = np.concatenate((np.full(adaptive.history, adaptive.x_before), x))
     h, _ = adaptive.regressor(line, adaptive.start().operators)
     np.testing.assert_allclose(h, plain_regressors(case, adaptive, x), atol=1e-15)
 
@@ -290,6 +290,14 @@ def test_limit_is_kept_from_chunk_to_chunk(signals):
     assert adaptive.run(x, 0 * d).state.limit == 1e6
 
 
+@pytest.mark.parametrize("order", [100, 4095])
+def test_high_orders_run(order, signals):
+    x, d = signals
+    for case in CASES[:-2]:
+        result = make(case, order, 0.1, normalized=True).run(x[:50], d[:50])
+        assert len(result.output) == 50
+
+
 # --- Eq. 19
 
 
@@ -391,6 +399,28 @@ def test_every_filter_is_tried_here():
     assert set(OPTIONS) == set(FILTERS)
 
 
+def test_a_new_filter_is_one_method(signals):
+    class Cubes(AdaptiveFilter):
+        name = "cubes"
+
+        def regressor(self, line, operators):
+            return self._windows(line) ** 3, operators
+
+    try:
+        assert FILTERS["cubes"] is Cubes
+        x, d = signals
+        adaptive = Cubes(order=4, step_size=0.1)
+        delayed = plain_regressors(("delayed", {}), adaptive, x)
+        y, w = plain_lms(delayed**3, d, 0.1)
+        result = adaptive.run(x, d)
+        near(result.output, y)
+        near(result.weights, w)
+        trace = np.mean(np.sum(delayed**6, axis=1))
+        assert adaptive.bound(x).trace == pytest.approx(trace)
+    finally:
+        del FILTERS["cubes"]
+
+
 def test_thirtieth_order_volterra_has_992_weights():
     assert make(("volterra", {"second_order_step": 1.0}), 30).size == 992
 
@@ -399,6 +429,7 @@ def test_thirtieth_order_volterra_has_992_weights():
     ("kind", "more", "told"),
     [
         (("delayed", {}), {"order": -1}, "order: -1"),
+        (("delayed", {}), {"order": 4096}, "order: 4096 given, 0 to 4095"),
         (("delayed", {}), {"step_size": 0.0}, "step_size: 0.0"),
         (("delayed", {}), {"step_size": np.nan}, "step_size: nan"),
         (("delayed", {}), {"regularization": 0.0}, "regularization: 0.0"),
@@ -426,8 +457,9 @@ def test_signals_that_do_not_fit_are_refused():
         adaptive.run([0, 1], [0, 1, 2])
     with pytest.raises(InputError, match="x: 2 dimensions"):
         adaptive.run([[0, 1]], [0, 1])
-    with pytest.raises(InputError, match="limit: -1"):
-        adaptive.run([0, 1], [0, 1], limit=-1)
+    for limit in (-1, 0, np.nan):
+        with pytest.raises(InputError, match=f"limit: {limit} given"):
+            adaptive.run([0, 1], [0, 1], limit=limit)
     with pytest.raises(InputError, match="x: no samples"):
         adaptive.bound([])
     with pytest.raises(InputError, match="4 finite numbers expected"):

@@ -57,4 +57,4 @@ class BacklashFilter(PlayFilter):
 
     def envelopes(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Give the input itself twice: the envelopes of a play are straight."""
-        return x, x
+        return x.copy(), x.copy()

@@ -8,6 +8,7 @@ differ in the regressor ``H`` alone, so a new one is one file with one method.
 
 from __future__ import annotations
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -21,8 +22,14 @@ from hystbench import kernels
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
-CHUNK = 8192
-"""Samples taken at a time: what is made of them stays in the processor's cache."""
+CHUNK = 16000
+"""Samples filtered at a time: what is made of them stays in the processor's cache."""
+
+ROWS = 2048
+"""Samples whose regressors are held at a time."""
+
+MAX_ORDER = 4095
+"""Highest order: the kernels keep a regressor on the stack."""
 
 FILTERS: dict[str, type[AdaptiveFilter]] = {}
 """Every filter by its name."""
@@ -36,8 +43,8 @@ class State:
     ----------
     weights : ndarray
         Weights after the last update.
-    past : ndarray, shape (order + 1,)
-        The last inputs, oldest first.
+    past : ndarray, shape (history,)
+        The last inputs, oldest first: as many as the filter looks back on.
     operators : ndarray
         Outputs of the play operators, by tap; empty for filters without.
     limit : float or None
@@ -155,8 +162,8 @@ class AdaptiveFilter(ABC):
 
     def __post_init__(self) -> None:
         """Refuse parameters out of range."""
-        if self.order < 0:
-            raise InputError(f"order: {self.order} given, 0 or more expected")
+        if not 0 <= self.order <= MAX_ORDER:
+            raise InputError(f"order: {self.order} given, 0 to {MAX_ORDER} expected")
         positive("step_size", self.step_size)
         positive("regularization", self.regularization)
         if not np.isfinite(self.x_before):
@@ -173,6 +180,11 @@ class AdaptiveFilter(ABC):
         return self.taps
 
     @property
+    def history(self) -> int:
+        """Past inputs kept: the taps, rounded up to whole vectors of the kernels."""
+        return kernels.padded(self.taps)
+
+    @property
     def steps(self) -> FloatArray:
         """Step size of each weight."""
         return np.full(self.size, self.step_size)
@@ -185,8 +197,9 @@ class AdaptiveFilter(ABC):
 
         Parameters
         ----------
-        line : ndarray, shape (taps + n,)
-            The inputs, oldest first: ``taps`` past ones, then those of the chunk.
+        line : ndarray, shape (history + n,)
+            The inputs, oldest first: past ones, then those of the chunk. Sample k of
+            the chunk is ``line[history + k]``.
         operators : ndarray
             Outputs of the operators before the chunk.
 
@@ -218,7 +231,7 @@ class AdaptiveFilter(ABC):
             raise InputError(
                 f"weights: {w.shape} given, {self.size} finite numbers expected"
             )
-        return State(w, np.full(self.taps, self.x_before), self._first_operators())
+        return State(w, np.full(self.history, self.x_before), self._first_operators())
 
     def run(
         self,
@@ -251,7 +264,8 @@ class AdaptiveFilter(ABC):
         if len(x) != len(d):
             raise InputError(f"d: {len(d)} samples given, x has {len(x)}")
         state = state or self.start()
-        limit = limit or state.limit
+        if limit is None:
+            limit = state.limit
         if limit is None:
             largest = float(np.abs(d).max(initial=0.0))
             limit = 1e6 * (largest or 1.0)
@@ -262,12 +276,12 @@ class AdaptiveFilter(ABC):
         while done < len(d):
             part = slice(done, done + CHUNK)
             line = np.concatenate((past, x[part]))
-            past = line[-self.taps :].copy()
+            past = line[-self.history :].copy()
             taken, weights, operators = self._adapt(
                 line, d[part], weights, operators, limit, output[part], error[part]
             )
             done += taken
-            if taken < len(line) - self.taps:
+            if taken < len(line) - self.history:
                 break
         diverged_at = done if done < len(d) else None
         if not np.isfinite(weights).all():
@@ -287,6 +301,12 @@ class AdaptiveFilter(ABC):
         """
         return eigenvalue_bound(self._correlation(x), self.size)
 
+    def _windows(self, line: FloatArray) -> FloatArray:
+        """Taps at each sample, newest first, as a view of the line."""
+        start = 1 + self.history - self.taps
+        view = np.lib.stride_tricks.sliding_window_view(line[start:], self.taps)
+        return view[:, ::-1]
+
     def _first_operators(self) -> FloatArray:
         return np.zeros(0)
 
@@ -295,9 +315,9 @@ class AdaptiveFilter(ABC):
         x = _finite("x", x)
         if len(x) == 0:
             raise InputError("x: no samples")
-        line = np.concatenate((np.full(self.taps, self.x_before), x))
-        for start in range(0, len(x), CHUNK):
-            yield line[start : start + self.taps + CHUNK]
+        line = np.concatenate((np.full(self.history, self.x_before), x))
+        for start in range(0, len(x), ROWS):
+            yield line[start : start + self.history + ROWS]
 
     def _correlation(self, x: ArrayLike) -> FloatArray:
         """Mean of H H' over the input."""
@@ -331,12 +351,20 @@ class AdaptiveFilter(ABC):
         weights, operators : ndarray
             Weights and outputs of the operators after them.
         """
-        h, operators = self.regressor(line, operators)
         lanes, steps = kernels.pad(weights), kernels.pad(2 * self.steps)
-        rows = np.zeros((len(h), len(lanes)))
-        rows[:, : self.size] = h
-        taken = self._rows(rows, len(lanes), steps, d, limit, lanes, output, error)
-        return taken, lanes[: self.size].copy(), operators
+        done = 0
+        while done < len(d):
+            part = slice(done, done + ROWS)
+            chunk = line[done : done + self.history + ROWS]
+            h, operators = self.regressor(chunk, operators)
+            rows = np.zeros((len(h), len(lanes)))
+            rows[:, : self.size] = h
+            signals = (d[part], limit, lanes, output[part], error[part])
+            taken = self._rows(rows, len(lanes), steps, *signals)
+            done += taken
+            if taken < len(h):
+                break
+        return done, lanes[: self.size].copy(), operators
 
     def _rows(
         self,
@@ -377,7 +405,7 @@ def run_many(
     jobs : iterable of (AdaptiveFilter, array_like, array_like)
         Filter, input x and plant output d.
     workers : int, optional
-        Threads; as many as Python chooses by default.
+        Threads; by default one for each processor.
     limit : float, optional
         As for :meth:`AdaptiveFilter.run`.
 
@@ -386,7 +414,7 @@ def run_many(
     list of Result
         In the order of the jobs.
     """
-    with ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
         running = [pool.submit(item.run, x, d, None, limit) for item, x, d in jobs]
         return [job.result() for job in running]
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from hystbench import kernels
 from hystbench.filters.base import AdaptiveFilter
 from hystbench.record import FloatArray
@@ -29,8 +27,7 @@ class DelayedFilter(AdaptiveFilter):
         self, line: FloatArray, operators: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Give the delay line at each sample, newest first."""
-        windows = np.lib.stride_tricks.sliding_window_view(line[1:], self.taps)
-        return windows[:, ::-1], operators
+        return self._windows(line), operators
 
     def _adapt(
         self,
@@ -45,7 +42,5 @@ class DelayedFilter(AdaptiveFilter):
         # rows are windows of the line itself, one sample apart, oldest first
         lanes = kernels.pad_front(weights[::-1])
         steps = kernels.pad_front(2 * self.steps)
-        spare = len(lanes) - self.taps
-        rows = np.concatenate((np.zeros(spare), line[1:]))
-        taken = self._rows(rows, 1, steps, d, limit, lanes, output, error)
-        return taken, lanes[spare:][::-1].copy(), operators
+        taken = self._rows(line[1:], 1, steps, d, limit, lanes, output, error)
+        return taken, lanes[-self.taps :][::-1].copy(), operators

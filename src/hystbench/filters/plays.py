@@ -63,14 +63,14 @@ class PlayFilter(AdaptiveFilter):
 
     @abstractmethod
     def envelopes(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Left and right envelope functions of the input."""
+        """Left and right envelope functions of the input, in arrays of their own."""
 
     def regressor(
         self, line: FloatArray, operators: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Give the outputs of the operators at each sample, by tap."""
         left, right, r, state = self._lanes(line, operators)
-        count, vectors = len(line) - self.taps, len(r) // kernels.WIDTH
+        count, vectors = len(line) - self.history, len(r) // kernels.WIDTH
         rows = np.empty((count, len(r)))
         envelopes = (left, right, int(self.along_line))
         kernels.call("hb_play_rows", count, vectors, *envelopes, r, state, rows)
@@ -96,17 +96,9 @@ class PlayFilter(AdaptiveFilter):
         state = kernels.pad_front(operators[::-1])
         left, right = self.envelopes(line)
         if self.form == "eq12":
-            left, right = follow_direction(line, left, right)
-        spare = len(r) - self.taps
-        if not self.along_line:
-            left, right = left[self.taps :], right[self.taps :]
-        elif spare:
-            front = np.zeros(spare)
-            left = np.concatenate((front, left[1:]))
-            right = np.concatenate((front, right[1:]))
-        else:
-            left, right = left[1:], right[1:]
-        return left, right, r, state
+            follow_direction(line, left, right)
+        first = 1 if self.along_line else self.history
+        return left[first:], right[first:], r, state
 
     def _adapt(
         self,
@@ -125,5 +117,5 @@ class PlayFilter(AdaptiveFilter):
         numbers = (2 * self.step_size, self._kernel_regularization(), limit)
         arrays = (state, lanes, output, error)
         taken = kernels.call("hb_lms_play", *sizes, *envelopes, d, r, *numbers, *arrays)
-        used = slice(len(r) - self.taps, None)
+        used = slice(-self.taps, None)
         return taken, lanes[used][::-1].copy(), state[used][::-1].copy()

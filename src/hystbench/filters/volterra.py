@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hystbench import kernels
 from hystbench.filters.base import (
@@ -115,9 +116,6 @@ class VolterraFilter(AdaptiveFilter):
             second_order=float(power[self.taps :].sum()),
         )
 
-    def _windows(self, line: FloatArray) -> FloatArray:
-        return np.lib.stride_tricks.sliding_window_view(line[1:], self.taps)[:, ::-1]
-
     def _adapt(
         self,
         line: FloatArray,
@@ -130,12 +128,13 @@ class VolterraFilter(AdaptiveFilter):
     ) -> tuple[int, FloatArray, FloatArray]:
         spare = -self.taps % TILE
         # the kernel's taps run from the oldest to the newest
-        first = np.concatenate((np.zeros(spare), weights[: self.taps][::-1]))
+        newest_last = np.concatenate((np.zeros(spare), weights[: self.taps][::-1]))
+        first = kernels.aligned(newest_last)
         second = np.zeros((len(first), len(first)))
         square = weights[self.taps :].reshape(self.taps, self.taps)
         second[spare:, spare:] = square[::-1, ::-1]
         packed, unmoved = _pack(second)
-        rows = np.concatenate((np.zeros(spare), line[1:]))
+        rows = line[1 + self.history - len(first) :]
         sizes = (len(d), len(first) // TILE, self.taps)
         steps = (2 * self.step_size, 2 * self.second_order_step)
         numbers = (*steps, self._kernel_regularization(), limit)
@@ -152,6 +151,12 @@ def _tiles(matrix: FloatArray) -> FloatArray:
     return matrix.reshape(blocks, TILE, blocks, TILE).swapaxes(1, 2)
 
 
+@lru_cache
+def _below(blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of the tiles on and below the diagonal, row by row."""
+    return np.tril_indices(blocks)
+
+
 def _pack(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Split weights into the tiles that the kernel wants and what it leaves alone.
 
@@ -162,14 +167,14 @@ def _pack(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
     mean = 0.5 * (matrix + matrix.T)
     kept = np.where(block[:, None] == block, matrix, mean)
     tiles = _tiles(kept)
-    return tiles[np.tril_indices(len(tiles))], matrix - kept
+    return kernels.aligned(tiles[_below(len(tiles))]), matrix - kept
 
 
 def _unpack(packed: FloatArray, size: int) -> FloatArray:
     """Give the whole matrix from the tiles that the kernel keeps."""
     matrix = np.empty((size, size))
     tiles = _tiles(matrix)
-    rows, columns = np.tril_indices(len(tiles))
+    rows, columns = _below(len(tiles))
     tiles[columns, rows] = packed.swapaxes(1, 2)
     tiles[rows, columns] = packed
     return matrix

@@ -87,6 +87,15 @@ def padded(count: int) -> int:
     return -(-max(count, 1) // WIDTH) * WIDTH
 
 
+def aligned(values: FloatArray) -> FloatArray:
+    """Copy to where no vector lies across two lines of the processor's cache."""
+    space = np.empty(values.size + WIDTH)
+    start = -space.ctypes.data % 64 // 8
+    out = space[start : start + values.size].reshape(values.shape)
+    out[...] = values
+    return out
+
+
 def pad(values: FloatArray, filling: float = 0.0) -> FloatArray:
     """Copy a vector, filled up to whole vectors at its end."""
     out = np.full(padded(len(values)), filling)

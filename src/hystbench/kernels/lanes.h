@@ -14,6 +14,7 @@
 #define EXPORT __attribute__((visibility("default")))
 #define WIDTH 8 /* lanes of a vector; the Python side pads to it */
 #define QUAD 4
+#define ALIGNED __attribute__((aligned(64))) /* no load or store across cache lines */
 
 typedef ptrdiff_t index_t;
 typedef double lanes __attribute__((vector_size(64)));

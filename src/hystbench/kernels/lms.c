@@ -75,7 +75,7 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
                         double *weights, double *y, double *e, index_t vectors)
 {
     const index_t size = vectors * WIDTH;
-    double h[size], own_r[size];
+    double h[size] ALIGNED, own_r[size] ALIGNED;
     lanes w[vectors], last[vectors];
     double correction = 0;
     index_t k;

@@ -17,10 +17,12 @@ EXPORT void hb_play(index_t n, index_t m, const double *left, const double *righ
                     const double *restrict r, double *restrict state,
                     double *restrict out)
 {
-    for (index_t k = 0; k < n; k++) {
-        play_step(m, left + k, right + k, 0, r, state);
-        copy(m, state, out + k * m);
-    }
+    for (index_t k = 0; k < n; k++)
+        for (index_t i = 0; i < m; i++) {
+            double low = right[k] - r[i], high = left[k] + r[i];
+            double lower = high < state[i] ? high : state[i];
+            out[k * m + i] = state[i] = low > lower ? low : lower;
+        }
 }
 
 INLINE index_t prandtl_ishlinskii(index_t n, const double *left, const double *right,
@@ -28,7 +30,7 @@ INLINE index_t prandtl_ishlinskii(index_t n, const double *left, const double *r
                                   double *state, double *y, index_t vectors)
 {
     const index_t size = vectors * WIDTH;
-    double w[size], own_r[size];
+    double w[size] ALIGNED, own_r[size] ALIGNED;
     copy(size, state, w);
     copy(size, r, own_r);
     for (index_t k = 0; k < n; k++) {
@@ -59,7 +61,7 @@ INLINE index_t rate_dependent(index_t n, const double *number, const double *use
 {
     const index_t size = vectors * WIDTH;
     const int from_one = number[0] > 0;
-    double w[size], r[size], place[size];
+    double w[size] ALIGNED, r[size] ALIGNED, place[size] ALIGNED;
     copy(size, state, w);
     copy(size, number, place);
     for (index_t k = 0; k < n; k++) {

@@ -6,21 +6,28 @@ INLINE void simulate(index_t n, const double *a, const double *b, const double *
                      index_t vectors)
 {
     const index_t size = vectors * WIDTH;
-    double x[size];
-    for (index_t i = 0; i < size; i++) x[i] = state[i];
+    double x[size] ALIGNED;
+    lanes next[vectors];
+    copy(size, state, x);
     for (index_t k = 0; k < n; k++) {
-        lanes next[vectors], out = {0};
+        lanes output = {0};
+        UNROLL
         for (index_t j = 0; j < vectors; j++) {
-            out += load(c + j * WIDTH) * load(x + j * WIDTH);
-            next[j] = load(b + j * WIDTH) * u[k];
+            const double *column = a + j * WIDTH;
+            lanes even = load(b + j * WIDTH) * u[k], odd = {0};
+            output += load(c + j * WIDTH) * load(x + j * WIDTH);
+            UNROLL /* two chains of sums: half the wait */
+            for (index_t i = 0; i < size; i += 2) {
+                even += load(column + i * size) * x[i];
+                odd += load(column + (i + 1) * size) * x[i + 1];
+            }
+            next[j] = even + odd;
         }
-        y[k] = sum(out) + d * u[k];
-        for (index_t i = 0; i < size; i++)
-            for (index_t j = 0; j < vectors; j++)
-                next[j] += load(a + i * size + j * WIDTH) * x[i];
+        y[k] = sum(output) + d * u[k];
+        UNROLL
         for (index_t j = 0; j < vectors; j++) store(x + j * WIDTH, next[j]);
     }
-    for (index_t i = 0; i < size; i++) state[i] = x[i];
+    copy(size, x, state);
 }
 
 /* x(k+1) = A x(k) + B u(k), y(k) = C x(k) + D u(k); a holds the columns of A,
@@ -29,7 +36,10 @@ EXPORT void hb_state_space(index_t n, index_t vectors, const double *a, const do
                            const double *c, double d, const double *u, double *state,
                            double *y)
 {
-    if (vectors == 1) simulate(n, a, b, c, d, u, state, y, 1);
-    else if (vectors == 2) simulate(n, a, b, c, d, u, state, y, 2);
-    else simulate(n, a, b, c, d, u, state, y, vectors);
+    if (vectors == 1)
+        simulate(n, a, b, c, d, u, state, y, 1);
+    else if (vectors == 2)
+        simulate(n, a, b, c, d, u, state, y, 2);
+    else
+        simulate(n, a, b, c, d, u, state, y, vectors);
 }

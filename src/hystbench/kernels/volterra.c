@@ -80,7 +80,7 @@ INLINE index_t lms_volterra(index_t n, index_t taps, const double *line, const d
                             double *e, index_t blocks)
 {
     const index_t size = QUAD * blocks, padding = size - taps;
-    double windows[3][size], used[size];
+    double windows[3][size] ALIGNED, used[size] ALIGNED;
     double correction = 0, older = 0;
     double *x = windows[0], *last = windows[1], *oldest = windows[2];
     index_t k;
