@@ -85,9 +85,8 @@ def make_filter(
     if model == "backlash":
         options["structure"] = settings["backlash_structure"]
     steps = settings.get("convergence_factor", dict.fromkeys(names, 1.0))
-    adaptive = FILTERS[model](
-        **options, **{own: float(steps[name]) for name, own in names.items()}
-    )
+    options |= {own: float(steps[name]) for name, own in names.items()}
+    adaptive = FILTERS[model](**options)
     if "convergence_factor" in settings:
         return adaptive
     return with_fraction_of_bound(
@@ -115,10 +114,11 @@ def with_fraction_of_bound(
 ) -> AdaptiveFilter:
     """Set each step size of a filter to a fraction of its bound for an input."""
     bounds = step_bounds(adaptive, x)
-    names = step_names(adaptive.name)
-    return replace(
-        adaptive, **{own: fractions[name] * bounds[name] for name, own in names.items()}
-    )
+    steps: dict[str, Any] = {
+        own: fractions[name] * bounds[name]
+        for name, own in step_names(adaptive.name).items()
+    }
+    return replace(adaptive, **steps)
 
 
 def fraction_of_bound(adaptive: AdaptiveFilter, x: FloatArray) -> dict[str, float]:

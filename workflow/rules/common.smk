@@ -33,6 +33,7 @@ except InputError as error:
     sys.exit(f"hystbench: {error}")
 
 RESULTS = SETTINGS.results
+COMPARE = f"{RESULTS}/compare"
 TWIN = SETTINGS.dataset is None
 
 

@@ -1,7 +1,5 @@
 # Ours beside the paper's: cells, claims, audit and tables. A measured dataset has no
 # published numbers, so its errors stand alone.
-COMPARE = f"{RESULTS}/compare"
-
 if TWIN:
 
     rule tables:
