@@ -28,4 +28,4 @@ class Asymmetry(Block):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial."""
-        return z + self.coefficient * z**2
+        return z * (1.0 + self.coefficient * z)

@@ -30,4 +30,4 @@ class SensorNonlinearity(Block):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial."""
-        return z + self.quadratic * z**2 + self.cubic * z**3
+        return z * (1.0 + z * (self.quadratic + self.cubic * z))

@@ -1,0 +1,198 @@
+"""Finding the twin that is nearest to the targets."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.calibration.constraints import violations
+from hystbench.calibration.objective import Objective
+from hystbench.calibration.targets import Target
+from hystbench.calibration.twin import STEP_NAMES, UNKNOWNS, Unknown, make_twin
+from hystbench.errors import InputError
+from hystbench.files import read_json, write_json
+from hystbench.record import FloatArray
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A twin and its distance.
+
+    Parameters
+    ----------
+    values : dict of str to float
+        Values of the unknowns by name.
+    cost : float
+        Half the sum of squares of the residuals.
+    """
+
+    values: dict[str, float]
+    cost: float
+
+
+def to_point(values: dict[str, float]) -> FloatArray:
+    """Place values in the unit cube of the bounds; logarithms where they are meant."""
+    return np.array([_place(item, values[item.name]) for item in UNKNOWNS])
+
+
+def to_values(point: FloatArray) -> dict[str, float]:
+    """Give the values of a point in the unit cube."""
+    return {
+        item.name: _value(item, float(p))
+        for item, p in zip(UNKNOWNS, point, strict=True)
+    }
+
+
+def descend(
+    objective: Objective,
+    targets: tuple[Target, ...],
+    start: dict[str, float],
+    evaluations: int,
+) -> Fit:
+    """Go down from a start by bounded least squares (trust region reflective)."""
+    from scipy.optimize import least_squares  # late: takes a second
+
+    def residuals(point: FloatArray) -> FloatArray:
+        return objective.residuals(to_values(point), targets)
+
+    def jacobian(point: FloatArray) -> FloatArray:
+        return _jacobian(objective, targets, point)
+
+    inside = np.clip(to_point(start), 1e-6, 1 - 1e-6)
+    result = least_squares(
+        residuals, inside, jac=jacobian, bounds=(0.0, 1.0), max_nfev=evaluations
+    )
+    return Fit(to_values(result.x), float(result.cost))
+
+
+def calibrate(
+    objective: Objective,
+    targets: tuple[Target, ...],
+    *,
+    starts: int,
+    seed: int,
+    state: Path | None = None,
+    tell: Tell = lambda line: None,
+) -> Fit:
+    """Find the nearest twin from several starts.
+
+    The first start is the stated one, the others are drawn around it. Each descends a
+    little; the best goes on to the end. With a state file an interrupted run goes on
+    where it stopped; a state of other targets or settings is put aside.
+
+    Parameters
+    ----------
+    objective : Objective
+    targets : tuple of Target
+    starts, seed : int
+        How many starts, and what draws them.
+    state : Path, optional
+        File for what is done so far.
+    tell : callable
+        Told one line after each descent.
+
+    Raises
+    ------
+    InputError
+        If the best twin violates a constraint: which one and by how much.
+    """
+    key = _key(objective, targets, starts, seed)
+    done = _read_state(state, key)
+    rng = np.random.default_rng(seed)
+    centre = to_point({item.name: item.start for item in UNKNOWNS})
+    for number in range(starts):
+        spread = 0.1 * rng.standard_normal(len(centre)) * (number > 0)
+        if number >= len(done):
+            start = to_values(np.clip(centre + spread, 0.02, 0.98))
+            done.append(descend(objective, targets, start, evaluations=15))
+            _write_state(state, key, done)
+        tell(f"start {number + 1} of {starts}: cost {done[number].cost:.4g}")
+    best = min(done[:starts], key=lambda fit: fit.cost)
+    if len(done) == starts:
+        done.append(descend(objective, targets, best.values, evaluations=40))
+        _write_state(state, key, done)
+    final = done[-1]
+    tell(f"finished: cost {final.cost:.4g}")
+    for name, excess in violations(make_twin(final.values)).items():
+        if excess > 1e-3:
+            raise InputError(
+                f"calibration: constraint {name!r} is exceeded by {excess:.3g}; "
+                "expected a twin that meets it (more starts, other bounds)"
+            )
+    return final
+
+
+def _jacobian(
+    objective: Objective, targets: tuple[Target, ...], point: FloatArray
+) -> FloatArray:
+    now = objective.residuals(to_values(point), targets)
+    columns = np.zeros((len(now), len(point)))
+    owner = {name: model for model, own in STEP_NAMES.items() for name in own.values()}
+    models = list(STEP_NAMES)
+    # Steps first: they use the records that the call above has left.
+    order = sorted(range(len(point)), key=lambda k: UNKNOWNS[k].name not in owner)
+    for k in order:
+        name = UNKNOWNS[k].name
+        h = 2e-3 if point[k] + 2e-3 <= 1 else -2e-3
+        moved = point.copy()
+        moved[k] += h
+        values = to_values(moved)
+        if name in owner:
+            rows = np.arange(len(targets)) * len(models) + models.index(owner[name])
+            after = objective.step_residuals(values, targets, owner[name])
+            columns[rows, k] = (after - now[rows]) / h
+        else:
+            columns[:, k] = (objective.residuals(values, targets) - now) / h
+    return columns
+
+
+def _place(item: Unknown, value: float) -> float:
+    if item.logarithmic:
+        return float(np.log(value / item.low) / np.log(item.high / item.low))
+    return (value - item.low) / (item.high - item.low)
+
+
+def _value(item: Unknown, place: float) -> float:
+    if item.logarithmic:
+        return float(item.low * (item.high / item.low) ** place)
+    return item.low + place * (item.high - item.low)
+
+
+def _key(
+    objective: Objective, targets: tuple[Target, ...], starts: int, seed: int
+) -> str:
+    about = {
+        "unknowns": [asdict(item) for item in UNKNOWNS],
+        "targets": [asdict(item) for item in targets],
+        "filters": {name: dict(job) for name, job in objective.filters.items()},
+        "signals": {
+            name: hashlib.sha256(signal.u.tobytes()).hexdigest()
+            for name, signal in objective.signals.items()
+        },
+        "noise": objective.seed,
+        "window": objective.window_start_s,
+        "starts": starts,
+        "seed": seed,
+    }
+    return hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()
+
+
+def _read_state(state: Path | None, key: str) -> list[Fit]:
+    if state is None or not state.exists():
+        return []
+    content = read_json(state)
+    if content["key"] != key:
+        return []
+    return [Fit(**item) for item in content["done"]]
+
+
+def _write_state(state: Path | None, key: str, done: list[Fit]) -> None:
+    if state is not None:
+        write_json(state, {"key": key, "done": [asdict(item) for item in done]})

@@ -1,0 +1,161 @@
+"""How far a twin and its step sizes are from the targets."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from hystbench.adaptive import make_filter, step_names
+from hystbench.calibration.constraints import violations
+from hystbench.calibration.targets import Target
+from hystbench.calibration.twin import STEP_NAMES, make_twin, step_sizes
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+from hystbench.signals import Signal
+
+LOG_SCALE = {"gpo": 0.06, "backlash": 0.10, "volterra": 0.08, "delayed": 0.08}
+"""A deviation of log10 MSE that counts as one; beyond it a cell counts less."""
+RMS_SCALE = 0.01
+"""A relative deviation of the RMS displacement that counts as one."""
+CONSTRAINT_SCALE = {
+    "chirp least (s)": 0.02,
+    "chirp greatest (s)": 0.02,
+    "rise at the mode": 0.01,
+}
+INCONSISTENT_WEIGHT = 0.5
+DIVERGED = 1e4  # um^2, stands for an MSE that is not a number
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Errors of the filters on the records of a twin.
+
+    Parameters
+    ----------
+    mse : dict of str to dict of str to float
+        MSE (um^2) by signal and filter.
+    rms : dict of str to float
+        RMS displacement (um) by signal.
+    """
+
+    mse: dict[str, dict[str, float]]
+    rms: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Objective:
+    """Residuals of a twin on some signals.
+
+    Parameters
+    ----------
+    signals : mapping of str to Signal
+        Excitations by name.
+    filters : mapping of str to mapping
+        Settings of each filter's job, as :func:`hystbench.adaptive.make_filter` takes
+        them; the step sizes in them are replaced.
+    seed : int
+        Seed of the sensor noise, as of ``hystbench measure``.
+    window_start_s : float
+        Errors before it are left out of the MSE.
+    """
+
+    signals: Mapping[str, Signal]
+    filters: Mapping[str, Mapping[str, Any]]
+    seed: int
+    window_start_s: float = 0.0
+    _records: dict[str, Record] = field(default_factory=dict, repr=False)
+
+    def record(self, name: str, model: Model, input_zero: float) -> Record:
+        """Measure a signal on the twin as ``hystbench measure`` does."""
+        signal = self.signals[name]
+        rng = np.random.default_rng([self.seed, *name.encode()])
+        return Record(
+            name=name,
+            dt=signal.dt,
+            u=signal.u + input_zero,
+            y=model.simulate(signal.u, signal.dt, rng),
+            input=model.input,
+            output=model.output,
+            origin="twin",
+        )
+
+    def mse(self, model: str, record: Record, steps: Mapping[str, float]) -> float:
+        """MSE of a filter on a record after the start of the window."""
+        adaptive = make_filter(model, self.filters[model], record)
+        own: dict[str, Any] = {
+            own: steps[key] for key, own in step_names(model).items()
+        }
+        adaptive = replace(adaptive, **own)
+        result = adaptive.run(record.u, record.y)
+        if result.diverged_at is not None:
+            return DIVERGED
+        start = round(self.window_start_s / record.dt)
+        return float(np.mean(result.error[start:] ** 2))
+
+    def cells(self, values: Mapping[str, float], names: Iterable[str]) -> Cells:
+        """Errors of every filter on some signals."""
+        twin, steps = make_twin(dict(values)), step_sizes(dict(values))
+        mse, rms = {}, {}
+        for name in names:
+            record = self.record(name, twin, values["input zero"])
+            self._records[name] = record
+            start = round(self.window_start_s / record.dt)
+            rms[name] = float(np.sqrt(np.mean(record.y[start:] ** 2)))
+            mse[name] = {
+                model: self.mse(model, record, steps[model]) for model in steps
+            }
+        return Cells(mse, rms)
+
+    def residuals(
+        self, values: Mapping[str, float], targets: tuple[Target, ...]
+    ) -> FloatArray:
+        """Give the residuals: errors by signal and filter, RMS, constraints."""
+        found = self.cells(values, [target.signal for target in targets])
+        out = [
+            error_residual(model, found.mse[target.signal][model], target)
+            for target in targets
+            for model in STEP_NAMES
+        ]
+        out += [
+            (found.rms[target.signal] / target.rms - 1) / RMS_SCALE
+            for target in targets
+        ]
+        out += [
+            max(excess, 0.0) / CONSTRAINT_SCALE[name]
+            for name, excess in violations(make_twin(dict(values))).items()
+        ]
+        return np.array(out)
+
+    def step_residuals(
+        self, values: Mapping[str, float], targets: tuple[Target, ...], model: str
+    ) -> FloatArray:
+        """Give one filter's residuals on the records of the last :meth:`cells`.
+
+        A step size changes nothing else, so its column of the Jacobian is cheap.
+        """
+        steps = step_sizes(dict(values))[model]
+        return np.array(
+            [
+                error_residual(
+                    model,
+                    self.mse(model, self._records[target.signal], steps),
+                    target,
+                )
+                for target in targets
+            ]
+        )
+
+
+def error_residual(model: str, mse: float, target: Target) -> float:
+    """Residual of a cell: log10 of ours over published, scaled.
+
+    Its square grows like the deviation itself beyond one, so that a single cell that
+    no twin can meet does not bend all the others (soft L1).
+    """
+    deviation = np.log10(mse / target.mse[model]) / LOG_SCALE[model]
+    if not target.consistent[model]:
+        deviation *= INCONSISTENT_WEIGHT
+    return float(np.sign(deviation) * np.sqrt(2 * (np.hypot(1, deviation) - 1)))

@@ -1,0 +1,171 @@
+"""What is free in the twin, and the model file that the values make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hystbench.model import Model
+from hystbench.operators import PUBLISHED_ENVELOPE, thresholds
+from hystbench.record import FloatArray
+
+ORDER = 30
+AMPLITUDE = 0.632  # A, section 4
+
+STEP_NAMES = {
+    "gpo": {"mu": "gpo step"},
+    "backlash": {"mu": "backlash step"},
+    "volterra": {
+        "first_order": "volterra first step",
+        "second_order": "volterra second step",
+    },
+    "delayed": {"mu": "delayed step"},
+}
+"""The step sizes of each filter, as config.yaml names them, and their unknowns."""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A number that calibration may choose.
+
+    Parameters
+    ----------
+    name, unit : str
+    start, low, high : float
+        Where the search starts and what bounds it.
+    logarithmic : bool
+        Whether the search moves in the logarithm.
+    meaning : str
+        What it is in the twin, and why the bounds.
+    """
+
+    name: str
+    unit: str
+    start: float
+    low: float
+    high: float
+    logarithmic: bool
+    meaning: str
+
+
+UNKNOWNS = (
+    Unknown("gain", "um", 70, 20, 400, True, "sum of the weights of the operators"),
+    Unknown("decay", "-", 5, -5, 15, False, "weights go as exp(-decay i / (N + 1))"),
+    Unknown("first", "-", 1, 0.05, 300, True, "extra factor of the first weight"),
+    Unknown("zero", "Hz", 200, 20, 2000, True, "zero of the eddy-current lag"),
+    Unknown("pole", "Hz", 110, 10, 2000, True, "pole of the eddy-current lag"),
+    Unknown("mode", "Hz", 65, 60, 70, False, "first mode; 69.7 Hz seen in a sweep"),
+    Unknown("damping", "-", 0.05, 0.01, 0.15, True, "damping ratio of the mode"),
+    Unknown("participation", "-", -0.01, -0.3, 0.3, False, "static share of the mode"),
+    Unknown("quadratic", "1/um", 0, -0.02, 0.02, False, "sensor's square"),
+    Unknown("cubic", "1/um^2", 0, -0.002, 0.002, False, "sensor's cube"),
+    Unknown("offset", "um", 0.3, -2, 2, False, "sensor's zero"),
+    Unknown("noise", "um", 0.036, 0.02, 0.15, True, "RMS of the sensor noise"),
+    Unknown("input zero", "A", 0.007, -0.03, 0.03, False, "recorded minus true input"),
+    Unknown("gpo step", "-", 1.5, 0.05, 20, True, "convergence factor"),
+    Unknown("backlash step", "-", 0.12, 0.01, 3, True, "convergence factor"),
+    Unknown("volterra first step", "-", 0.006, 1e-4, 0.2, True, "convergence factor"),
+    Unknown("volterra second step", "-", 4e-4, 1e-5, 0.02, True, "convergence factor"),
+    Unknown("delayed step", "-", 0.025, 1e-3, 0.3, True, "convergence factor"),
+)
+
+
+def weights(gain: float, decay: float, first: float) -> FloatArray:
+    """Weights of the play operators: an exponential, the first one apart."""
+    w = np.exp(-decay * np.arange(ORDER + 1) / (ORDER + 1))
+    w[0] *= first
+    return np.asarray(gain * w / w.sum())
+
+
+def make_twin(values: dict[str, float]) -> Model:
+    """Make the twin's model from the values of the unknowns.
+
+    Parameters
+    ----------
+    values : dict of str to float
+        By the names of :data:`UNKNOWNS`; step sizes and the zero error of the
+        recorded input are no part of the model and are left aside.
+    """
+    fitted = "Fitted to the published errors and implied RMS of eight signals"
+    sweep = f"{fitted}, held to the times of the chirp in the text."
+    lag = f"{fitted}; pole at {values['pole']:.4g} Hz, zero at {values['zero']:.4g} Hz."
+    content = {
+        "name": "gma",
+        "input": {"name": "current", "unit": "A"},
+        "output": {"name": "displacement", "unit": "um"},
+        "chain": [
+            {
+                "gpi": {
+                    "envelope": list(PUBLISHED_ENVELOPE.to_dict().values()),
+                    "thresholds": _rounded(
+                        thresholds(PUBLISHED_ENVELOPE, AMPLITUDE, ORDER)
+                    ),
+                    "weights": _rounded(
+                        weights(values["gain"], values["decay"], values["first"])
+                    ),
+                }
+            },
+            {
+                "transfer-function": {
+                    "numerator": [*_rounded([_lag(values["zero"])]), 1.0],
+                    "denominator": [*_rounded([_lag(values["pole"])]), 1.0],
+                }
+            },
+            {
+                "resonance": {
+                    "frequency_hz": _round(values["mode"]),
+                    "damping_ratio": _round(values["damping"]),
+                    "participation": _round(values["participation"]),
+                }
+            },
+            {
+                "sensor-nonlinearity": {
+                    "quadratic": _round(values["quadratic"]),
+                    "cubic": _round(values["cubic"]),
+                }
+            },
+            {"calibration-error": {"gain": 1.0, "offset": _round(values["offset"])}},
+            {"sensor-noise": {"rms": _round(values["noise"])}},
+        ],
+        "provenance": {
+            name: {"source": source, "note": note}
+            for name, source, note in (
+                ("gpi.envelope", "published", "Section 4, from a 1 Hz sine."),
+                ("gpi.thresholds", "derived", "Eq. 10 with N = 30 at 0.632 A."),
+                ("gpi.weights", "calibrated", f"{fitted}."),
+                ("transfer-function.numerator", "calibrated", lag),
+                ("transfer-function.denominator", "calibrated", lag),
+                ("resonance.frequency_hz", "calibrated", sweep),
+                ("resonance.damping_ratio", "calibrated", sweep),
+                ("resonance.participation", "calibrated", sweep),
+                ("sensor-nonlinearity.quadratic", "calibrated", f"{fitted}."),
+                ("sensor-nonlinearity.cubic", "calibrated", f"{fitted}."),
+                ("calibration-error.gain", "derived", "One: inside the weights."),
+                ("calibration-error.offset", "calibrated", f"{fitted}."),
+                ("sensor-noise.rms", "calibrated", f"{fitted}."),
+            )
+        },
+    }
+    return Model.from_mapping(content, "calibration")
+
+
+def step_sizes(values: dict[str, float]) -> dict[str, dict[str, float]]:
+    """Step sizes by filter, as ``convergence_factor`` of config.yaml wants them."""
+    return {
+        model: {key: values[name] for key, name in names.items()}
+        for model, names in STEP_NAMES.items()
+    }
+
+
+def _lag(frequency_hz: float) -> float:
+    return float(1 / (2 * np.pi * frequency_hz))
+
+
+def _round(value: float) -> float:
+    """Round to seven digits: finer than the tables tell, and legible."""
+    return float(f"{value:.7g}")
+
+
+def _rounded(values: FloatArray | list[float]) -> list[float]:
+    return [_round(float(value)) for value in values]

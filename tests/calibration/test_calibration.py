@@ -1,0 +1,229 @@
+"""Calibration: what it may see, what it minimises, and that it finds a known twin."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.calibration import fit as fitting
+from hystbench.calibration.constraints import check_stroke, turns, violations
+from hystbench.calibration.crossvalidation import leave_one_out
+from hystbench.calibration.fit import Fit, calibrate, descend, to_point, to_values
+from hystbench.calibration.objective import Objective, error_residual
+from hystbench.calibration.targets import CALIBRATION_SIGNALS, Target, targets
+from hystbench.calibration.twin import UNKNOWNS, make_twin, step_sizes, weights
+from hystbench.errors import InputError
+from hystbench.signals import Signal, chirp, sine
+
+START = {item.name: item.start for item in UNKNOWNS}
+COMMON = {"order": 30, "input_before": 0.0, "amplitude": 0.632}
+PLAYS = {**COMMON, "initial_state": "zero"}
+FILTERS = {
+    "gpo": {**PLAYS, "operator_form": "eq12", "envelopes": "published"},
+    "backlash": {**PLAYS, "backlash_structure": "delay-line"},
+    "volterra": COMMON,
+    "delayed": COMMON,
+}
+FILTERS = {
+    name: {
+        **job,
+        "convergence_factor": {"first_order": 1.0, "second_order": 1.0}
+        if name == "volterra"
+        else {"mu": 1.0},
+    }
+    for name, job in FILTERS.items()
+}
+HELD_OUT = (
+    "sine-060hz",
+    "sine-120hz",
+    "sine-200hz",
+    "chirp-1-100hz",
+    "multisine-random-0-100hz",
+)
+
+
+def objective(names=("sine-040hz", "sine-100hz"), duration_s=0.1):
+    signals = {
+        name: Signal(
+            name,
+            1e-4,
+            sine(
+                frequency_hz=float(name[5:8]),
+                amplitude=0.632,
+                duration_s=duration_s,
+                sampling_frequency_hz=10_000,
+            ),
+            "A",
+        )
+        for name in names
+    }
+    return Objective(signals, FILTERS, seed=1)
+
+
+def targets_of(problem, values):
+    cells = problem.cells(values, problem.signals)
+    consistent = dict.fromkeys(FILTERS, True)
+    return tuple(
+        Target(name, cells.mse[name], cells.rms[name], consistent)
+        for name in problem.signals
+    )
+
+
+@pytest.mark.parametrize("name", HELD_OUT)
+def test_a_held_out_signal_is_refused(name):
+    with pytest.raises(InputError, match=f"'{name}' is held out or unknown"):
+        targets([name])
+
+
+def test_targets_are_those_of_the_tables():
+    found = {target.signal: target for target in targets()}
+    assert tuple(found) == CALIBRATION_SIGNALS
+    # Table 1, and sqrt(MSE) / RE of its rows by hand.
+    assert found["sine-150hz"].mse == {
+        "gpo": 0.0157,
+        "backlash": 0.1163,
+        "volterra": 0.0224,
+        "delayed": 0.2514,
+    }
+    assert found["sine-010hz"].rms == pytest.approx(0.4248**0.5 / 0.0711, rel=1e-3)
+    # GPO and Volterra imply 5.06 and 4.73 um here, backlash and delayed 4.88 um.
+    five = found["multisine-5-25-50-75-100hz"]
+    assert five.consistent["backlash"]
+    assert not five.consistent["gpo"]
+    assert five.rms == pytest.approx(4.884, abs=0.002)
+
+
+@given(st.lists(st.floats(0, 1), min_size=len(UNKNOWNS), max_size=len(UNKNOWNS)))
+def test_places_and_values_are_each_others_inverse(point):
+    np.testing.assert_allclose(to_point(to_values(np.array(point))), point, atol=1e-9)
+
+
+def test_weights_are_an_exponential_with_the_first_apart():
+    w = weights(gain=62.0, decay=0.0, first=1.0)
+    np.testing.assert_allclose(w, 2.0)
+    w = weights(gain=70.0, decay=3.1, first=4.0)
+    assert w.sum() == pytest.approx(70.0)
+    np.testing.assert_allclose(w[2:] / w[1:-1], np.exp(-0.1))
+    assert w[0] / w[1] == pytest.approx(4.0 * np.exp(0.1))
+
+
+def test_a_small_residual_is_the_deviation_and_a_large_one_grows_less():
+    target = Target("s", {"gpo": 1.0}, 1.0, {"gpo": True})
+    assert error_residual("gpo", 1.0, target) == 0.0
+    assert error_residual("gpo", 10**0.006, target) == pytest.approx(0.1, rel=1e-2)
+    far = error_residual("gpo", 10**6.0, target)
+    # r^2 / 2 = sqrt(1 + 100^2) - 1
+    assert far**2 / 2 == pytest.approx(np.sqrt(1 + 1e4) - 1)
+    doubted = dataclasses.replace(target, consistent={"gpo": False})
+    assert error_residual("gpo", 10**0.006, doubted) == pytest.approx(0.05, rel=1e-2)
+
+
+def test_turns_are_those_of_the_peak_to_peak_displacement():
+    model = make_twin({**START, "participation": -0.05, "damping": 0.03})
+    dt = 1e-4
+    u = chirp(
+        from_hz=1,
+        to_hz=100,
+        amplitude=0.632,
+        duration_s=2.03,
+        sampling_frequency_hz=1 / dt,
+    )
+    y = model.simulate(u, dt)
+    # Extremes of each half period, by the sign of the slope; hysteresis included.
+    places = np.flatnonzero(np.diff(np.sign(np.diff(y)))) + 1
+    times = (places[1:] + places[:-1]) / 2 * dt
+    sizes = np.abs(np.diff(y[places]))
+    near = (times > 1.0) & (times < 1.65)
+    times, sizes = times[near], sizes[near]
+    found = turns(model)
+    top = np.argmax(sizes * (times > 1.28))
+    assert found.greatest_s == pytest.approx(times[top], abs=0.02)
+    assert found.least_s == pytest.approx(times[np.argmin(sizes[:top])], abs=0.02)
+
+
+def test_a_mode_elsewhere_violates_the_chirp():
+    excess = violations(make_twin({**START, "mode": 60.0, "damping": 0.01}))
+    assert excess["chirp greatest (s)"] > 0
+    with pytest.raises(InputError, match="31 um; expected within the stroke of 30 um"):
+        check_stroke("sine", np.array([0.0, -31.0]))
+
+
+def test_a_step_size_alone_gives_the_same_residuals_as_the_whole():
+    problem = objective()
+    aims = targets_of(problem, {**START, "gain": 60.0})
+    changed = {**START, "delayed step": 0.05}
+    whole = problem.residuals(changed, aims)
+    alone = problem.step_residuals(changed, aims, "delayed")
+    rows = [i * 4 + list(FILTERS).index("delayed") for i in range(len(aims))]
+    np.testing.assert_array_equal(whole[rows], alone)
+
+
+def test_descent_finds_a_twin_that_made_the_targets():
+    problem = objective()
+    truth = {**START, "gain": 66.0, "backlash step": 0.2, "pole": 125.0}
+    aims = targets_of(problem, truth)
+    before = problem.residuals(START, aims)
+    fit = descend(problem, aims, START, evaluations=12)
+    assert fit.cost < 1e-2 * (before @ before) / 2
+    found = problem.cells(fit.values, problem.signals)
+    for aim in aims:
+        for model, mse in aim.mse.items():
+            assert found.mse[aim.signal][model] == pytest.approx(mse, rel=0.1)
+
+
+def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
+    calls = []
+
+    def count(problem, aims, start, evaluations):
+        calls.append(evaluations)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return Fit(dict(START), cost=1.0 / len(calls))
+
+    monkeypatch.setattr(fitting, "descend", count)
+    problem, state = objective(), tmp_path / "state.json"
+    options = {"starts": 3, "seed": 1, "state": state}
+    with pytest.raises(KeyboardInterrupt):
+        calibrate(problem, (), **options)
+    told = []
+    calibrate(problem, (), **options, tell=told.append)
+    assert len(calls) == 5  # two, the one that broke off, its repetition, the last
+    assert told[0] == "start 1 of 3: cost 1"
+    calibrate(problem, (), **options)
+    assert len(calls) == 5
+    calibrate(dataclasses.replace(problem, seed=2), (), **options)
+    assert len(calls) == 9  # other noise: nothing of the state counts
+
+
+def test_a_twin_that_breaks_a_constraint_is_refused(monkeypatch):
+    broken = {**START, "mode": 60.0, "damping": 0.01}
+    monkeypatch.setattr(fitting, "descend", lambda *a, **k: Fit(broken, 1.0))
+    with pytest.raises(InputError, match=r"'chirp \w+ \(s\)' is exceeded by"):
+        calibrate(objective(), (), starts=1, seed=1)
+
+
+def test_the_signal_left_out_is_not_fitted():
+    problem = objective()
+    aims = targets_of(problem, START)
+    seen = []
+
+    def find(problem, others, start, evaluations):
+        seen.append([item.signal for item in others])
+        return Fit(dict(START), 0.0)
+
+    left = leave_one_out(problem, aims, Fit(dict(START), 0.0), find=find)
+    assert seen == [["sine-100hz"], ["sine-040hz"]]
+    assert [item.signal for item in left] == ["sine-040hz", "sine-100hz"]
+    for item in left:  # the twin that made the targets has no deviation
+        assert item.rms_error == pytest.approx(0.0, abs=1e-12)
+        assert set(item.log10_ratio.values()) == {0.0}
+
+
+def test_step_sizes_are_named_as_in_the_config():
+    assert step_sizes(START) == {
+        name: {key: START[unknown] for key, unknown in names.items()}
+        for name, names in fitting.STEP_NAMES.items()
+    }
+    assert set(step_sizes(START)["volterra"]) == {"first_order", "second_order"}
