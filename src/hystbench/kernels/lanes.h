@@ -1,8 +1,7 @@
-/* Eight numbers at a time, in GCC's portable vector notation.
+/* Several numbers at a time, in GCC's portable vector notation.
  *
- * The order of every sum is the order written here, whatever the alignment of
- * the data and the width of the machine's registers: so a run gives the same
- * bytes each time.  The compiler lowers eight lanes to what the machine has.
+ * The order of every sum is the order written here, whatever the alignment of the
+ * data: so on one machine a run gives the same bytes each time.
  */
 #ifndef HYSTBENCH_LANES_H
 #define HYSTBENCH_LANES_H
@@ -12,14 +11,28 @@
 
 #define INLINE static inline __attribute__((always_inline))
 #define EXPORT __attribute__((visibility("default")))
-#define WIDTH 8 /* lanes of a vector; the Python side pads to it */
-#define QUAD 4
 #define ALIGNED __attribute__((aligned(64))) /* no load or store across cache lines */
+#define UNROLL _Pragma("GCC unroll 32")
+
+#define WIDTH 8 /* the Python side pads operators and weights to it */
+#define TILE 4  /* rows and columns of the tiles of second-order weights */
+
+/* Lanes of this machine's registers, and of those that a tile's row is made of. */
+#if defined(__AVX512F__)
+#define LANES 8
+#define PART 4
+#elif defined(__AVX__)
+#define LANES 4
+#define PART 4
+#else
+#define LANES 2
+#define PART 2
+#endif
 
 typedef ptrdiff_t index_t;
-typedef double lanes __attribute__((vector_size(64)));
-typedef double quad __attribute__((vector_size(32)));
 typedef double pair __attribute__((vector_size(16)));
+typedef double lanes __attribute__((vector_size(8 * LANES)));
+typedef double part __attribute__((vector_size(8 * PART)));
 
 /* Arrays lie anywhere: a copy is one unaligned instruction. */
 INLINE lanes load(const double *p)
@@ -28,24 +41,32 @@ INLINE lanes load(const double *p)
     __builtin_memcpy(&v, p, sizeof v);
     return v;
 }
-INLINE quad load_quad(const double *p)
+INLINE part load_part(const double *p)
 {
-    quad v;
+    part v;
     __builtin_memcpy(&v, p, sizeof v);
     return v;
 }
 INLINE void store(double *p, lanes v) { __builtin_memcpy(p, &v, sizeof v); }
-INLINE void store_quad(double *p, quad v) { __builtin_memcpy(p, &v, sizeof v); }
+INLINE void store_part(double *p, part v) { __builtin_memcpy(p, &v, sizeof v); }
 
-INLINE double sum_quad(quad v)
+INLINE double sum_part(part v)
 {
+#if PART == 4
     pair p = __builtin_shufflevector(v, v, 0, 1) + __builtin_shufflevector(v, v, 2, 3);
     return p[0] + p[1];
+#else
+    return v[0] + v[1];
+#endif
 }
 INLINE double sum(lanes v)
 {
-    return sum_quad(__builtin_shufflevector(v, v, 0, 1, 2, 3)
+#if LANES == 8
+    return sum_part(__builtin_shufflevector(v, v, 0, 1, 2, 3)
                     + __builtin_shufflevector(v, v, 4, 5, 6, 7));
+#else
+    return sum_part(v);
+#endif
 }
 
 /* Eq. 4: every generalized play operator to max(gr - r, min(gl + r, w)).
@@ -68,18 +89,17 @@ INLINE void copy(index_t size, const double *from, double *to)
 /* An error beyond the limit, or one that compares with nothing. */
 INLINE int diverged(double error, double limit) { return !(fabs(error) <= limit); }
 
-/* Call a body with a constant for the usual sizes, so that the compiler keeps
- * weights and states in registers. */
-#define FOR_VECTORS(vectors, call) \
-    switch (vectors) {             \
-    case 1: return call(1);        \
-    case 2: return call(2);        \
-    case 3: return call(3);        \
-    case 4: return call(4);        \
-    case 5: return call(5);        \
-    case 6: return call(6);        \
-    default: return call(vectors); \
+/* Call a body with a constant number of vectors for the usual sizes, so that the
+ * compiler keeps weights and states in registers. */
+#define FOR_SIZES(wide, call)                   \
+    switch (wide) {                             \
+    case 1: return call(1 * WIDTH / LANES);     \
+    case 2: return call(2 * WIDTH / LANES);     \
+    case 3: return call(3 * WIDTH / LANES);     \
+    case 4: return call(4 * WIDTH / LANES);     \
+    case 5: return call(5 * WIDTH / LANES);     \
+    case 6: return call(6 * WIDTH / LANES);     \
+    default: return call(wide * WIDTH / LANES); \
     }
-#define UNROLL _Pragma("GCC unroll 8")
 
 #endif

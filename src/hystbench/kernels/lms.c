@@ -19,7 +19,7 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
     index_t k;
     UNROLL
     for (index_t j = 0; j < vectors; j++) {
-        w[j] = load(weights + j * WIDTH);
+        w[j] = load(weights + j * LANES);
         last[j] = (lanes){0};
     }
     for (k = 0; k < n; k++) {
@@ -27,11 +27,11 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
         lanes before = {0}, overlap = {0}, power = {0};
         UNROLL
         for (index_t j = 0; j < vectors; j++) {
-            lanes h = load(row + j * WIDTH);
+            lanes h = load(row + j * LANES);
             before += w[j] * h;
             overlap += last[j] * h;
             w[j] += correction * last[j];
-            last[j] = load(step + j * WIDTH) * h;
+            last[j] = load(step + j * LANES) * h;
         }
         double output = sum(before) + correction * sum(overlap);
         double error = d[k] - output;
@@ -43,29 +43,29 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
         if (regularization >= 0) {
             UNROLL
             for (index_t j = 0; j < vectors; j++) {
-                lanes h = load(row + j * WIDTH);
-                power += load(used + j * WIDTH) * h * h;
+                lanes h = load(row + j * LANES);
+                power += load(used + j * LANES) * h * h;
             }
             correction *= 1 / (regularization + sum(power));
         }
     }
     UNROLL
     for (index_t j = 0; j < vectors; j++)
-        store(weights + j * WIDTH, w[j] + correction * last[j]);
+        store(weights + j * LANES, w[j] + correction * last[j]);
     return k;
 }
 
 /* Regressor k is rows[k * stride], padded to WIDTH; with stride 1 a delay line.
  * step is 2 mu for each weight and zero in the padding, used 1 and zero.  A
  * regularization of zero or more makes it the normalized LMS. */
-EXPORT index_t hb_lms_rows(index_t n, index_t vectors, const double *rows,
+EXPORT index_t hb_lms_rows(index_t n, index_t wide, const double *rows,
                            index_t stride, const double *d, const double *step,
                            const double *used, double regularization, double limit,
                            double *weights, double *y, double *e)
 {
 #define CALL(size)                                                                     \
     lms_rows(n, rows, stride, d, step, used, regularization, limit, weights, y, e, size)
-    FOR_VECTORS(vectors, CALL)
+    FOR_SIZES(wide, CALL)
 #undef CALL
 }
 
@@ -74,7 +74,7 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
                         double regularization, double limit, double *state,
                         double *weights, double *y, double *e, index_t vectors)
 {
-    const index_t size = vectors * WIDTH;
+    const index_t size = vectors * LANES;
     double h[size] ALIGNED, own_r[size] ALIGNED;
     lanes w[vectors], last[vectors];
     double correction = 0;
@@ -83,7 +83,7 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
     copy(size, r, own_r);
     UNROLL
     for (index_t j = 0; j < vectors; j++) {
-        w[j] = load(weights + j * WIDTH);
+        w[j] = load(weights + j * LANES);
         last[j] = (lanes){0};
     }
     for (k = 0; k < n; k++) {
@@ -91,7 +91,7 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
         play_step(size, left + k, right + k, pace, own_r, h);
         UNROLL
         for (index_t j = 0; j < vectors; j++) {
-            lanes now = load(h + j * WIDTH);
+            lanes now = load(h + j * LANES);
             before += w[j] * now;
             overlap += last[j] * now;
             w[j] += correction * last[j];
@@ -113,14 +113,14 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
     copy(size, h, state);
     UNROLL
     for (index_t j = 0; j < vectors; j++)
-        store(weights + j * WIDTH, w[j] + correction * last[j]);
+        store(weights + j * LANES, w[j] + correction * last[j]);
     return k;
 }
 
 /* Regressor = outputs of play operators.  Operator j at sample k reads the
  * envelopes at [k + j] (pace 1: they run along the delay line) or all at [k]
  * (pace 0).  In the padding the threshold is infinite: outputs stay zero. */
-EXPORT index_t hb_lms_play(index_t n, index_t vectors, const double *left,
+EXPORT index_t hb_lms_play(index_t n, index_t wide, const double *left,
                            const double *right, index_t pace, const double *d,
                            const double *r, double step, double regularization,
                            double limit, double *state, double *weights, double *y,
@@ -132,18 +132,18 @@ EXPORT index_t hb_lms_play(index_t n, index_t vectors, const double *left,
 #define TOGETHER(size)                                                             \
     lms_play(n, left, right, 0, d, r, step, regularization, limit, state, weights, \
              y, e, size)
-    if (pace) FOR_VECTORS(vectors, ALONG)
-    FOR_VECTORS(vectors, TOGETHER)
+    if (pace) FOR_SIZES(wide, ALONG)
+    FOR_SIZES(wide, TOGETHER)
 #undef ALONG
 #undef TOGETHER
 }
 
 /* Outputs of those operators as rows, for the correlation matrix of Eq. 19. */
-EXPORT void hb_play_rows(index_t n, index_t vectors, const double *left,
+EXPORT void hb_play_rows(index_t n, index_t wide, const double *left,
                          const double *right, index_t pace, const double *restrict r,
                          double *restrict state, double *restrict rows)
 {
-    const index_t size = vectors * WIDTH;
+    const index_t size = wide * WIDTH;
     for (index_t k = 0; k < n; k++) {
         play_step(size, left + k, right + k, pace, r, state);
         copy(size, state, rows + k * size);

@@ -29,7 +29,7 @@ INLINE index_t prandtl_ishlinskii(index_t n, const double *left, const double *r
                                   const double *r, const double *weights,
                                   double *state, double *y, index_t vectors)
 {
-    const index_t size = vectors * WIDTH;
+    const index_t size = vectors * LANES;
     double w[size] ALIGNED, own_r[size] ALIGNED;
     copy(size, state, w);
     copy(size, r, own_r);
@@ -37,7 +37,8 @@ INLINE index_t prandtl_ishlinskii(index_t n, const double *left, const double *r
         lanes total = {0};
         play_step(size, left + k, right + k, 0, own_r, w);
         UNROLL
-        for (index_t j = 0; j < size; j += WIDTH) total += load(w + j) * load(weights + j);
+        for (index_t j = 0; j < size; j += LANES)
+            total += load(w + j) * load(weights + j);
         y[k] = sum(total);
     }
     copy(size, w, state);
@@ -45,12 +46,12 @@ INLINE index_t prandtl_ishlinskii(index_t n, const double *left, const double *r
 }
 
 /* Eq. 9: y = sum of weight times operator, all padded to WIDTH. */
-EXPORT index_t hb_prandtl_ishlinskii(index_t n, index_t vectors, const double *left,
+EXPORT index_t hb_prandtl_ishlinskii(index_t n, index_t wide, const double *left,
                                      const double *right, const double *r,
                                      const double *weights, double *state, double *y)
 {
 #define CALL(size) prandtl_ishlinskii(n, left, right, r, weights, state, y, size)
-    FOR_VECTORS(vectors, CALL)
+    FOR_SIZES(wide, CALL)
 #undef CALL
 }
 
@@ -59,22 +60,24 @@ INLINE index_t rate_dependent(index_t n, const double *number, const double *use
                               const double *spacing, const double *ratio, double *state,
                               double *y, index_t vectors)
 {
-    const index_t size = vectors * WIDTH;
+    const index_t size = vectors * LANES;
     const int from_one = number[0] > 0;
     double w[size] ALIGNED, r[size] ALIGNED, place[size] ALIGNED;
     copy(size, state, w);
     copy(size, number, place);
     for (index_t k = 0; k < n; k++) {
-        double q = ratio[k], q2 = q * q, q4 = q2 * q2;
-        lanes total = {0};
-        lanes power = {1, q, q2, q2 * q, q4, q4 * q, q4 * q2, q4 * q2 * q};
+        const double q = ratio[k], q2 = q * q, q4 = q2 * q2, q6 = q4 * q2;
+        const double powers[] = {1, q, q2, q2 * q, q4, q4 * q, q6, q6 * q, q4 * q4};
+        lanes total = {0}, power;
+        UNROLL
+        for (index_t j = 0; j < LANES; j++) power[j] = powers[j];
         if (from_one) power *= q;
         for (index_t i = 0; i < size; i++) r[i] = place[i] * spacing[k];
         play_step(size, left + k, right + k, 0, r, w);
         UNROLL
-        for (index_t j = 0; j < size; j += WIDTH) {
+        for (index_t j = 0; j < size; j += LANES) {
             total += load(w + j) * (power * load(used + j));
-            power *= q4 * q4;
+            power *= powers[LANES];
         }
         y[k] = sum(total);
     }
@@ -85,13 +88,13 @@ INLINE index_t rate_dependent(index_t n, const double *number, const double *use
 /* y = sum of ratio^i times the operator of threshold i * spacing, both changing
  * from sample to sample.  number holds the i, from 0 or 1 on; used is 1 for an
  * operator that counts and 0 in the padding. */
-EXPORT index_t hb_rate_dependent(index_t n, index_t vectors, const double *number,
+EXPORT index_t hb_rate_dependent(index_t n, index_t wide, const double *number,
                                  const double *used, const double *left,
                                  const double *right, const double *spacing,
                                  const double *ratio, double *state, double *y)
 {
 #define CALL(size) \
     rate_dependent(n, number, used, left, right, spacing, ratio, state, y, size)
-    FOR_VECTORS(vectors, CALL)
+    FOR_SIZES(wide, CALL)
 #undef CALL
 }

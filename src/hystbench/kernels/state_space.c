@@ -5,7 +5,7 @@ INLINE void simulate(index_t n, const double *a, const double *b, const double *
                      double d, const double *u, double *state, double *y,
                      index_t vectors)
 {
-    const index_t size = vectors * WIDTH;
+    const index_t size = vectors * LANES;
     double x[size] ALIGNED;
     lanes next[vectors];
     copy(size, state, x);
@@ -13,9 +13,9 @@ INLINE void simulate(index_t n, const double *a, const double *b, const double *
         lanes output = {0};
         UNROLL
         for (index_t j = 0; j < vectors; j++) {
-            const double *column = a + j * WIDTH;
-            lanes even = load(b + j * WIDTH) * u[k], odd = {0};
-            output += load(c + j * WIDTH) * load(x + j * WIDTH);
+            const double *column = a + j * LANES;
+            lanes even = load(b + j * LANES) * u[k], odd = {0};
+            output += load(c + j * LANES) * load(x + j * LANES);
             UNROLL /* two chains of sums: half the wait */
             for (index_t i = 0; i < size; i += 2) {
                 even += load(column + i * size) * x[i];
@@ -25,21 +25,21 @@ INLINE void simulate(index_t n, const double *a, const double *b, const double *
         }
         y[k] = sum(output) + d * u[k];
         UNROLL
-        for (index_t j = 0; j < vectors; j++) store(x + j * WIDTH, next[j]);
+        for (index_t j = 0; j < vectors; j++) store(x + j * LANES, next[j]);
     }
     copy(size, x, state);
 }
 
 /* x(k+1) = A x(k) + B u(k), y(k) = C x(k) + D u(k); a holds the columns of A,
  * and all is padded with zeros to a multiple of WIDTH states. */
-EXPORT void hb_state_space(index_t n, index_t vectors, const double *a, const double *b,
+EXPORT void hb_state_space(index_t n, index_t wide, const double *a, const double *b,
                            const double *c, double d, const double *u, double *state,
                            double *y)
 {
-    if (vectors == 1)
-        simulate(n, a, b, c, d, u, state, y, 1);
-    else if (vectors == 2)
-        simulate(n, a, b, c, d, u, state, y, 2);
+    if (wide == 1)
+        simulate(n, a, b, c, d, u, state, y, WIDTH / LANES);
+    else if (wide == 2)
+        simulate(n, a, b, c, d, u, state, y, 2 * WIDTH / LANES);
     else
-        simulate(n, a, b, c, d, u, state, y, vectors);
+        simulate(n, a, b, c, d, u, state, y, wide * WIDTH / LANES);
 }
