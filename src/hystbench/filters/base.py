@@ -8,11 +8,9 @@ differ in the regressor ``H`` alone, so a new one is one file with one method.
 
 from __future__ import annotations
 
-import os
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -20,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from hystbench import kernels
 from hystbench.errors import InputError
+from hystbench.filters.bound import Bound, eigenvalue_bound
 from hystbench.record import FloatArray
 
 CHUNK = 16000
@@ -79,47 +78,6 @@ class Result:
     weights: FloatArray
     diverged_at: int | None
     state: State
-
-
-@dataclass(frozen=True)
-class Bound:
-    """Bound on the step size, Eq. 19, and what sets the speed of convergence.
-
-    Parameters
-    ----------
-    trace : float
-        Trace of ``R = E[H H']``, the mean over the record.
-    largest, smallest : float
-        Eigenvalues of R; the smallest is zero where R has less than full rank.
-    rank : int
-        Eigenvalues above ``size * eps * largest``: the others are rounding.
-    size : int
-        Number of weights.
-    smallest_nonzero : float
-        Smallest eigenvalue that counts for the rank.
-    """
-
-    trace: float
-    largest: float
-    smallest: float
-    rank: int
-    size: int
-    smallest_nonzero: float
-
-    @property
-    def bound(self) -> float:
-        """Step sizes between zero and this converge in the mean: 1 / trace."""
-        return 1 / self.trace if self.trace > 0 else np.inf
-
-    @property
-    def spread(self) -> float:
-        """Largest over smallest eigenvalue; infinite where R has not full rank."""
-        return self.largest / self.smallest if self.smallest > 0 else np.inf
-
-    @property
-    def spread_nonzero(self) -> float:
-        """Largest over smallest of the eigenvalues that are not rounding."""
-        return self.largest / self.smallest_nonzero if self.rank else np.inf
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -388,59 +346,6 @@ class AdaptiveFilter(ABC):
     def _kernel_regularization(self) -> float:
         # the kernels take a negative one for the plain LMS
         return self.regularization if self.normalized else -1.0
-
-
-def run_many(
-    jobs: Iterable[tuple[AdaptiveFilter, ArrayLike, ArrayLike]],
-    workers: int | None = None,
-    limit: float | None = None,
-) -> list[Result]:
-    """Run many filters at once: step sizes, orders, seeds.
-
-    Each job runs as it would alone, so the results do not depend on ``workers``.
-    Jobs may share their arrays.
-
-    Parameters
-    ----------
-    jobs : iterable of (AdaptiveFilter, array_like, array_like)
-        Filter, input x and plant output d.
-    workers : int, optional
-        Threads; by default one for each processor.
-    limit : float, optional
-        As for :meth:`AdaptiveFilter.run`.
-
-    Returns
-    -------
-    list of Result
-        In the order of the jobs.
-    """
-    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        running = [pool.submit(item.run, x, d, None, limit) for item, x, d in jobs]
-        return [job.result() for job in running]
-
-
-def with_step_sizes(
-    adaptive: AdaptiveFilter, step_sizes: Iterable[float]
-) -> list[AdaptiveFilter]:
-    """Give copies of a filter that differ in the step size."""
-    return [replace(adaptive, step_size=size) for size in step_sizes]
-
-
-def eigenvalue_bound(correlation: FloatArray, size: int) -> Bound:
-    """Eigenvalues of R; those beyond the matrix given, up to ``size``, are zero."""
-    values = np.linalg.eigvalsh(correlation)
-    largest = float(values[-1])
-    nonzero = values[values > size * np.finfo(float).eps * largest]
-    rank = len(nonzero)
-    smallest = float(nonzero[0]) if rank else 0.0
-    return Bound(
-        trace=float(np.trace(correlation)),
-        largest=largest,
-        smallest=smallest if rank == size else 0.0,
-        rank=rank,
-        size=size,
-        smallest_nonzero=smallest,
-    )
 
 
 def positive(name: str, value: float) -> None:

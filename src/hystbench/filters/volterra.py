@@ -10,12 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hystbench import kernels
-from hystbench.filters.base import (
-    AdaptiveFilter,
-    Bound,
-    eigenvalue_bound,
-    positive,
-)
+from hystbench.filters.base import AdaptiveFilter, positive
+from hystbench.filters.bound import Bound, eigenvalue_bound
 from hystbench.record import FloatArray
 
 TILE = 4  # the kernel keeps tiles of 4 x 4 second-order weights
