@@ -100,6 +100,9 @@ def blocks(draw):
         roots = draw(st.lists(st.floats(-1e3, -1), min_size=1, max_size=3))
         values["denominator"] = [float(c) for c in np.poly(roots)]
         values["numerator"] = values["numerator"][: len(roots) + 1]
+    if block.name == "rdgpi":
+        values |= {"alpha1": abs(values["alpha1"]), "c": abs(values["c"])}
+        values["order"] = draw(st.integers(0, 40))
     return block.from_mapping(values)
 
 

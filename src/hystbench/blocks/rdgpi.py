@@ -1,0 +1,59 @@
+"""Block ``rdgpi``: rate-dependent generalized Prandtl-Ishlinskii hysteresis."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import choice, number
+from hystbench.errors import InputError
+from hystbench.rdgpi.model import STARTS, RateDependentGPI
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class RateDependentPrandtlIshlinskii(Block):
+    """The paper's baseline of Table 4, as :mod:`hystbench.rdgpi` reads it.
+
+    The rate is a central difference, so the output follows its input one sample
+    ahead of what a causal block could do.
+
+    References
+    ----------
+    .. [1] M. Al Janaideh, C.-Y. Su, S. Rakheja, "Development of the rate-dependent
+       Prandtl-Ishlinskii model for smart actuators", Smart Materials and Structures
+       17 (2008) 035026: the family; docs/rdgpi.md on this member of it.
+    """
+
+    name: ClassVar = "rdgpi"
+    place: ClassVar = "base"
+    reference: ClassVar = "Zhang and Ma, Table 4 and Section 4; docs/rdgpi.md"
+
+    alpha1: float = number("-", "scale of the thresholds' spacing", -1e3, 1e3)
+    beta1: float = number("-", "spacing at rest, inside the logarithm", 1.0, 1e3)
+    lambda1: float = number("s/U", "growth of the spacing with the rate", 0.0, 1e3)
+    alpha2: float = number("-", "loss of weight with the rate", -1e3, 1e3)
+    beta2: float = number("-", "weight at rest, inside the logarithm", 1e-9, 1e3)
+    lambda2: float = number("s/U", "growth of the loss with the rate", 0.0, 1e3)
+    c: float = number("U", "second scale of the thresholds' spacing", -1e3, 1e3)
+    rho: float = number("Y/U", "weight of the first operator times N + 1", -1e6, 1e6)
+    tau: float = number("1/U", "decay of the weights over the thresholds", -1e3, 1e3)
+    envelope_gain: float = number("-", "the paper's xi", -1e6, 1e6)
+    envelope_offset: float = number("U", "the paper's mu", -1e6, 1e6)
+    order: float = number("-", "N, one less than the operators", 0, 1000, default=30.0)
+    start: str = choice("operators before the first sample", STARTS, "rest")
+
+    def check(self) -> None:
+        """Refuse an order that is no integer, and what the model itself refuses."""
+        if self.order != int(self.order):
+            raise InputError(f"order: expected a whole number, got {self.order:g}")
+        self._model()
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the model's output for ``z``."""
+        return self._model().simulate(z, dt)
+
+    def _model(self) -> RateDependentGPI:
+        values: dict[str, Any] = asdict(self)
+        return RateDependentGPI(**values | {"order": int(self.order)})

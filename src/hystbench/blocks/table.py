@@ -1,0 +1,32 @@
+"""The vocabulary of blocks as a table, for docs/model-files.md."""
+
+from __future__ import annotations
+
+from hystbench.blocks import registry
+from hystbench.blocks.parameter import Parameter
+
+HEADER = """\
+| block | place | parameter | unit | values | meaning |
+|---|---|---|---|---|---|
+"""
+
+
+def markdown_table() -> str:
+    """Write every block and parameter as a Markdown table, one parameter a row."""
+    rows = []
+    for name, block in registry().items():
+        first = (f"`{name}`", block.place)
+        for key, about in block.parameters().items():
+            cells = (*first, f"`{key}`", about.unit, _values(about), about.meaning)
+            rows.append("| " + " | ".join(cells) + " |\n")
+            first = ("", "")
+    return HEADER + "".join(rows)
+
+
+def _values(about: Parameter) -> str:
+    if about.kind == "choice":
+        return ", ".join(f"`{option}`" for option in about.options)
+    bounds = f"{about.low:g} to {about.high:g}"
+    if about.kind == "number":
+        return bounds
+    return f"{about.length or 'list'} of {bounds}"
