@@ -81,7 +81,7 @@ def draw(*, identified: Path, records: Sequence[Path]) -> Figure:
 def _progress(axes: Axes, found: Identification, record: Record) -> None:
     """Draw J and the J that Algorithm 1 is asked for."""
     steps = np.arange(1, len(found.cost_history) + 1)
-    axes.semilogy(steps, found.cost_history, drawstyle="steps-post", **_IDENTIFIED)
+    axes.semilogy(steps, found.cost_history, marker=".", **_IDENTIFIED)
     axes.axhline(found.epsilon, color=style.BLACK, linestyle=":", linewidth=0.8)
     axes.annotate(
         r"tolerable $\varepsilon$",
