@@ -31,8 +31,9 @@ class Block(ABC):
 
     @classmethod
     def parameters(cls) -> dict[str, Parameter]:
-        """Return the declared parameters by name."""
-        return {item.name: item.metadata["parameter"] for item in fields(cls)}
+        """Return the declared parameters by name, those with a default last."""
+        declared = sorted(fields(cls), key=lambda item: item.default is not MISSING)
+        return {item.name: item.metadata["parameter"] for item in declared}
 
     @classmethod
     def from_mapping(cls, values: Mapping[str, Any]) -> Block:
@@ -67,12 +68,13 @@ class Block(ABC):
 
     def to_mapping(self) -> dict[str, Any]:
         """Return the parameters as a model file holds them; defaults are left out."""
-        values = {
-            item.name: getattr(self, item.name)
-            for item in fields(self)
-            if getattr(self, item.name) != item.default
+        defaults = {item.name: item.default for item in fields(self)}
+        values = {name: getattr(self, name) for name in self.parameters()}
+        return {
+            name: list(value) if isinstance(value, tuple) else value
+            for name, value in values.items()
+            if value != defaults[name]
         }
-        return {k: list(v) if isinstance(v, tuple) else v for k, v in values.items()}
 
     @abstractmethod
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
