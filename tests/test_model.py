@@ -94,7 +94,7 @@ def blocks(draw):
         elif about.kind == "number":
             values[key] = draw(one)
         else:
-            n = about.length or length
+            n = len(about.names) or length
             values[key] = draw(st.lists(one, min_size=n, max_size=n))
     if block.name == "transfer-function":  # only stable ones can be made
         roots = draw(st.lists(st.floats(-1e3, -1), min_size=1, max_size=3))

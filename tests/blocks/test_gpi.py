@@ -56,3 +56,22 @@ def test_an_envelope_has_eight_coefficients():
         GeneralizedPrandtlIshlinskii(
             envelope=ENVELOPE[:7], thresholds=[0.0], weights=[1.0]
         )
+
+
+def test_a_file_names_the_coefficients():
+    by_name = {f"a{i}": value for i, value in enumerate(ENVELOPE)}
+    values = {"envelope": by_name, "thresholds": [0.0], "weights": [1.0]}
+    block = GeneralizedPrandtlIshlinskii.from_mapping(values)
+    assert block.envelope == ENVELOPE
+    assert block.to_mapping() == values
+    for change, expected in [
+        ({"a8": 1.0}, "envelope: unknown key 'a8'"),
+        ({"a3": "x"}, r"envelope\[3\]: expected a number"),
+    ]:
+        with pytest.raises(InputError, match=expected):
+            GeneralizedPrandtlIshlinskii.from_mapping(
+                values | {"envelope": by_name | change}
+            )
+    del by_name["a7"]
+    with pytest.raises(InputError, match="envelope: expected the key 'a7'"):
+        GeneralizedPrandtlIshlinskii.from_mapping(values)

@@ -1,6 +1,7 @@
 # What all rules share: checked settings, and the source files that a job depends on.
 import json
 import os
+import re
 import sys
 from pathlib import Path
 

@@ -69,11 +69,10 @@ class Block(ABC):
     def to_mapping(self) -> dict[str, Any]:
         """Return the parameters as a model file holds them; defaults are left out."""
         defaults = {item.name: item.default for item in fields(self)}
-        values = {name: getattr(self, name) for name in self.parameters()}
         return {
-            name: list(value) if isinstance(value, tuple) else value
-            for name, value in values.items()
-            if value != defaults[name]
+            name: about.plain(getattr(self, name))
+            for name, about in self.parameters().items()
+            if getattr(self, name) != defaults[name]
         }
 
     @abstractmethod

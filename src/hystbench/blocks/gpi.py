@@ -36,12 +36,16 @@ class GeneralizedPrandtlIshlinskii(Block):
     )
 
     envelope: tuple[float, ...] = numbers(
-        "-, 1/U, -, -", "a0 to a7 of Eqs. 5 and 6", -1e3, 1e3, length=8
+        "-, 1/U, -, -",
+        "a0 to a7 of Eqs. 5 and 6",
+        -1e9,
+        1e9,
+        names=("a0", "a1", "a2", "a3", "a4", "a5", "a6", "a7"),
     )
     thresholds: tuple[float, ...] = numbers(
-        "-", "r_i, in the unit of the envelope functions", 0.0, 1e3
+        "-", "r_i, in the unit of the envelope functions", 0.0, 1e9
     )
-    weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -1e6, 1e6)
+    weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -1e9, 1e9)
 
     def check(self) -> None:
         """Refuse as many weights as there are no thresholds for."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field
 from typing import Any, Literal
 
@@ -28,8 +28,8 @@ class Parameter:
         One sentence.
     low, high : float
         Closed bounds of each number; they bound identification as well.
-    length : int or None
-        Length of a sequence, where it is fixed.
+    names : tuple of str
+        Names of the numbers of a sequence; a model file then holds them by name.
     options : tuple of str
         Words that a choice may take.
     """
@@ -39,7 +39,7 @@ class Parameter:
     meaning: str
     low: float = -math.inf
     high: float = math.inf
-    length: int | None = None
+    names: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
 
     def check(self, name: str, value: object) -> Value:
@@ -58,15 +58,35 @@ class Parameter:
             return str(value)
         if self.kind == "number":
             return self._number(name, value)
+        if self.names and isinstance(value, Mapping):
+            value = self._in_order(name, value)
         if isinstance(value, str) or not isinstance(value, Sequence):
             raise InputError(f"{name}: expected a list of numbers, got {value!r}")
-        if self.length is not None and len(value) != self.length:
+        if self.names and len(value) != len(self.names):
             raise InputError(
-                f"{name}: expected {self.length} numbers, got {len(value)}"
+                f"{name}: expected {len(self.names)} numbers, got {len(value)}"
             )
         if not value:
             raise InputError(f"{name}: expected at least one number, got none")
         return tuple(self._number(f"{name}[{i}]", item) for i, item in enumerate(value))
+
+    def plain(self, value: Value) -> object:
+        """Return a value as a model file holds it."""
+        if not isinstance(value, tuple):
+            return value
+        if self.names:
+            return dict(zip(self.names, value, strict=True))
+        return list(value)
+
+    def _in_order(self, name: str, value: Mapping[str, object]) -> list[object]:
+        for key in value:
+            if key not in self.names:
+                near = nearest(key, self.names)
+                raise InputError(f"{name}: unknown key {key!r}; {near}")
+        for key in self.names:
+            if key not in value:
+                raise InputError(f"{name}: expected the key {key!r}")
+        return [value[key] for key in self.names]
 
     def _number(self, name: str, value: object) -> float:
         # bool is an int to Python, but `true` is no number in a model file.
@@ -98,10 +118,10 @@ def numbers(
     meaning: str,
     low: float = -math.inf,
     high: float = math.inf,
-    length: int | None = None,
+    names: tuple[str, ...] = (),
 ) -> Any:
     """Declare a parameter that is a sequence of numbers."""
-    return _declare(Parameter("numbers", unit, meaning, low, high, length), MISSING)
+    return _declare(Parameter("numbers", unit, meaning, low, high, names), MISSING)
 
 
 def choice(meaning: str, options: tuple[str, ...], default: str) -> Any:

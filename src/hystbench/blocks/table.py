@@ -15,11 +15,11 @@ def markdown_table() -> str:
     """Write every block and parameter as a Markdown table, one parameter a row."""
     rows = []
     for name, block in registry().items():
-        first = (f"`{name}`", block.place)
+        first = [f"`{name}`", str(block.place)]
         for key, about in block.parameters().items():
             cells = (*first, f"`{key}`", about.unit, _values(about), about.meaning)
             rows.append("| " + " | ".join(cells) + " |\n")
-            first = ("", "")
+            first = ["", ""]
     return HEADER + "".join(rows)
 
 
@@ -29,4 +29,6 @@ def _values(about: Parameter) -> str:
     bounds = f"{about.low:g} to {about.high:g}"
     if about.kind == "number":
         return bounds
-    return f"{about.length or 'list'} of {bounds}"
+    if about.names:
+        return f"`{about.names[0]}` to `{about.names[-1]}` of {bounds}"
+    return f"list of {bounds}"
