@@ -20,11 +20,11 @@ def draw() -> Figure:
     axes = figure.subplots()
     amplitude = load_text().amplitude_a
     r = thresholds(PUBLISHED_ENVELOPE, amplitude, _ORDER)[_OPERATOR]
-    # Twice around: the first turn leaves the operator on its loop.
-    v = sweep([-amplitude, amplitude, -amplitude, amplitude, -amplitude])
+    # At the lower end Eq. 4 takes the state from zero to the left envelope: the loop.
+    v = sweep([-amplitude, amplitude, -amplitude])
     left, right = PUBLISHED_ENVELOPE.left(v), PUBLISHED_ENVELOPE.right(v)
     outputs, _ = generalized_play(left, right, [r])
-    v, w = v[len(v) // 2 :], outputs[len(v) // 2 :, 0]
+    w = outputs[:, 0]
 
     grid = np.linspace(-amplitude, amplitude, 201)
     axes.plot(
