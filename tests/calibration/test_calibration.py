@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from hystbench.calibration import fit as fitting
 from hystbench.calibration.constraints import check_stroke, turns, violations
 from hystbench.calibration.crossvalidation import leave_one_out
+from hystbench.calibration.ensemble import equally_good
 from hystbench.calibration.fit import Fit, calibrate, descend, to_point, to_values
 from hystbench.calibration.objective import Objective, error_residual
 from hystbench.calibration.targets import CALIBRATION_SIGNALS, Target, targets
@@ -227,3 +228,21 @@ def test_step_sizes_are_named_as_in_the_config():
         for name, names in fitting.STEP_NAMES.items()
     }
     assert set(step_sizes(START)["volterra"]) == {"first_order", "second_order"}
+
+
+def test_equally_good_twins_keep_their_promise():
+    problem = objective()
+    truth = {**START, "gain": 66.0, "mode": 65.6, "damping": 0.09}
+    # Targets that no twin meets: some cost is left for others to be as good as.
+    aims = tuple(
+        dataclasses.replace(aim, mse={k: 1.3 * v for k, v in aim.mse.items()})
+        for aim in targets_of(problem, truth)
+    )
+    best = descend(problem, aims, truth, evaluations=6)
+    twins = equally_good(problem, aims, best, count=3, seed=1)
+    assert len({twin.cost for twin in twins}) == 3
+    for twin in twins:
+        residuals = problem.residuals(twin.values, aims)
+        assert twin.cost == pytest.approx(residuals @ residuals / 2)
+        assert twin.cost <= 1.1 * best.cost
+        assert max(violations(make_twin(twin.values)).values()) <= 1e-3

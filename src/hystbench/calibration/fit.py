@@ -62,14 +62,45 @@ def descend(
     def residuals(point: FloatArray) -> FloatArray:
         return objective.residuals(to_values(point), targets)
 
-    def jacobian(point: FloatArray) -> FloatArray:
-        return _jacobian(objective, targets, point)
+    def slope(point: FloatArray) -> FloatArray:
+        return jacobian(objective, targets, point)
 
     inside = np.clip(to_point(start), 1e-6, 1 - 1e-6)
     result = least_squares(
-        residuals, inside, jac=jacobian, bounds=(0.0, 1.0), max_nfev=evaluations
+        residuals, inside, jac=slope, bounds=(0.0, 1.0), max_nfev=evaluations
     )
     return Fit(to_values(result.x), float(result.cost))
+
+
+def jacobian(
+    objective: Objective, targets: tuple[Target, ...], point: FloatArray
+) -> FloatArray:
+    """Differentiate the residuals at a point, by differences.
+
+    Returns
+    -------
+    ndarray, shape (residuals, unknowns)
+        A change of 0.002 of the bounds: finer ones see the steps of the play operators.
+    """
+    now = objective.residuals(to_values(point), targets)
+    columns = np.zeros((len(now), len(point)))
+    owner = {name: model for model, own in STEP_NAMES.items() for name in own.values()}
+    models = list(STEP_NAMES)
+    # Steps first: they use the records that the call above has left.
+    order = sorted(range(len(point)), key=lambda k: UNKNOWNS[k].name not in owner)
+    for k in order:
+        name = UNKNOWNS[k].name
+        h = 2e-3 if point[k] + 2e-3 <= 1 else -2e-3
+        moved = point.copy()
+        moved[k] += h
+        values = to_values(moved)
+        if name in owner:
+            rows = np.arange(len(targets)) * len(models) + models.index(owner[name])
+            after = objective.step_residuals(values, targets, owner[name])
+            columns[rows, k] = (after - now[rows]) / h
+        else:
+            columns[:, k] = (objective.residuals(values, targets) - now) / h
+    return columns
 
 
 def calibrate(
@@ -127,30 +158,6 @@ def calibrate(
                 "expected a twin that meets it (more starts, other bounds)"
             )
     return final
-
-
-def _jacobian(
-    objective: Objective, targets: tuple[Target, ...], point: FloatArray
-) -> FloatArray:
-    now = objective.residuals(to_values(point), targets)
-    columns = np.zeros((len(now), len(point)))
-    owner = {name: model for model, own in STEP_NAMES.items() for name in own.values()}
-    models = list(STEP_NAMES)
-    # Steps first: they use the records that the call above has left.
-    order = sorted(range(len(point)), key=lambda k: UNKNOWNS[k].name not in owner)
-    for k in order:
-        name = UNKNOWNS[k].name
-        h = 2e-3 if point[k] + 2e-3 <= 1 else -2e-3
-        moved = point.copy()
-        moved[k] += h
-        values = to_values(moved)
-        if name in owner:
-            rows = np.arange(len(targets)) * len(models) + models.index(owner[name])
-            after = objective.step_residuals(values, targets, owner[name])
-            columns[rows, k] = (after - now[rows]) / h
-        else:
-            columns[:, k] = (objective.residuals(values, targets) - now) / h
-    return columns
 
 
 def _place(item: Unknown, value: float) -> float:

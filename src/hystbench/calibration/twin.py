@@ -58,8 +58,7 @@ UNKNOWNS = (
     Unknown("mode", "Hz", 65, 60, 70, False, "first mode; 69.7 Hz seen in a sweep"),
     Unknown("damping", "-", 0.05, 0.01, 0.15, True, "damping ratio of the mode"),
     Unknown("participation", "-", -0.01, -0.3, 0.3, False, "static share of the mode"),
-    Unknown("quadratic", "1/um", 0, -0.02, 0.02, False, "sensor's square"),
-    Unknown("cubic", "1/um^2", 0, -0.002, 0.002, False, "sensor's cube"),
+    Unknown("asymmetry", "1/um", -0.005, -0.02, 0.02, False, "square before the lag"),
     Unknown("offset", "um", 0.3, -2, 2, False, "sensor's zero"),
     Unknown("noise", "um", 0.036, 0.02, 0.15, True, "RMS of the sensor noise"),
     Unknown("input zero", "A", 0.007, -0.03, 0.03, False, "recorded minus true input"),
@@ -106,6 +105,7 @@ def make_twin(values: dict[str, float]) -> Model:
                     ),
                 }
             },
+            {"asymmetry": {"coefficient": _round(values["asymmetry"])}},
             {
                 "transfer-function": {
                     "numerator": [*_rounded([_lag(values["zero"])]), 1.0],
@@ -119,12 +119,6 @@ def make_twin(values: dict[str, float]) -> Model:
                     "participation": _round(values["participation"]),
                 }
             },
-            {
-                "sensor-nonlinearity": {
-                    "quadratic": _round(values["quadratic"]),
-                    "cubic": _round(values["cubic"]),
-                }
-            },
             {"calibration-error": {"gain": 1.0, "offset": _round(values["offset"])}},
             {"sensor-noise": {"rms": _round(values["noise"])}},
         ],
@@ -134,13 +128,12 @@ def make_twin(values: dict[str, float]) -> Model:
                 ("gpi.envelope", "published", "Section 4, from a 1 Hz sine."),
                 ("gpi.thresholds", "derived", "Eq. 10 with N = 30 at 0.632 A."),
                 ("gpi.weights", "calibrated", f"{fitted}."),
+                ("asymmetry.coefficient", "calibrated", f"{fitted}."),
                 ("transfer-function.numerator", "calibrated", lag),
                 ("transfer-function.denominator", "calibrated", lag),
                 ("resonance.frequency_hz", "calibrated", sweep),
                 ("resonance.damping_ratio", "calibrated", sweep),
                 ("resonance.participation", "calibrated", sweep),
-                ("sensor-nonlinearity.quadratic", "calibrated", f"{fitted}."),
-                ("sensor-nonlinearity.cubic", "calibrated", f"{fitted}."),
                 ("calibration-error.gain", "derived", "One: inside the weights."),
                 ("calibration-error.offset", "calibrated", f"{fitted}."),
                 ("sensor-noise.rms", "calibrated", f"{fitted}."),
