@@ -67,7 +67,9 @@ def run_result(
         "re_after_transient": None,
         "convergence_s": None,
     }
-    smoothed = smoothed_squared_error(error, window)
+    # A filter may diverge before one window is full, or at once.
+    window = min(window, len(error))
+    smoothed = smoothed_squared_error(error, window) if window else error
     if diverged is None:
         errors = {
             "mse": mean_square_error(error),

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from hystbench.compare.comparison import write_cells
 from hystbench.compare.cells import compare_cells
+from hystbench.compare.comparison import write_cells
 from hystbench.compare.evidence import Evidence
 
 from .made import make_run, published_runs

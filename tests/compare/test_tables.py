@@ -6,8 +6,8 @@ import io
 import docutils.core
 import pytest
 
-from hystbench.compare.comparison import compare_evidence
 from hystbench.compare.cells import compare_cells
+from hystbench.compare.comparison import compare_evidence
 from hystbench.compare.evidence import Evidence
 from hystbench.compare.tables import Table, paper_table, paper_tables
 from hystbench.compare.verdict import sentences, verdict_markdown, verdict_rst
