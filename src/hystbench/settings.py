@@ -137,6 +137,11 @@ class Settings:
         return job | {"order": self.config["filters"]["order"]}
 
     @property
+    def compare_job(self) -> dict[str, Any]:
+        """Settings of the comparison: which signals the calibration saw."""
+        return {"calibrated": list(self.config["calibration"]["signals"])}
+
+    @property
     def error_job(self) -> dict[str, Any]:
         """Settings of the errors of any model."""
         filters = self.config["filters"]
@@ -200,6 +205,7 @@ def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Setting
         check_definition(name, definition, config["excitation"])
     named = [
         *(("signals", name) for name in config["signals"]),
+        *(("calibration: signals", name) for name in config["calibration"]["signals"]),
         ("identification: signal", config["identification"]["signal"]),
         ("order_sweep: signal", config["order_sweep"]["signal"]),
         *(("rdgpi: fit_signals", name) for name in config["rdgpi"]["fit_signals"]),

@@ -201,6 +201,7 @@ def test_from_files_to_files(tmp_path):
         "audit.csv",
         "cells.csv",
         "claims.csv",
+        "off.csv",
         "summary.json",
         "tables",
         "tables.txt",

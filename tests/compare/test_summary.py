@@ -3,19 +3,39 @@
 import json
 import math
 
+import numpy as np
 import pytest
 
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all
 from hystbench.compare.claims.claim import Claim, Judgement
 from hystbench.compare.evidence import Evidence
-from hystbench.compare.summary import claim_counts, nearness, orderings, summarise
+from hystbench.compare.summary import (
+    claim_counts,
+    nearness,
+    orderings,
+    rms_error_percent,
+    summarise,
+)
+from hystbench.compare.twins import Holding
 
-from .made import PAIRS, published_runs
+from .made import PAIRS, make_record, published_runs
 
 
 def cell(signal, model, published, ours, status="finite", consistent="yes"):
-    return ComparedCell(1, signal, model, "mse", published, ours, consistent, status)
+    return ComparedCell(
+        table=1,
+        signal=signal,
+        model=model,
+        metric="mse",
+        half="calibrated",
+        published=published,
+        ours=ours,
+        spread_low=None,
+        spread_high=None,
+        published_consistent=consistent,
+        status=status,
+    )
 
 
 DIVERGED = ("diverged at sample 3", "yes")
@@ -106,7 +126,54 @@ def test_held_out_signals_stand_apart():
     assert found["held_out"]["within_factor_2"] == 0.5
     assert found["calibrated"]["cells"] == 44
     assert found["calibrated"]["within_factor_2"] == 1
+    # of five held-out signals' two, half the cells are as printed, half off by 1e6
+    medians = found["held_out"]["median_abs_log10_ratio"]
+    assert medians["backlash"] == medians["volterra"] == 0
+    assert medians["gpo"] > 6
+    assert set(found["calibrated"]["median_abs_log10_ratio"].values()) == {0}
     assert "held_out" not in summarise(compare_cells(evidence), ())
+
+
+def test_rms_error_by_hand():
+    # the rows of the 200 Hz sine that agree imply 6.02 to 6.07 um
+    time = np.arange(1000) / 1000
+    y = 2 * 6.045 * np.sqrt(2) * np.sin(2 * np.pi * 5 * time)
+    record = make_record("sine-200hz", np.sin(time), y)
+    measured = make_record("sine-150hz", np.sin(time), y, origin="measured")
+    found = rms_error_percent(
+        Evidence(records={"sine-200hz": record, "sine-150hz": measured})
+    )
+    assert found == {"sine-200hz": pytest.approx(100, abs=1)}
+
+
+def test_rms_errors_of_the_halves_are_not_mixed():
+    errors = {"sine-010hz": -1.0, "sine-020hz": 2.0, "sine-060hz": -7.0}
+    found = summarise(compare_cells(Evidence()), (), {"sine-060hz"}, errors)
+    assert found["calibrated"]["largest_rms_error_percent"] == 2
+    assert found["held_out"]["largest_rms_error_percent"] == 7
+    assert found["rms_error_percent"] == errors
+
+
+def test_reproduced_claims_are_counted_by_where_they_hold():
+    def judgement(verdict, *holdings):
+        claim = Claim("x", "", "", "result", "", lambda _: None)
+        return Judgement(claim, verdict, "", "not in tables", "", holdings)
+
+    gpi = Holding("gpi", 3, 3)
+    found = claim_counts(
+        [
+            judgement("reproduced", gpi),
+            judgement("reproduced", gpi, Holding("preisach", 1, 1)),
+            judgement("reproduced", gpi, Holding("preisach", 0, 1)),
+            judgement("not reproduced", gpi, Holding("preisach", 0, 1)),
+            judgement("reproduced"),
+        ]
+    )
+    assert found["claims_reproduced_where"] == {
+        "every_family": 1,
+        "some_families": 1,
+        "one_family_run": 1,
+    }
 
 
 def test_re_and_table_4_do_not_count_among_the_filters():

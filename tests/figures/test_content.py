@@ -10,6 +10,7 @@ from hystbench.operators import PUBLISHED_ENVELOPE
 from hystbench.published import load_text
 from tests.figures.inputs import (
     DIVERGED,
+    HALVES,
     MODELS,
     SAMPLES,
     SIGNALS,
@@ -189,6 +190,12 @@ def test_heat_map_writes_each_ratio_and_frames_what_is_inconsistent(inputs):
     assert said[2] == "diverged"
     assert said[3] == "not run"
     assert [patch.get_linestyle() for patch in axes.patches] == ["-", ":"]
+    marked = [
+        title.get_text().endswith("\N{BLACK DIAMOND}")
+        for title in axes.get_yticklabels()
+    ]
+    assert marked == [half == "held-out" for half in HALVES]
+    assert "held out of the calibration" in legend(figure)
     colours = axes.collections[0]
     low, high = colours.get_clim()
     assert low == -high

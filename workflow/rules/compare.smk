@@ -27,6 +27,11 @@ if TWIN:
                 caption="../report/audit.rst",
                 category="Comparison",
             ),
+            off=report(
+                f"{COMPARE}/off.csv",
+                caption="../report/off.rst",
+                category="Comparison",
+            ),
             summary=f"{COMPARE}/summary.json",
             verdict=f"{COMPARE}/verdict.rst",
             text=f"{COMPARE}/tables.txt",
@@ -44,13 +49,15 @@ if TWIN:
         params:
             runs=lambda wildcards, input: options("--run", input.runs),
             records=lambda wildcards, input: options("--record", input.records),
+            settings=settings_text(SETTINGS.compare_job),
             folder=COMPARE,
         message:
             "tables, claims and audit"
         shell:
             "hystbench compare {params.runs} {params.records}"
             " --order-sweep {input.order_sweep} --identified {input.identified}"
-            " --envelopes {input.envelopes} --out {params.folder} 2> {log}"
+            " --envelopes {input.envelopes} --settings {params.settings:q}"
+            " --out {params.folder} 2> {log}"
 
 else:
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -15,15 +16,31 @@ from hystbench.compare import comparison
 @click.option("--record", "records", multiple=True, type=options.FILE, help="Record.")
 @click.option("--order-sweep", type=options.FILE, help="Errors by order (CSV).")
 @click.option("--envelopes", type=options.FILE, help="GPO errors by envelopes (CSV).")
+@click.option("--twin-errors", type=options.FILE, help="Errors by twin (CSV).")
+@click.option("--twin-claims", type=options.FILE, help="Claims by twin (CSV).")
 @options.identified
+@options.settings
 @click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
 def compare(
     runs: tuple[Path, ...],
     records: tuple[Path, ...],
     order_sweep: Path | None,
     envelopes: Path | None,
+    twin_errors: Path | None,
+    twin_claims: Path | None,
     identified: Path | None,
+    settings: dict[str, Any],
     out: Path,
 ) -> None:
     """Compare runs with the paper: cells, claims, audit, summary and tables."""
-    comparison.compare(out, runs, records, order_sweep, identified, envelopes)
+    comparison.compare(
+        out,
+        runs,
+        records,
+        order_sweep,
+        identified,
+        envelopes,
+        held_out=comparison.held_out_signals(settings["calibrated"]),
+        twin_errors=twin_errors,
+        twin_claims=twin_claims,
+    )

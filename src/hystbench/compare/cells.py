@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from hystbench.compare.evidence import Cell, Evidence, Run
 from hystbench.published import METRICS, Metric
 from hystbench.published.consistency import Standing, standings
 
 NOT_RUN = "not run"
+
+Half = Literal["calibrated", "held-out"]
+"""Whether the twin and the step sizes were fitted to a signal's published errors."""
 
 
 @dataclass(frozen=True)
@@ -23,10 +27,15 @@ class ComparedCell:
         Table of the paper.
     signal, model, metric : str
         Which error.
+    half : {"calibrated", "held-out"}
+        Whether the twin was fitted to the published errors of the signal.
     published : str
         As printed.
     ours : float or None
         None where it was not run or diverged.
+    spread_low, spread_high : float or None
+        Smallest and largest of ours over equally good twins, infinite where a run
+        diverged; None where there are no two of them.
     published_consistent : {"yes", "no", "undecided"}
         Whether the printed pair of MSE and RE can be true beside the others of its
         signal; undecided where one of several pairs must be wrong.
@@ -38,8 +47,11 @@ class ComparedCell:
     signal: str
     model: str
     metric: Metric
+    half: Half
     published: str
     ours: float | None
+    spread_low: float | None
+    spread_high: float | None
     published_consistent: Standing
     status: str
 
@@ -68,8 +80,18 @@ def twin_runs(runs: Mapping[Cell, Run]) -> dict[Cell, Run]:
     return {cell: run for cell, run in runs.items() if run.origin == "twin"}
 
 
-def compare_cells(evidence: Evidence) -> tuple[ComparedCell, ...]:
-    """Set ours beside each of the 124 printed numbers, run or not."""
+def compare_cells(
+    evidence: Evidence, held_out: Iterable[str] = ()
+) -> tuple[ComparedCell, ...]:
+    """Set ours beside each of the 124 printed numbers, run or not.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    held_out : iterable of str
+        Signals whose published errors the twin was not fitted to.
+    """
+    unseen = set(held_out)
     consistent = standings(evidence.published)
     runs = twin_runs(evidence.runs)
     cells = []
@@ -79,14 +101,20 @@ def compare_cells(evidence: Evidence) -> tuple[ComparedCell, ...]:
             ours = None
             if run is not None and run.diverged is None:
                 ours = run.error(metric)
+            low, high = evidence.spreads.get(
+                (pair.signal, pair.model, metric), (None, None)
+            )
             cells.append(
                 ComparedCell(
                     table=pair.table,
                     signal=pair.signal,
                     model=pair.model,
                     metric=metric,
+                    half="held-out" if pair.signal in unseen else "calibrated",
                     published=pair.printed(metric).text,
                     ours=ours,
+                    spread_low=low,
+                    spread_high=high,
                     published_consistent=consistent[pair.signal, pair.model],
                     status=NOT_RUN if run is None else run.status,
                 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import csv
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +12,12 @@ from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.evidence import Evidence, read_evidence
-from hystbench.compare.summary import summarise
+from hystbench.compare.off import OffCell, off_cells, write_off
+from hystbench.compare.summary import rms_error_percent, summarise
 from hystbench.compare.tables import Table, paper_tables
 from hystbench.compare.verdict import print_tables, verdict_markdown, verdict_rst
-from hystbench.files import atomic_path, write_json, write_text
+from hystbench.files import write_csv, write_json, write_text
+from hystbench.published import load, signals
 from hystbench.published.audit import write_audit
 
 __all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
@@ -25,8 +27,11 @@ CELL_COLUMNS = (
     "signal",
     "model",
     "metric",
+    "half",
     "published",
     "ours",
+    "spread_low",
+    "spread_high",
     "log10_ratio",
     "published_consistent",
     "status",
@@ -38,6 +43,7 @@ class Comparison:
     """All that a comparison finds."""
 
     cells: tuple[ComparedCell, ...]
+    off: tuple[OffCell, ...]
     claims: tuple[Judgement, ...]
     summary: dict[str, Any]
     tables: tuple[Table, ...]
@@ -50,6 +56,7 @@ class Comparison:
         """Write what was found into a folder; see :func:`compare`."""
         out = Path(out_dir)
         write_cells(self.cells, out / "cells.csv")
+        write_off(self.off, out / "off.csv")
         write_claims(self.claims, out / "claims.csv")
         write_audit(out / "audit.csv")
         write_json(out / "summary.json", self.summary)
@@ -62,25 +69,33 @@ class Comparison:
 
 def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
     """Write the cells as CSV; a cell without a finite run has no ours."""
-    with (
-        atomic_path(path) as temporary,
-        temporary.open("w", encoding="utf-8", newline="") as stream,
-    ):
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(CELL_COLUMNS)
-        writer.writerows(
-            [getattr(cell, column) for column in CELL_COLUMNS] for cell in cells
-        )
+    rows = ([_cell_text(cell, column) for column in CELL_COLUMNS] for cell in cells)
+    write_csv(path, CELL_COLUMNS, rows)
+
+
+def _cell_text(cell: ComparedCell, column: str) -> object:
+    value = getattr(cell, column)
+    if column.startswith("spread") and value is not None and math.isinf(value):
+        return "diverged"
+    return value
+
+
+def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
+    """List the signals of the tables that a calibration did not see."""
+    seen = set(calibrated)
+    return tuple(name for name in signals(load()) if name not in seen)
 
 
 def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Comparison:
     """Compare evidence that is already read; ``held_out`` as in ``summarise``."""
-    cells = compare_cells(evidence)
+    unseen = set(held_out)
+    cells = compare_cells(evidence, unseen)
     claims = judge_all(evidence)
     return Comparison(
         cells=cells,
+        off=off_cells(cells, evidence),
         claims=claims,
-        summary=summarise(cells, claims, held_out),
+        summary=summarise(cells, claims, unseen, rms_error_percent(evidence)),
         tables=paper_tables(cells),
     )
 
@@ -93,15 +108,17 @@ def compare(
     identified: str | Path | None = None,
     envelopes: str | Path | None = None,
     held_out: Iterable[str] = (),
+    twin_errors: str | Path | None = None,
+    twin_claims: str | Path | None = None,
 ) -> Comparison:
     """Read the files of the runs, compare them with the paper, write what came out.
 
     Parameters
     ----------
     out_dir : path
-        Folder for ``cells.csv``, ``claims.csv``, ``audit.csv``, ``summary.json``,
-        ``verdict.rst``, ``verdict.md``, ``tables.txt`` for the terminal and
-        ``tables/`` (Tables 1-4 as CSV, Markdown and LaTeX).
+        Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
+        ``summary.json``, ``verdict.rst``, ``verdict.md``, ``tables.txt`` for the
+        terminal and ``tables/`` (Tables 1-4 as CSV, Markdown and LaTeX).
     runs : iterable of paths
         One JSON file for each signal and model.
     records : iterable of paths
@@ -112,6 +129,9 @@ def compare(
     held_out : iterable of str
         Signals whose published errors were not used in choosing the twin; the
         summary then tells both groups apart.
+    twin_errors, twin_claims : path, optional
+        Errors and claims on other twins, for the spread of each cell and for the
+        families of twins on which each claim holds.
 
     Raises
     ------
@@ -119,7 +139,16 @@ def compare(
         If a file is not what it should be.
     """
     found = compare_evidence(
-        read_evidence(runs, records, order_sweep, identified, envelopes), held_out
+        read_evidence(
+            runs,
+            records,
+            order_sweep,
+            identified,
+            envelopes,
+            twin_errors,
+            twin_claims,
+        ),
+        held_out,
     )
     found.write(out_dir)
     return found

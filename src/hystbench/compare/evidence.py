@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from collections.abc import Iterable, Mapping
@@ -12,9 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.compare.rows import finite_or_infinite, read_rows
+from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
-from hystbench.published import Pair, Text, load, load_text
+from hystbench.published import Metric, Pair, Text, load, load_text
 from hystbench.record import FloatArray, Record, load_record
 
 Cell = tuple[str, str]
@@ -45,6 +46,8 @@ class Run:
         Of the input correlation matrix R; the spread is over nonzero eigenvalues.
     convergence_s : float or None
         Time after which the smoothed squared error stays near its end.
+    transient_fraction : float
+        Part of the record that the errors after the transient leave out.
     """
 
     signal: str
@@ -64,6 +67,18 @@ class Run:
     largest_eigenvalue: float | None
     spread: float | None
     convergence_s: float | None
+    transient_fraction: float = 0.0
+
+    @property
+    def start_up_share(self) -> float | None:
+        """Share of the record's summed squared error that its transient holds.
+
+        None where the run diverged or has no error.
+        """
+        if not self.mse or self.mse_after_transient is None:
+            return None
+        later = (1 - self.transient_fraction) * self.mse_after_transient
+        return 1 - later / self.mse
 
     @property
     def status(self) -> str:
@@ -101,7 +116,10 @@ class Identification:
 
 @dataclass(frozen=True)
 class Evidence:
-    """All that the claims are judged by; what was not run is missing here."""
+    """All that the claims are judged by; what was not run is missing here.
+
+    ``spreads`` and ``holdings`` are what other twins say; no claim is judged by them.
+    """
 
     published: tuple[Pair, ...] = field(default_factory=load)
     text: Text = field(default_factory=load_text)
@@ -110,6 +128,10 @@ class Evidence:
     order_sweep: tuple[OrderPoint, ...] = ()
     identification: Identification | None = None
     envelope_errors: Mapping[Cell, float] = field(default_factory=dict)
+    spreads: Mapping[tuple[str, str, Metric], tuple[float, float]] = field(
+        default_factory=dict
+    )
+    holdings: Mapping[str, tuple[Holding, ...]] = field(default_factory=dict)
 
 
 def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
@@ -166,6 +188,7 @@ def read_run(path: str | Path) -> Run:
         largest_eigenvalue=eigenvalues.get("largest"),
         spread=eigenvalues.get("spread_nonzero"),
         convergence_s=need("convergence_s"),
+        transient_fraction=need("transient_s") / (need("samples") * need("dt_s")),
     )
 
 
@@ -174,34 +197,13 @@ _PARAMETERS = tuple(f"a{j}" for j in range(8))
 _ERRORS = ("mse", "re", "mse_after_transient", "re_after_transient")
 
 
-def _rows(path: str | Path, columns: tuple[str, ...]) -> list[dict[str, str]]:
-    """Read a CSV file that has these columns."""
-    try:
-        with Path(path).open(encoding="utf-8", newline="") as stream:
-            reader = csv.DictReader(stream)
-            rows = list(reader)
-    except OSError as error:
-        raise InputError(f"{path}: not readable ({error})") from error
-    for column in columns:
-        if column not in (reader.fieldnames or ()):
-            known = nearest(column, reader.fieldnames or ())
-            raise InputError(f"{path}: no column {column!r}; {known}")
-    return rows
-
-
-def _finite_or_inf(text: str, path: str | Path, row: int) -> float:
-    """Read an error; an empty one means that the run diverged."""
-    try:
-        return float(text) if text else math.inf
-    except ValueError as error:
-        raise InputError(f"{path}: row {row}: {text!r} is not a number") from error
-
-
 def read_order_sweep(path: str | Path) -> tuple[OrderPoint, ...]:
     """Read the errors by order of each filter: model, order, mse, status."""
     return tuple(
-        OrderPoint(row["model"], int(row["order"]), _finite_or_inf(row["mse"], path, n))
-        for n, row in enumerate(_rows(path, ("model", "order", "mse", "status")), 1)
+        OrderPoint(
+            row["model"], int(row["order"]), finite_or_infinite(row["mse"], path, n)
+        )
+        for n, row in enumerate(read_rows(path, ("model", "order", "mse", "status")), 1)
     )
 
 
@@ -209,8 +211,8 @@ def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
     """Read the GPO filter's MSE by signal and envelopes (identified, published)."""
     columns = ("signal", "envelopes", "mse", "re", "status")
     return {
-        (row["signal"], row["envelopes"]): _finite_or_inf(row["mse"], path, n)
-        for n, row in enumerate(_rows(path, columns), 1)
+        (row["signal"], row["envelopes"]): finite_or_infinite(row["mse"], path, n)
+        for n, row in enumerate(read_rows(path, columns), 1)
     }
 
 
@@ -240,6 +242,8 @@ def read_evidence(
     order_sweep: str | Path | None = None,
     identified: str | Path | None = None,
     envelopes: str | Path | None = None,
+    twin_errors: str | Path | None = None,
+    twin_claims: str | Path | None = None,
 ) -> Evidence:
     """Read the files of a comparison; a path left out was not run.
 
@@ -260,4 +264,6 @@ def read_evidence(
         order_sweep=() if order_sweep is None else read_order_sweep(order_sweep),
         identification=None if identified is None else read_identification(identified),
         envelope_errors={} if envelopes is None else read_envelope_errors(envelopes),
+        spreads={} if twin_errors is None else read_spreads(twin_errors),
+        holdings={} if twin_claims is None else read_holdings(twin_claims),
     )

@@ -8,14 +8,18 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
-from statistics import median
+from statistics import fmean, median
 from typing import Any
+
+import numpy as np
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Judgement
+from hystbench.compare.evidence import Evidence
 from hystbench.published import FILTERS
+from hystbench.published.consistency import check
 
 FACTOR = 2.0
 
@@ -85,14 +89,31 @@ def claim_counts(judgements: Iterable[Judgement]) -> dict[str, Any]:
         "claims_not_reproduced": sum(k["not_reproduced"] for k in by_kind.values()),
         "claims_not_testable": sum(k["not_testable"] for k in by_kind.values()),
         "claims_total": len(listed),
+        "claims_reproduced_where": _where(listed),
         "claims_by_kind": by_kind,
     }
+
+
+def _where(judgements: Iterable[Judgement]) -> dict[str, int]:
+    """Count the reproduced claims by the families of twins on which they hold."""
+    counts = {"every_family": 0, "some_families": 0, "one_family_run": 0}
+    for each in judgements:
+        if each.verdict != "reproduced" or not each.holdings:
+            continue
+        if len(each.holdings) == 1:
+            counts["one_family_run"] += 1
+        elif all(holding.throughout for holding in each.holdings):
+            counts["every_family"] += 1
+        else:
+            counts["some_families"] += 1
+    return counts
 
 
 def summarise(
     cells: Sequence[ComparedCell],
     judgements: Iterable[Judgement],
     held_out: Iterable[str] = (),
+    rms_errors: Mapping[str, float] | None = None,
 ) -> dict[str, Any]:
     """Sum up a comparison.
 
@@ -105,6 +126,8 @@ def summarise(
     held_out : iterable of str
         Signals whose published errors were not used in choosing the twin and its
         step sizes. The filters' cells are split by them where there are any.
+    rms_errors : mapping of str to float, optional
+        As :func:`rms_error_percent` gives them.
 
     Returns
     -------
@@ -124,7 +147,8 @@ def summarise(
             for model in FILTERS
         },
         "orderings": orderings(filters),
-        **_split(filters, set(held_out)),
+        **_split(filters, set(held_out), rms_errors or {}),
+        "rms_error_percent": dict(rms_errors or {}),
         "without_inconsistent": {
             "without_no": nearness(not_refuted),
             "without_no_and_undecided": nearness(sure),
@@ -134,10 +158,48 @@ def summarise(
     }
 
 
-def _split(cells: Sequence[ComparedCell], held_out: set[str]) -> dict[str, Any]:
+def rms_error_percent(evidence: Evidence) -> dict[str, float]:
+    """Hold the twin's RMS displacement against the one that the tables imply.
+
+    Returns
+    -------
+    dict of str to float
+        By signal of which there is a record: 100 (ours / implied - 1). The implied
+        one is the middle of what the consistent rows share; where one of several
+        rows must be wrong, the mean of the middles.
+    """
+    errors = {}
+    for signal, checked in check(evidence.published).items():
+        record = evidence.records.get(signal)
+        if record is None or record.origin != "twin":
+            continue
+        implied = fmean((rms.low + rms.high) / 2 for rms in checked.rms)
+        ours = float(np.sqrt(np.mean(record.y**2)))
+        errors[signal] = 100 * (ours / implied - 1)
+    return errors
+
+
+def _split(
+    cells: Sequence[ComparedCell],
+    held_out: set[str],
+    rms_errors: Mapping[str, float],
+) -> dict[str, Any]:
+    """Sum up both halves apart, with a median for each model."""
     if not held_out:
         return {}
-    return {
-        "calibrated": nearness([c for c in cells if c.signal not in held_out]),
-        "held_out": nearness([c for c in cells if c.signal in held_out]),
-    }
+    halves = {}
+    for key, inside in (("calibrated", False), ("held_out", True)):
+        half = [c for c in cells if (c.signal in held_out) is inside]
+        found = nearness(half)
+        sizes = [abs(v) for s, v in rms_errors.items() if (s in held_out) is inside]
+        halves[key] = found | {
+            "median_abs_log10_ratio": {
+                model: nearness([c for c in half if c.model == model])[
+                    "median_abs_log10_ratio"
+                ]
+                for model in FILTERS
+            },
+            "median_abs_log10_ratio_all": found["median_abs_log10_ratio"],
+            "largest_rms_error_percent": max(sizes, default=None),
+        }
+    return halves

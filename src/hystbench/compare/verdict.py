@@ -41,7 +41,17 @@ def rows(summary: Mapping[str, Any]) -> list[tuple[str, ...]]:
     return [
         _row("four filters", summary),
         *(_row(model, part) for model, part in summary["per_model"].items()),
-        *(_row(name, summary[key]) for key, name in split.items() if key in summary),
+        *(
+            _row(
+                name,
+                summary[key]
+                | {
+                    "median_abs_log10_ratio": summary[key]["median_abs_log10_ratio_all"]
+                },
+            )
+            for key, name in split.items()
+            if key in summary
+        ),
         _row("filters, without †", without["without_no"]),
         _row("filters, without † and ‡", without["without_no_and_undecided"]),
         _row("rdgpi", summary["rdgpi"]),
@@ -80,12 +90,29 @@ def sentences(summary: Mapping[str, Any]) -> list[str]:
         f"{summary['claims_not_reproduced']} are not, and "
         f"{summary['claims_not_testable']} cannot be tested here."
     )
+    said.extend(_families(summary["claims_reproduced_where"]))
     said.append(
         "The twin is a simulation, since the measured data are not public: agreement "
         "says that the models do on such a plant as printed, not that the device was "
         "measured again."
     )
     return said
+
+
+def _families(where: Mapping[str, int]) -> list[str]:
+    """Say how many reproduced claims also hold where the hysteresis is another's."""
+    other = where["every_family"] + where["some_families"]
+    if other:
+        return [
+            f"Of {other} reproduced claims that were judged on twins with other "
+            f"hysteresis too, {where['every_family']} hold on each of them."
+        ]
+    if where["one_family_run"]:
+        return [
+            "No twin with other hysteresis was run: the reproduced claims are shown on "
+            "the GPI twin only, which the GPO filter's own operators make."
+        ]
+    return []
 
 
 LEGEND = (

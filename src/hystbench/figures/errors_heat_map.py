@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
 from hystbench.errors import InputError
@@ -18,12 +19,15 @@ _COLUMNS = (
     "signal",
     "model",
     "metric",
+    "half",
     "log10_ratio",
     "published_consistent",
     "status",
 )
 # Blue and red stay apart for all kinds of colour blindness, and white is agreement.
 _MAP = "RdBu_r"
+# Behind the name of a signal that the twin was not fitted to.
+_HELD_OUT = "\N{BLACK DIAMOND}"
 # A factor of ten; what is beyond has the colour of the end, and its number.
 _LIMIT = 1.0
 
@@ -69,7 +73,12 @@ def draw(*, table: Path) -> Figure:
         if row["published_consistent"] != "yes":
             axes.add_patch(_frame(x, y, row["published_consistent"]))
     axes.set_xticks(np.arange(len(models)) + 0.5, [_two_lines(m) for m in models])
-    axes.set_yticks(np.arange(len(signals)) + 0.5, [*map(style.signal_title, signals)])
+    unseen = {row["signal"] for row in rows if row["half"] == "held-out"}
+    titles = [
+        style.signal_title(s) + (f" {_HELD_OUT}" if s in unseen else "")
+        for s in signals
+    ]
+    axes.set_yticks(np.arange(len(signals)) + 0.5, titles)
     axes.xaxis.tick_top()
     axes.set(xlabel="model", ylabel="signal")
     axes.xaxis.set_label_position("top")
@@ -80,6 +89,14 @@ def draw(*, table: Path) -> Figure:
         handles=[
             Patch(fill=False, label="published pair of MSE and RE inconsistent"),
             Patch(fill=False, label="perhaps inconsistent", linestyle=":"),
+            Line2D(
+                [],
+                [],
+                color=style.BLACK,
+                linestyle="none",
+                marker=f"${_HELD_OUT}$",
+                label="held out of the calibration",
+            ),
         ],
         loc="outside lower center",
         ncols=2,

@@ -45,6 +45,7 @@ COLUMNS = (
     "kind",
     "reading",
     "verdict",
+    "holds_on",
     "evidence",
     "published_bears_out",
     "published_evidence",
@@ -69,7 +70,7 @@ def write_claims(judgements: Iterable[Judgement], path: str | Path) -> None:
             writer.writerow(
                 (
                     *(c.id, c.claim, c.where, c.kind, c.reading),
-                    *(j.verdict, j.evidence),
+                    *(j.verdict, j.holds_on, j.evidence),
                     *(j.published_bears_out, j.published_evidence),
                 )
             )

@@ -9,6 +9,7 @@ from typing import Literal
 
 from hystbench.compare.cells import twin_runs
 from hystbench.compare.evidence import Cell, Evidence, Run
+from hystbench.compare.twins import Holding, holding_text
 from hystbench.published import FILTERS, Metric, Pair, sine_frequency
 
 Verdict = Literal["reproduced", "not reproduced", "not testable"]
@@ -69,6 +70,12 @@ class Judgement:
     evidence: str
     published_bears_out: BornOut
     published_evidence: str
+    holdings: tuple[Holding, ...] = ()
+
+    @property
+    def holds_on(self) -> str:
+        """On how many twins of which family the claim holds; see ``Holding``."""
+        return holding_text(self.holdings)
 
 
 def judge(claim: Claim, evidence: Evidence) -> Judgement:
@@ -81,11 +88,12 @@ def judge(claim: Claim, evidence: Evidence) -> Judgement:
     else:
         verdict = "reproduced" if found.holds else "not reproduced"
         sentence = found.evidence
+    holdings = evidence.holdings.get(claim.id, ())
     if claim.theirs is None:
-        return Judgement(claim, verdict, sentence, "not in tables", "")
+        return Judgement(claim, verdict, sentence, "not in tables", "", holdings)
     printed = claim.theirs(evidence)
     born_out: BornOut = "yes" if printed.holds else "no"
-    return Judgement(claim, verdict, sentence, born_out, printed.evidence)
+    return Judgement(claim, verdict, sentence, born_out, printed.evidence, holdings)
 
 
 @dataclass(frozen=True)
@@ -108,10 +116,13 @@ class Errors:
         Raises
         ------
         NotTestable
-            If any of the runs is missing; the message counts and names them.
+            If there is no signal to test it on, or any of the runs is missing; the
+            message counts and names them.
         """
         listed = list(models)
         cells = [(signal, model) for signal in signals for model in listed]
+        if not cells:
+            raise NotTestable("none of the signals that it is about is asked for")
         need_runs(cells, {(signal, model) for signal, model, _ in self.values})
 
     @property

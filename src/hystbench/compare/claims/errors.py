@@ -228,9 +228,10 @@ def chirp_gpo_best(errors: Errors) -> Finding:
 )
 def chirp_harder(errors: Errors) -> Finding:
     """Hold the chirp against the sines of its band."""
-    (chirp,) = errors.table(2)
     sines = [s for s in errors.sines if frequency(s) <= 100]
-    errors.need([chirp, *sines], ["gpo"])
+    errors.need(errors.table(2), ["gpo"])
+    errors.need(sines, ["gpo"])
+    (chirp,) = errors.table(2)
     hardest = max(sines, key=lambda s: errors.of(s, "gpo", "re"))
     ours, sine = errors.of(chirp, "gpo", "re"), errors.of(hardest, "gpo", "re")
     return Finding(

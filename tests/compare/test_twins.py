@@ -1,0 +1,107 @@
+"""What other twins say: spreads of the cells, and where claims hold."""
+
+import csv
+
+import pytest
+
+from hystbench.compare.cells import compare_cells
+from hystbench.compare.claims import judge_all, write_claims
+from hystbench.compare.comparison import write_cells
+from hystbench.compare.evidence import Evidence
+from hystbench.compare.twins import Holding, holding_text, read_holdings, read_spreads
+from hystbench.errors import InputError
+
+from .made import published_runs
+
+ERRORS = """twin,family,signal,model,mse,re,status
+gma,gpi,sine-010hz,gpo,0.01,0.1,finite
+one,gpi,sine-010hz,gpo,0.03,0.2,finite
+two,gpi,sine-010hz,gpo,0.02,0.15,finite
+other,preisach,sine-010hz,gpo,9,9,finite
+gma,gpi,sine-010hz,delayed,1,0.1,finite
+one,gpi,sine-010hz,delayed,,,diverged at sample 3
+two,gpi,sine-010hz,delayed,2,0.2,finite
+"""
+CLAIMS = """twin,family,claim,holds
+gma,gpi,sums-gpo-best,yes
+one,gpi,sums-gpo-best,no
+other,preisach,sums-gpo-best,no
+gma,gpi,stroke,not testable
+gma,gpi,chirp-gpo-best,yes
+"""
+
+
+@pytest.fixture
+def spreads(tmp_path):
+    path = tmp_path / "errors.csv"
+    path.write_text(ERRORS)
+    return read_spreads(path)
+
+
+@pytest.fixture
+def holdings(tmp_path):
+    path = tmp_path / "claims.csv"
+    path.write_text(CLAIMS)
+    return read_holdings(path)
+
+
+def test_spread_is_over_the_first_twins_family(spreads):
+    assert spreads["sine-010hz", "gpo", "mse"] == (0.01, 0.03)
+    assert spreads["sine-010hz", "gpo", "re"] == (0.1, 0.2)
+    assert spreads["sine-010hz", "delayed", "mse"] == (1, float("inf"))
+
+
+def test_one_twin_has_no_spread(tmp_path):
+    path = tmp_path / "errors.csv"
+    path.write_text("".join(ERRORS.splitlines(keepends=True)[:2]))
+    assert read_spreads(path) == {}
+
+
+def test_cells_carry_half_and_spread(spreads, tmp_path):
+    evidence = Evidence(runs=published_runs(), spreads=spreads)
+    write_cells(compare_cells(evidence, ["sine-020hz"]), tmp_path / "cells.csv")
+    with (tmp_path / "cells.csv").open(encoding="utf-8") as stream:
+        rows = {
+            (r["signal"], r["model"], r["metric"]): r for r in csv.DictReader(stream)
+        }
+    found = rows["sine-010hz", "gpo", "mse"]
+    assert (found["spread_low"], found["spread_high"]) == ("0.01", "0.03")
+    assert found["half"] == "calibrated"
+    assert rows["sine-010hz", "delayed", "re"]["spread_high"] == "diverged"
+    assert rows["sine-020hz", "gpo", "mse"]["half"] == "held-out"
+    assert rows["sine-020hz", "gpo", "mse"]["spread_low"] == ""
+
+
+def test_holdings_are_counted_by_family(holdings):
+    assert holdings["sums-gpo-best"] == (
+        Holding("gpi", 1, 2),
+        Holding("preisach", 0, 1),
+    )
+    assert "stroke" not in holdings
+
+
+def test_where_a_claim_holds_stands_beside_its_verdict(holdings, tmp_path):
+    evidence = Evidence(runs=published_runs(), holdings=holdings)
+    write_claims(judge_all(evidence), tmp_path / "claims.csv")
+    with (tmp_path / "claims.csv").open(encoding="utf-8") as stream:
+        rows = {row["id"]: row for row in csv.DictReader(stream)}
+    assert rows["sums-gpo-best"]["verdict"] == "reproduced"
+    assert rows["sums-gpo-best"]["holds_on"] == "gpi 1 of 2, preisach 0 of 1"
+    assert rows["chirp-gpo-best"]["holds_on"] == "gpi 1 of 1; no other family was run"
+    assert rows["stroke"]["holds_on"] == ""
+    assert holding_text(()) == ""
+
+
+@pytest.mark.parametrize(
+    ("reader", "text", "told"),
+    [
+        (read_holdings, CLAIMS.replace(",no\n", ",perhaps\n", 1), "row 2: holds"),
+        (read_spreads, ERRORS.replace("0.03", "small"), "row 2: 'small'"),
+        (read_spreads, ERRORS.replace("family", "famly", 1), "no column 'family'"),
+    ],
+)
+def test_bad_files_are_refused(tmp_path, reader, text, told):
+    path = tmp_path / "bad.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match=told):
+        reader(path)
