@@ -97,10 +97,11 @@ def finished(tmp_path_factory) -> Workflow:
 
 
 @pytest.fixture
-def workflow(finished, tmp_path) -> Workflow:
+def workflow(finished, tmp_path_factory) -> Workflow:
     """A copy of the finished folder that a test may change."""
-    folder = tmp_path / "copy"
-    shutil.copytree(finished.folder, folder, symlinks=True)
+    # As deep as the original: rules name source files relative to the folder.
+    folder = tmp_path_factory.mktemp("copy")
+    shutil.copytree(finished.folder, folder, symlinks=True, dirs_exist_ok=True)
     return Workflow(folder)
 
 

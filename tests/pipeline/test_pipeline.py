@@ -97,7 +97,7 @@ def test_a_changed_step_size_reruns_its_filter_and_what_follows(workflow, config
     assert planned.pop("filter") == len(config["signals"])
     assert planned.pop("order_sweep") == 1
     assert planned.pop("tables") == 1
-    assert all(name.startswith("figure") for name in planned)
+    assert all(name.startswith("draw_") for name in planned)
 
 
 def test_a_changed_seed_of_the_noise_reruns_all_from_the_records(workflow, config):
@@ -130,11 +130,11 @@ def test_an_edited_module_reruns_what_imports_it(workflow):
     assert planned.pop("filter") == 2
     assert planned.pop("order_sweep") == 1
     assert planned.pop("tables") == 1
-    assert all(name.startswith("figure") for name in planned)
+    assert all(name.startswith("draw_") for name in planned)
 
 
 def test_compare_prints_the_tables_though_nothing_is_to_do(finished):
-    result = finished.snakemake("--quiet", "all", "compare")
+    result = finished.snakemake("compare", "--quiet", "all")
     assert result.returncode == 0, result.stderr
     run = load(finished.folder / "results" / "filters" / "sine-200hz" / "gpo.json")
     assert f"{run['mse']:.4f}" in result.stdout

@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shlex
 import sys
 from pathlib import Path
 
@@ -12,9 +13,7 @@ from hystbench.errors import InputError
 from hystbench.settings import read_settings
 
 # Jobs call `hystbench`: the one of the interpreter that runs Snakemake.
-os.environ["PATH"] = os.pathsep.join(
-    [str(Path(sys.executable).parent), os.environ["PATH"]]
-)
+shell.prefix(f"PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; ")
 
 PACKAGE = Path(os.path.relpath(Path(hystbench.__file__).parent))
 GRAPH = grimp.build_graph("hystbench", cache_dir=".snakemake/imports")
