@@ -50,7 +50,7 @@ if TWIN:
             runs=lambda wildcards, input: options("--run", input.runs),
             records=lambda wildcards, input: options("--record", input.records),
             settings=settings_text(SETTINGS.compare_job),
-            folder=COMPARE,
+            folder=lambda wildcards, output: Path(output.verdict).parent,
         message:
             "tables, claims and audit"
         shell:
@@ -83,7 +83,7 @@ else:
         params:
             runs=lambda wildcards, input: options("--run", input.runs),
             dataset=SETTINGS.name,
-            folder=COMPARE,
+            folder=lambda wildcards, output: Path(output.verdict).parent,
         message:
             "tables, claims and audit"
         shell:
