@@ -83,6 +83,12 @@ def identified(wildcards):
     return []
 
 
+def figure(name, suffix):
+    """Picture of a figure; that of the identification lies beside its numbers."""
+    folder = "identify" if name == "identification" else "figures"
+    return f"{RESULTS}/{folder}/{name}.{suffix}"
+
+
 def options(name, files):
     """An option of the command line, once for each file."""
     return " ".join(f"{name} {file}" for file in files)

@@ -34,6 +34,7 @@ if TWIN:
             ),
             summary=f"{COMPARE}/summary.json",
             verdict=f"{COMPARE}/verdict.rst",
+            page=f"{COMPARE}/verdict.md",
             text=f"{COMPARE}/tables.txt",
             tables=report(
                 expand(f"{COMPARE}/tables/table-{{number}}.csv", number=[1, 2, 3, 4]),

@@ -69,11 +69,11 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
             png=report(
-                f"{RESULTS}/figures/{NAME}.png",
+                figure(NAME, "png"),
                 caption=f"../report/{NAME}.rst",
                 category="Figures",
             ),
-            svg=f"{RESULTS}/figures/{NAME}.svg",
+            svg=figure(NAME, "svg"),
         log:
             f"{RESULTS}/logs/figures/{NAME}.log",
         params:
@@ -88,8 +88,4 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
             " --out {output.png} --out {output.svg} 2> {log}"
 
 
-FIGURES = [
-    f"{RESULTS}/figures/{name}.{suffix}"
-    for name in FIGURE_INPUTS
-    for suffix in ("png", "svg")
-]
+FIGURES = [figure(name, suffix) for name in FIGURE_INPUTS for suffix in ("png", "svg")]

@@ -1,0 +1,44 @@
+"""README.md and docs say what the full reproduction gives today."""
+
+from __future__ import annotations
+
+import re
+import shutil
+
+import pytest
+import yaml
+
+from tests.conftest import ROOT, run_hystbench
+
+from .conftest import Workflow
+
+NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+@pytest.fixture(scope="module")
+def reproduced(tmp_path_factory) -> Workflow:
+    """The project's own config, run in full."""
+    workflow = Workflow(tmp_path_factory.mktemp("reproduction"))
+    workflow.configure(yaml.safe_load((ROOT / "config.yaml").read_text()))
+    workflow.run()
+    return workflow
+
+
+def test_pages_hold_the_numbers_of_the_results(reproduced):
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    (reproduced.folder / "docs").mkdir()
+    copies = [reproduced.folder / page.relative_to(ROOT) for page in pages]
+    for page, copy in zip(pages, copies, strict=True):
+        shutil.copy(page, copy)
+    done = run_hystbench("docs", cwd=reproduced.folder)
+    assert done.returncode == 0, done.stderr
+    for page, copy in zip(pages, copies, strict=True):
+        written, filled = page.read_text(), copy.read_text()
+        assert NUMBER.sub("#", written) == NUMBER.sub("#", filled), page.name
+        # Optimisers end elsewhere in the last digits on another processor.
+        for there, here in zip(
+            NUMBER.findall(written), NUMBER.findall(filled), strict=True
+        ):
+            assert float(there) == pytest.approx(float(here), rel=0.02, abs=2e-4), (
+                page.name
+            )
