@@ -34,7 +34,14 @@ class BuildKernels(build_ext):
 
 
 HERE = "src/hystbench/kernels"
-SOURCES = ["lms.c", "play.c", "state_space.c", "volterra.c"]
+SOURCES = [
+    "jiles_atherton.c",
+    "lms.c",
+    "play.c",
+    "preisach.c",
+    "state_space.c",
+    "volterra.c",
+]
 
 setup(
     ext_modules=[

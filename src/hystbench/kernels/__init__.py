@@ -1,4 +1,4 @@
-"""Compiled loops: play operators, LMS filters and linear dynamics.
+"""Compiled loops: hysteresis, LMS filters and linear dynamics.
 
 The C files beside this one make one shared library without Python's headers;
 :mod:`ctypes` loads it and lets other threads run during a call. Arrays go in as
@@ -34,6 +34,8 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_play_rows": (None, "iiaaiaaa"),
     "hb_lms_volterra": (_SIZE, "iiiaaffffaaaa"),
     "hb_state_space": (None, "iiaaafaaa"),
+    "hb_preisach": (None, "iifaaaaa"),
+    "hb_jiles_atherton": (None, "iffffffaaa"),
 }
 
 
