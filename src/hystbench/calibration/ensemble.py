@@ -8,7 +8,7 @@ from hystbench.calibration.constraints import violations
 from hystbench.calibration.fit import Fit, Tell, jacobian, to_point, to_values
 from hystbench.calibration.objective import Objective
 from hystbench.calibration.targets import Target
-from hystbench.calibration.twin import make_twin
+from hystbench.calibration.twin import STEP_NAMES, UNKNOWNS, make_twin
 from hystbench.errors import InputError
 
 TOLERANCE = 0.1
@@ -26,11 +26,13 @@ def equally_good(
 ) -> tuple[Fit, ...]:
     """Draw twins whose cost is at most a tenth above the best one's.
 
-    Around the best twin the cost grows as ``cost + |J step|^2 / 2``, J the Jacobian of
-    the residuals. Steps are drawn evenly within the ellipsoid where that growth is a
-    tenth of the cost, directions that the targets do not feel being held to the
-    bounds; a drawn twin counts only if its true cost keeps the promise and it meets
-    the constraints. Where few do, the ellipsoid shrinks.
+    The step sizes and the zero error of the recorded input stay as they are: they are
+    the experiment's, one for all twins. Around the best twin the cost grows by
+    ``|J step|^2 / 2``, J the Jacobian of the residuals. Steps are drawn within the
+    ellipsoid where that growth is a tenth of the cost; directions that the targets do
+    not feel are held to a quarter of the bounds. A drawn twin counts only if its true
+    cost keeps the promise and it meets the constraints. Where few do, the ellipsoid
+    shrinks.
 
     Parameters
     ----------
@@ -48,9 +50,13 @@ def equally_good(
         If so many cannot be found.
     """
     centre = to_point(best.values)
-    _, sizes, axes = np.linalg.svd(
-        jacobian(objective, targets, centre), full_matrices=False
-    )
+    fixed = {
+        "input zero",
+        *(name for own in STEP_NAMES.values() for name in own.values()),
+    }
+    plant = [k for k, item in enumerate(UNKNOWNS) if item.name not in fixed]
+    slopes = jacobian(objective, targets, centre)[:, plant]
+    _, sizes, axes = np.linalg.svd(slopes, full_matrices=False)
     radius = np.sqrt(2 * TOLERANCE * best.cost)
     reach = radius / np.maximum(sizes, radius / 0.25)  # a quarter of the bounds at most
     rng = np.random.default_rng(seed)
@@ -59,7 +65,8 @@ def equally_good(
     for draw in range(40 * count):
         direction = rng.standard_normal(len(reach))
         direction *= rng.random() ** (1 / len(reach)) / np.linalg.norm(direction)
-        point = centre + shrink * axes.T @ (reach * direction)
+        point = centre.copy()
+        point[plant] += shrink * axes.T @ (reach * direction)
         if ((point > 0) & (point < 1)).all():
             values = to_values(point)
             cost = float(np.sum(objective.residuals(values, targets) ** 2) / 2)

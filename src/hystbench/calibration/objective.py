@@ -21,10 +21,11 @@ LOG_SCALE = {"gpo": 0.06, "backlash": 0.10, "volterra": 0.08, "delayed": 0.08}
 RMS_SCALE = 0.01
 """A relative deviation of the RMS displacement that counts as one."""
 CONSTRAINT_SCALE = {
-    "chirp least (s)": 0.02,
-    "chirp greatest (s)": 0.02,
+    "chirp least (s)": 0.002,
+    "chirp greatest (s)": 0.002,
     "rise at the mode": 0.01,
 }
+"""An excess over a constraint that counts as one: little, since it must be met."""
 INCONSISTENT_WEIGHT = 0.5
 DIVERGED = 1e4  # um^2, stands for an MSE that is not a number
 

@@ -50,13 +50,13 @@ class Unknown:
 
 
 UNKNOWNS = (
-    Unknown("gain", "um", 70, 20, 400, True, "sum of the weights of the operators"),
-    Unknown("decay", "-", 5, -5, 15, False, "weights go as exp(-decay i / (N + 1))"),
-    Unknown("first", "-", 1, 0.05, 300, True, "extra factor of the first weight"),
+    Unknown("gain", "um", 75, 20, 400, True, "sum of the weights of the operators"),
+    Unknown("first", "-", 0.6, 0.02, 0.98, False, "share of the first operator"),
+    Unknown("decay", "-", 0, -8, 8, False, "others go as exp(-decay i / (N + 1))"),
     Unknown("zero", "Hz", 200, 20, 2000, True, "zero of the eddy-current lag"),
     Unknown("pole", "Hz", 110, 10, 2000, True, "pole of the eddy-current lag"),
     Unknown("mode", "Hz", 65, 60, 70, False, "first mode; 69.7 Hz seen in a sweep"),
-    Unknown("damping", "-", 0.05, 0.01, 0.15, True, "damping ratio of the mode"),
+    Unknown("damping", "-", 0.04, 0.01, 0.15, True, "damping ratio of the mode"),
     Unknown("participation", "-", -0.01, -0.3, 0.3, False, "static share of the mode"),
     Unknown("asymmetry", "1/um", -0.005, -0.02, 0.02, False, "square before the lag"),
     Unknown("offset", "um", 0.3, -2, 2, False, "sensor's zero"),
@@ -70,11 +70,10 @@ UNKNOWNS = (
 )
 
 
-def weights(gain: float, decay: float, first: float) -> FloatArray:
-    """Weights of the play operators: an exponential, the first one apart."""
-    w = np.exp(-decay * np.arange(ORDER + 1) / (ORDER + 1))
-    w[0] *= first
-    return np.asarray(gain * w / w.sum())
+def weights(gain: float, first: float, decay: float) -> FloatArray:
+    """Weights of the play operators: a share for the first, the rest exponential."""
+    rest = np.exp(-decay * np.arange(1, ORDER + 1) / (ORDER + 1))
+    return np.concatenate(([gain * first], gain * (1 - first) * rest / rest.sum()))
 
 
 def make_twin(values: dict[str, float]) -> Model:
@@ -96,12 +95,12 @@ def make_twin(values: dict[str, float]) -> Model:
         "chain": [
             {
                 "gpi": {
-                    "envelope": list(PUBLISHED_ENVELOPE.to_dict().values()),
+                    "envelope": PUBLISHED_ENVELOPE.to_dict(),
                     "thresholds": _rounded(
                         thresholds(PUBLISHED_ENVELOPE, AMPLITUDE, ORDER)
                     ),
                     "weights": _rounded(
-                        weights(values["gain"], values["decay"], values["first"])
+                        weights(values["gain"], values["first"], values["decay"])
                     ),
                 }
             },
