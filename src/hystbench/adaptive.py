@@ -33,7 +33,7 @@ def make_filter(
     model: str,
     settings: Mapping[str, Any],
     record: Record,
-    identified: Path | None = None,
+    identified: Path | Mapping[str, Any] | None = None,
     order: int | None = None,
 ) -> AdaptiveFilter:
     """Make a filter for a record.
@@ -47,8 +47,9 @@ def make_filter(
         ``convergence_factor`` or ``fraction_of_bound``.
     record : Record
         Its input sets the bound, and the thresholds where no ``amplitude`` is set.
-    identified : Path, optional
-        Result of Algorithm 1, for ``envelopes: identified``.
+    identified : Path or mapping, optional
+        Result of Algorithm 1, as its file or its content, for
+        ``envelopes: identified``.
     order : int, optional
         Another order than that of the settings.
 
@@ -77,7 +78,9 @@ def make_filter(
                 raise InputError(
                     "envelopes: identified; expected the option --identified FILE"
                 )
-            about = read_json(identified)
+            about = (
+                identified if isinstance(identified, Mapping) else read_json(identified)
+            )
             options["envelope"] = Envelope.from_dict(about["envelope"])
             options["amplitude"] = about["amplitude"]
         else:

@@ -109,10 +109,21 @@ class Settings:
     @property
     def model_file(self) -> str:
         """File of the twin's model: one of the package's by name, or a path."""
-        name = str(self.config["twin"]["model"])
-        if name in packaged_models():
-            return packaged_models()[name]
-        return name
+        return _model_files(str(self.config["twin"]["model"]))[0]
+
+    @property
+    def twin_files(self) -> list[str]:
+        """Model files of all twins on which claims are judged, the twin's first."""
+        return self._files_of(self.config["pressure"]["twins"])
+
+    @property
+    def contest_files(self) -> list[str]:
+        """Model files of the twins of the contest, the twin's first."""
+        return self._files_of(self.config["contest"]["twins"])
+
+    def _files_of(self, names: Iterable[str]) -> list[str]:
+        files = [file for name in names for file in _model_files(name)]
+        return list(dict.fromkeys([self.model_file, *files]))
 
     def signal_job(self, name: str) -> dict[str, Any]:
         """Give a signal's definition and the common values that it takes."""
@@ -135,6 +146,42 @@ class Settings:
             if key != "signal"
         }
         return job | {"order": self.config["filters"]["order"]}
+
+    @property
+    def ensemble_job(self) -> dict[str, Any]:
+        """Settings of all models on a twin, in one job."""
+        rdgpi = self.rdgpi_job | {"fit_signals": self.rdgpi_fit_signals}
+        return {
+            "signals": {name: self.signal_job(name) for name in self.all_records},
+            "asked": self.signals,
+            "measure": self.measure_job,
+            "filters": {name: self.filter_job(name) for name in self.filters},
+            "identification": self.identification_job
+            | {"signal": self.identification_signal},
+            "order_sweep": {
+                key: self.config["order_sweep"][key]
+                for key in ("signal", "orders", "convergence_factor")
+            },
+            "rdgpi": rdgpi if "rdgpi" in self.models else None,
+        }
+
+    @property
+    def pressure_job(self) -> dict[str, Any]:
+        """Settings of the claims under pressure."""
+        design = {k: v for k, v in self.config["pressure"].items() if k != "twins"}
+        return self.ensemble_job | self.compare_job | {"design": design}
+
+    @property
+    def contest_job(self) -> dict[str, Any]:
+        """Settings of the contest of filters."""
+        grid = {k: v for k, v in self.config["contest"].items() if k != "twins"}
+        return {
+            "signals": {name: self.signal_job(name) for name in self.signals},
+            "measure": self.measure_job,
+            "filters": {name: self.filter_job(name) for name in self.filters},
+            **self.compare_job,
+            **grid,
+        }
 
     @property
     def compare_job(self) -> dict[str, Any]:
@@ -213,7 +260,10 @@ def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Setting
     if config["source"] == "twin":
         _check_names(place, named, excitations)
         _check_lengths(place, config)
-        _check_model(place, config["twin"]["model"])
+        _check_model(place, "twin: model", config["twin"]["model"])
+        for key in ("pressure", "contest"):
+            for name in config[key]["twins"]:
+                _check_model(place, f"{key}: twins", name)
         return Settings(config, None)
     dataset = load_dataset(config["source"])
     for name in dataset.record_files:
@@ -231,10 +281,25 @@ def packaged_models() -> dict[str, str]:
     return {file.stem: str(file) for file in sorted(folder.glob("*.yaml"))}
 
 
-def _check_model(place: str, name: str) -> None:
-    if name not in packaged_models() and not Path(name).is_file():
+def _model_files(name: str) -> list[str]:
+    """Files of a model, one of the package's by name or a path, or of a folder."""
+    packaged = packaged_models()
+    if name in packaged:
+        return [packaged[name]]
+    plants = Path(os.path.relpath(Path(__file__).parent / "plants"))
+    for folder in (plants / name, Path(name)):
+        if folder.is_dir():
+            return [str(file) for file in sorted(folder.glob("*.yaml"))]
+    return [name]
+
+
+def _check_model(place: str, key: str, name: str) -> None:
+    files = _model_files(name)
+    if not files:
+        raise InputError(f"{place}: {key}: no model file in the folder {name!r}")
+    if not Path(files[0]).is_file():
         raise InputError(
-            f"{place}: twin: model: no model or file {name!r}; "
+            f"{place}: {key}: no model or file {name!r}; "
             f"{nearest(name, packaged_models())}"
         )
 

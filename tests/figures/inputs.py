@@ -91,6 +91,21 @@ def write_cells(path: Path) -> None:
     _write(path, columns.split(","), rows)
 
 
+def write_contest(path: Path) -> None:
+    """Write entries of a contest on two twins, one of which diverged."""
+    columns = "twin,family,algorithm,protocol,signal,model,mse"
+    rows = [
+        [twin, family, algorithm, protocol, signal, model, (1 + k) / (1 + n)]
+        for twin, family in (("gma", "gpi"), ("other", "preisach"))
+        for algorithm in ("LMS", "NLMS")
+        for n, signal in enumerate(SIGNALS)
+        for protocol in ("held-out", "best")
+        for k, model in enumerate(MODELS[:4])
+    ]
+    rows[0][-1] = ""
+    _write(path, columns.split(","), rows)
+
+
 def write_identified(path: Path, record: Record) -> None:
     """Run a short Algorithm 1 on a record."""
     found = identify(
@@ -123,6 +138,7 @@ class Inputs:
         self.folder = folder
         write_order_sweep(folder / "errors.csv")
         write_cells(folder / "cells.csv")
+        write_contest(folder / "contest.csv")
         write_identified(folder / "identified.json", self.records[SIGNALS[0]])
 
     def record(self, *names: str) -> list[Path]:
@@ -154,6 +170,7 @@ class Inputs:
             "identification": one | {"identified": self.folder / "identified.json"},
             "learning-curves": everything,
             "errors-heat-map": {"table": self.folder / "cells.csv"},
+            "contest": {"table": self.folder / "contest.csv"},
             "loops": everything | {"records": self.record(*SIGNALS)},
             "errors-by-record": everything,
         }[figure]

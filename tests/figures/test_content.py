@@ -247,3 +247,21 @@ def test_arrays_must_be_beside_a_run(inputs, tmp_path):
     run.with_suffix(".npz").unlink()
     with pytest.raises(InputError, match="not the arrays of a run"):
         draw("figure-10-sum", records=inputs.record("sine-010hz"), runs=[run])
+
+
+def test_contest_has_a_panel_for_each_twin_and_algorithm(inputs):
+    figure = draw("contest", **inputs.of("contest"))
+    assert [axes.get_title(loc="left") for axes in figure.axes] == [
+        "(a) LMS, twin gma (gpi)",
+        "(b) NLMS, twin gma (gpi)",
+        "(c) LMS, twin other (preisach)",
+        "(d) NLMS, twin other (preisach)",
+    ]
+    for number, axes in enumerate(figure.axes):
+        marks = [m for m in axes.get_lines() if m.get_marker() not in ("", "None")]
+        crosses = [m for m in marks if m.get_marker() == "x"]
+        assert len(crosses) == (number == 0)
+        hollow = [m for m in marks if m.get_markerfacecolor() == "none"]
+        assert len(hollow) == len(SIGNALS) * 4
+        assert len(marks) == 2 * len(hollow)
+    assert "diverged" in legend(figure)

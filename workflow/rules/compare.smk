@@ -9,6 +9,8 @@ if TWIN:
             order_sweep=rules.order_sweep.output,
             identified=rules.identify.output,
             envelopes=rules.envelopes.output,
+            twin_errors=rules.twins.output.errors,
+            twin_claims=rules.twins.output.claims,
             published=PUBLISHED,
             code=code("hystbench.commands.compare"),
         output:
@@ -57,7 +59,8 @@ if TWIN:
         shell:
             "hystbench compare {params.runs} {params.records}"
             " --order-sweep {input.order_sweep} --identified {input.identified}"
-            " --envelopes {input.envelopes} --settings {params.settings:q}"
+            " --envelopes {input.envelopes} --twin-errors {input.twin_errors}"
+            " --twin-claims {input.twin_claims} --settings {params.settings:q}"
             " --out {params.folder} 2> {log}"
 
 else:

@@ -6,12 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import click
-import numpy as np
 
-from hystbench import options
-from hystbench.errors import InputError
+from hystbench import measurement, options
 from hystbench.model import load_model
-from hystbench.record import Record
 from hystbench.signals import load_signal
 
 
@@ -21,26 +18,6 @@ from hystbench.signals import load_signal
 @options.settings
 @options.out
 def measure(signal: Path, model: Path, settings: dict[str, Any], out: Path) -> None:
-    """Simulate a model on SIGNAL and write the record.
-
-    The record's input is the signal plus ``input_zero_error``, a constant that the
-    actuator does not see; the sensor noise is drawn from ``seed`` and the signal's
-    name, so that it does not depend on which signals are run.
-    """
-    excitation = load_signal(signal)
+    """Simulate a model on SIGNAL and write the record."""
     plant = load_model(model)
-    if excitation.unit != plant.input.unit:
-        raise InputError(
-            f"{model}: input: unit {plant.input.unit!r}; "
-            f"expected {excitation.unit!r}, the unit of signal {excitation.name}"
-        )
-    rng = np.random.default_rng([settings["seed"], *excitation.name.encode()])
-    Record(
-        name=excitation.name,
-        dt=excitation.dt,
-        u=excitation.u + settings["input_zero_error"],
-        y=plant.simulate(excitation.u, excitation.dt, rng),
-        input=plant.input,
-        output=plant.output,
-        origin="twin",
-    ).save(out)
+    measurement.measure(load_signal(signal), plant, settings, str(model)).save(out)

@@ -218,7 +218,11 @@ def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
 
 def read_identification(path: str | Path) -> Identification:
     """Read the result of Algorithm 1."""
-    content = _content(path)
+    return identification_of(_content(path), path)
+
+
+def identification_of(content: Mapping[str, Any], path: str | Path) -> Identification:
+    """Make the result of Algorithm 1 from what its file at a path holds."""
 
     def array(key: str) -> FloatArray:
         return np.asarray(_need(content, key, path), dtype=float)

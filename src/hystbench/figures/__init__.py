@@ -27,6 +27,7 @@ NAMES = (
     "identification",
     "learning-curves",
     "errors-heat-map",
+    "contest",
     "loops",
     "errors-by-record",
 )

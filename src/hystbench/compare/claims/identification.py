@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from hystbench.compare.claims.claim import Finding, NotTestable, claim_on
@@ -114,7 +116,12 @@ def envelopes_serve_every_rate(evidence: Evidence) -> Finding:
     ]
     if not both:
         raise NotTestable("not run: the filter with identified and published envelopes")
-    better = [s for s in both if errors[s, "identified"] <= errors[s, "published"]]
+    better = [
+        s
+        for s in both
+        if math.isfinite(errors[s, "identified"])
+        and errors[s, "identified"] <= errors[s, "published"]
+    ]
     return Finding(
         2 * len(better) >= len(both),
         f"MSE is as small or smaller with identified envelopes on {len(better)} of "

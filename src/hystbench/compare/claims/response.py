@@ -25,8 +25,10 @@ def records(evidence: Evidence, names: list[str]) -> list[Record]:
     Raises
     ------
     NotTestable
-        If one is missing.
+        If one is missing, or none is asked for.
     """
+    if not names:
+        raise NotTestable("none of the signals that it is about is asked for")
     for name in names:
         if name not in evidence.records:
             raise NotTestable(f"not run: record of {name}")

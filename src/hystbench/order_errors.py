@@ -1,0 +1,72 @@
+"""Error of each filter against its order (Figure 7)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hystbench.adaptive import fraction_of_bound, make_filter, with_fraction_of_bound
+from hystbench.filters import AdaptiveFilter, run_many
+from hystbench.metrics import mean_square_error
+from hystbench.record import Record
+
+
+@dataclass(frozen=True)
+class OrderError:
+    """MSE of a filter at an order, None where it diverged, and how it ended."""
+
+    model: str
+    order: int
+    mse: float | None
+    status: str
+
+
+def filters_by_order(
+    record: Record,
+    settings: Mapping[str, Any],
+    identified: Path | Mapping[str, Any] | None = None,
+) -> list[AdaptiveFilter]:
+    """Make each filter for a record at each order.
+
+    tr[R] grows with the order, so that a constant convergence factor nears Eq. 19's
+    bound; ``same-fraction-of-bound`` keeps it as far from it as at the usual order.
+
+    Parameters
+    ----------
+    record : Record
+    settings : mapping
+        ``orders``, ``convergence_factor`` (how it follows the order) and
+        ``filters``, each filter's own settings.
+    identified : Path or mapping, optional
+        As for :func:`hystbench.adaptive.make_filter`.
+    """
+    same_fraction = settings["convergence_factor"] == "same-fraction-of-bound"
+    filters = []
+    for model, job in settings["filters"].items():
+        usual = make_filter(model, job, record, identified)
+        fractions = fraction_of_bound(usual, record.u) if same_fraction else {}
+        for order in settings["orders"]:
+            adaptive = make_filter(model, job, record, identified, order)
+            if same_fraction:
+                adaptive = with_fraction_of_bound(adaptive, record.u, fractions)
+            filters.append(adaptive)
+    return filters
+
+
+def order_errors(
+    record: Record, filters: Iterable[AdaptiveFilter], threads: int = 1
+) -> list[OrderError]:
+    """Run filters on a record, so many at once."""
+    listed = list(filters)
+    results = run_many(((each, record.u, record.y) for each in listed), threads)
+    found = []
+    for each, result in zip(listed, results, strict=True):
+        if result.diverged_at is None:
+            mse, status = mean_square_error(result.error), "finite"
+            found.append(OrderError(each.name, each.order, mse, status))
+        else:
+            told = f"diverged at sample {result.diverged_at}"
+            found.append(OrderError(each.name, each.order, None, told))
+    return found
