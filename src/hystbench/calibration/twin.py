@@ -50,23 +50,29 @@ class Unknown:
 
 
 UNKNOWNS = (
-    Unknown("gain", "um", 75, 20, 400, True, "sum of the weights of the operators"),
-    Unknown("first", "-", 0.6, 0.02, 0.98, False, "share of the first operator"),
-    Unknown("decay", "-", 0, -8, 8, False, "others go as exp(-decay i / (N + 1))"),
-    Unknown("zero", "Hz", 200, 20, 2000, True, "zero of the eddy-current lag"),
-    Unknown("pole", "Hz", 110, 10, 2000, True, "pole of the eddy-current lag"),
-    Unknown("mode", "Hz", 65, 60, 70, False, "first mode; 69.7 Hz seen in a sweep"),
-    Unknown("damping", "-", 0.04, 0.01, 0.15, True, "damping ratio of the mode"),
-    Unknown("participation", "-", -0.01, -0.3, 0.3, False, "static share of the mode"),
-    Unknown("asymmetry", "1/um", -0.005, -0.02, 0.02, False, "square before the lag"),
-    Unknown("offset", "um", 0.3, -2, 2, False, "sensor's zero"),
-    Unknown("noise", "um", 0.036, 0.02, 0.15, True, "RMS of the sensor noise"),
-    Unknown("input zero", "A", 0.007, -0.03, 0.03, False, "recorded minus true input"),
-    Unknown("gpo step", "-", 1.5, 0.05, 20, True, "convergence factor"),
-    Unknown("backlash step", "-", 0.12, 0.01, 3, True, "convergence factor"),
-    Unknown("volterra first step", "-", 0.006, 1e-4, 0.2, True, "convergence factor"),
-    Unknown("volterra second step", "-", 4e-4, 1e-5, 0.02, True, "convergence factor"),
-    Unknown("delayed step", "-", 0.025, 1e-3, 0.3, True, "convergence factor"),
+    Unknown("gain", "um", 94, 20, 400, True, "sum of the weights of the operators"),
+    Unknown("first", "-", 0.47, 0.02, 0.98, False, "share of the first operator"),
+    Unknown("decay", "-", -2.1, -8, 8, False, "others go as exp(-decay i / (N + 1))"),
+    Unknown("zero", "Hz", 1900, 20, 5000, True, "zero of the eddy-current lag"),
+    Unknown("pole", "Hz", 166, 10, 2000, True, "pole of the eddy-current lag"),
+    Unknown("mode", "Hz", 63, 60, 70, False, "first mode; 69.7 Hz seen in a sweep"),
+    Unknown("damping", "-", 0.011, 0.01, 0.15, True, "damping ratio of the mode"),
+    Unknown(
+        "participation", "-", -0.0044, -0.3, 0.3, False, "static share of the mode"
+    ),
+    Unknown("asymmetry", "1/um", -6e-4, -0.02, 0.02, False, "square before the lag"),
+    Unknown("offset", "um", -0.2, -2, 2, False, "sensor's zero"),
+    Unknown("noise", "um", 0.021, 0.02, 0.15, True, "RMS of the sensor noise"),
+    Unknown(
+        "input zero", "A", -0.0057, -0.03, 0.03, False, "recorded minus true input"
+    ),
+    Unknown("gpo step", "-", 2.1, 0.05, 20, True, "convergence factor"),
+    Unknown("backlash step", "-", 0.13, 0.01, 3, True, "convergence factor"),
+    Unknown("volterra first step", "-", 0.0031, 1e-4, 0.2, True, "convergence factor"),
+    Unknown(
+        "volterra second step", "-", 2.7e-4, 1e-5, 0.02, True, "convergence factor"
+    ),
+    Unknown("delayed step", "-", 0.02, 1e-3, 0.3, True, "convergence factor"),
 )
 
 
