@@ -8,6 +8,7 @@ import shutil
 
 import numpy as np
 import pytest
+import yaml
 
 from .conftest import ROOT, Workflow
 
@@ -35,7 +36,10 @@ def test_every_stage_leaves_its_files(finished):
         "order-sweep/errors.csv",
         "rdgpi/identified.json",
         "rdgpi/published-parameters.csv",
+        "twins/errors.csv",
+        "twins/claims.csv",
         "compare/cells.csv",
+        "compare/off.csv",
         "compare/claims.csv",
         "compare/audit.csv",
         "compare/summary.json",
@@ -79,6 +83,63 @@ def test_the_tables_hold_the_errors_of_the_runs(finished):
         )
 
 
+def rows(path):
+    with path.open() as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_the_twin_says_the_same_in_memory_and_job_by_job(finished):
+    results = finished.folder / "results"
+    verdicts = {
+        row["id"]: row["verdict"] for row in rows(results / "compare" / "claims.csv")
+    }
+    words = {
+        "yes": "reproduced",
+        "no": "not reproduced",
+        "not testable": "not testable",
+    }
+    judged = rows(results / "twins" / "claims.csv")
+    assert judged
+    for row in judged:
+        assert verdicts[row["claim"]] == words[row["holds"]], row
+    for row in rows(results / "twins" / "errors.csv"):
+        run = load(results / "filters" / row["signal"] / f"{row['model']}.json")
+        assert float(row["mse"]) == pytest.approx(run["mse"], rel=1e-9)
+
+
+def test_the_pressure_is_a_target_of_its_own(workflow, config):
+    perturbed = yaml.safe_load(
+        (ROOT / "src" / "hystbench" / "plants" / "gma.yaml").read_text()
+    )
+    gpi = perturbed["chain"][0]["gpi"]
+    gpi["weights"] = [1.1 * weight for weight in gpi["weights"]]
+    folder = workflow.folder / "twins"
+    folder.mkdir()
+    (folder / "stronger.yaml").write_text(yaml.safe_dump(perturbed))
+    config["pressure"] |= {"twins": ["twins"], "seeds": 1, "step_choices": 2}
+    config["contest"] |= {"fractions": [0.1, 0.5]}
+    workflow.configure(config)
+    done = workflow.run("pressure")
+    assert done.pop("pressure") == 1
+    assert done == {"press": 1, "contest": 1, "draw_contest": 1}
+    pressure = workflow.folder / "results" / "pressure"
+    assert {row["twin"] for row in rows(pressure / "by-twin.csv")} == {
+        "gma",
+        "stronger",
+    }
+    workflow.run()
+    cells = rows(workflow.folder / "results" / "compare" / "cells.csv")
+    ran = [cell for cell in cells if cell["status"] == "finite"]
+    for cell in ran:
+        assert float(cell["spread_low"]) <= float(cell["ours"])
+        assert float(cell["ours"]) <= float(cell["spread_high"])
+    config["pressure"]["twins"] = ["twns"]
+    workflow.configure(config)
+    result = workflow.snakemake()
+    assert result.returncode != 0
+    assert "pressure: twins: no model or file 'twns'" in result.stderr
+
+
 def test_afterwards_there_is_nothing_to_do(finished):
     assert finished.would_run() == {}
 
@@ -96,6 +157,7 @@ def test_a_changed_step_size_reruns_its_filter_and_what_follows(workflow, config
     planned = workflow.would_run()
     assert planned.pop("filter") == len(config["signals"])
     assert planned.pop("order_sweep") == 1
+    assert planned.pop("twins") == 1
     assert planned.pop("tables") == 1
     assert all(name.startswith("draw_") for name in planned)
 
@@ -129,6 +191,7 @@ def test_an_edited_module_reruns_what_imports_it(workflow):
     planned = copied.would_run("--rerun-triggers", "mtime")
     assert planned.pop("filter") == 2
     assert planned.pop("order_sweep") == 1
+    assert planned.pop("twins") == 1
     assert planned.pop("tables") == 1
     assert all(name.startswith("draw_") for name in planned)
 

@@ -43,6 +43,10 @@ def code(*modules):
     As inputs of a rule they make an edited module rerun what depends on it.
     """
     names = set(modules).union(*(GRAPH.find_upstream_modules(name) for name in modules))
+    if "hystbench.blocks" in names:
+        # Blocks are found by name, so that no import tells of them.
+        blocks = GRAPH.find_children("hystbench.blocks")
+        names |= blocks.union(*(GRAPH.find_upstream_modules(name) for name in blocks))
     files = []
     for name in sorted(names):
         path = PACKAGE.joinpath(*name.split(".")[1:])

@@ -2,6 +2,8 @@
 # One job runs all models on all twins in memory: a file for each run would cost more
 # than the runs.
 PRESSURE = f"{RESULTS}/pressure"
+# The filters are found by name, so that no import tells of them.
+FILTER_MODULES = [f"hystbench.filters.{name}" for name in SETTINGS.filters]
 
 if TWIN:
 
@@ -10,7 +12,7 @@ if TWIN:
         input:
             twins=SETTINGS.twin_files,
             readings=[file for file in map(readings, SETTINGS.twin_files) if file],
-            code=code("hystbench.commands.twins"),
+            code=code("hystbench.commands.twins", *FILTER_MODULES),
         output:
             errors=f"{RESULTS}/twins/errors.csv",
             claims=f"{RESULTS}/twins/claims.csv",
@@ -28,7 +30,7 @@ if TWIN:
         input:
             twins=SETTINGS.twin_files,
             readings=[file for file in map(readings, SETTINGS.twin_files) if file],
-            code=code("hystbench.commands.pressure"),
+            code=code("hystbench.commands.pressure", *FILTER_MODULES),
         output:
             claims=f"{PRESSURE}/claims.csv",
             by_twin=f"{PRESSURE}/by-twin.csv",
@@ -38,7 +40,7 @@ if TWIN:
             f"{RESULTS}/logs/pressure/claims.log",
         params:
             settings=settings_text(SETTINGS.pressure_job),
-            folder=PRESSURE,
+            folder=lambda wildcards, output: Path(output.claims).parent,
         message:
             "claims on many twins, step sizes and seeds"
         shell:
@@ -50,7 +52,7 @@ if TWIN:
             twins=SETTINGS.contest_files,
             readings=[file for file in map(readings, SETTINGS.contest_files) if file],
             published=PUBLISHED,
-            code=code("hystbench.commands.contest"),
+            code=code("hystbench.commands.contest", *FILTER_MODULES),
         output:
             table=f"{PRESSURE}/contest.csv",
             ranking=f"{PRESSURE}/ranking.csv",
@@ -59,7 +61,7 @@ if TWIN:
             f"{RESULTS}/logs/pressure/contest.log",
         params:
             settings=settings_text(SETTINGS.contest_job),
-            folder=PRESSURE,
+            folder=lambda wildcards, output: Path(output.table).parent,
         message:
             "each filter with its best step size"
         shell:
