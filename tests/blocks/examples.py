@@ -14,6 +14,23 @@ EXAMPLES = {
         "thresholds": [0.0, 0.05, 0.1],
         "weights": [1.0, 0.5, 0.25],
     },
+    "jiles-atherton": {
+        "saturation": 40.0,
+        "shape": 0.5,
+        "coupling": 0.3,
+        "pinning": 0.1,
+        "reversibility": 0.3,
+        "bias": 0.2,
+    },
+    "preisach": {
+        "limit": 0.8,
+        "reversible": 5.0,
+        "weights": [10.0, 3.0],
+        "centres": [0.0, -0.2],
+        "centre_spreads": [0.4, 0.1],
+        "half_widths": [0.0, 0.2],
+        "half_width_spreads": [0.1, 0.1],
+    },
     "rdgpi": {
         "alpha1": 8.0,
         "beta1": 1.002,

@@ -8,7 +8,8 @@ INLINE double langevin_ratio(double x)
     const double q = x * x;
     if (q < 0.01)
         return 1. / 3 + q * (-1. / 45 + q * (2. / 945 + q * (-1. / 4725 + q * 2. / 93555)));
-    return (1 / tanh(x) - 1 / x) / x;
+    const double size = fabs(x), e = exp(-2 * size);
+    return ((1 + e) / (1 - e) - 1 / size) / size;
 }
 
 /* Slope dm/dh where the field moves in a direction, +1 or -1. */

@@ -1,0 +1,137 @@
+"""Block ``preisach``: hysteresis as a distribution of relays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench import kernels
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number, numbers
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class Preisach(Block):
+    """Scalar Preisach model beside a reversible part [1]_.
+
+    ``y = reversible z + integral of mu(a, b) R_ab[z] over b <= a``. The relay
+    ``R_ab`` goes up by one where z reaches a, down by one where it reaches b. The
+    density is a sum of clusters, Gaussian in the centre ``(a + b) / 2`` and in the
+    half-width ``(a - b) / 2`` of the relays, within ``|a|, |b| <= limit``. It is
+    constant in each cell of a grid, as in [2]_, so that the output of all relays
+    follows exactly from Everett's function at the turning points. Rate-independent.
+
+    The block starts demagnetized by alternating, falling inputs; the output counts
+    from there.
+
+    References
+    ----------
+    .. [1] I. D. Mayergoyz, Mathematical Models of Hysteresis, Springer, 1991,
+       chapter 1.
+    .. [2] X. Tan, J. S. Baras, "Modeling and control of hysteresis in magnetostrictive
+       actuators", Automatica 40 (2004) 1469-1480.
+    """
+
+    name: ClassVar = "preisach"
+    place: ClassVar = "material"
+    reference: ClassVar = "Mayergoyz, Mathematical Models of Hysteresis, 1991"
+
+    limit: float = number("U", "largest input at which a relay switches", 1e-9, 1e9)
+    reversible: float = number("Y/U", "slope of the reversible part", -1e9, 1e9)
+    weights: tuple[float, ...] = numbers(
+        "Y", "swing of the output by each cluster of relays", 0.0, 1e9
+    )
+    centres: tuple[float, ...] = numbers("U", "mean of (a + b) / 2", -1e9, 1e9)
+    centre_spreads: tuple[float, ...] = numbers(
+        "U", "standard deviation of (a + b) / 2", 1e-9, 1e9
+    )
+    half_widths: tuple[float, ...] = numbers("U", "mean of (a - b) / 2", 0.0, 1e9)
+    half_width_spreads: tuple[float, ...] = numbers(
+        "U", "standard deviation of (a - b) / 2", 1e-9, 1e9
+    )
+    cells: float = number("-", "cells of the grid along each axis", 2, 1000, 128.0)
+
+    def check(self) -> None:
+        """Refuse lists of different lengths and a grid that is no grid."""
+        if self.cells != int(self.cells):
+            raise InputError(f"cells: expected a whole number, got {self.cells:g}")
+        for key in ("centres", "centre_spreads", "half_widths", "half_width_spreads"):
+            if len(getattr(self, key)) != len(self.weights):
+                raise InputError(
+                    f"{key}: expected {len(self.weights)} numbers, one a weight, "
+                    f"got {len(getattr(self, key))}"
+                )
+
+    @cached_property
+    def cell_weights(self) -> FloatArray:
+        """Weights of the relays of each cell, by the cells of a and of b.
+
+        Returns
+        -------
+        ndarray, shape (cells, cells)
+            Zero where b lies above a. On the diagonal it is the half of a cell in
+            which it does not. They sum up to the weights.
+        """
+        count = int(self.cells)
+        middle = self.limit * ((2 * np.arange(count) + 1) / count - 1)
+        centre = (middle[:, None] + middle) / 2
+        half_width = np.subtract.outer(middle, middle) / 2
+        total = np.zeros((count, count))
+        for weight, *cluster in zip(
+            self.weights,
+            self.centres,
+            self.centre_spreads,
+            self.half_widths,
+            self.half_width_spreads,
+            strict=True,
+        ):
+            at, spread, wide, wide_spread = cluster
+            exponent = ((centre - at) / spread) ** 2
+            exponent += ((half_width - wide) / wide_spread) ** 2
+            exponent[half_width < 0] = np.inf
+            # Counted from the nearest cell: a narrow cluster keeps its weight.
+            density = np.exp(-(exponent - exponent.min()) / 2)
+            density[np.diag_indices(count)] /= 2
+            total += weight / density.sum() * density
+        return total
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output of all relays at each sample."""
+        v = np.concatenate([self._demagnetizing(), np.ascontiguousarray(z)])
+        start = len(v) - len(z)
+        turns, outputs, y = np.empty(len(v) + 1), np.empty(len(v) + 1), np.empty(len(v))
+        kernels.call(
+            "hb_preisach",
+            len(v),
+            int(self.cells),
+            self.limit,
+            self._mass,
+            v,
+            turns,
+            outputs,
+            y,
+        )
+        irreversible: FloatArray = y[start:] - y[start - 1]
+        return self.reversible * z + irreversible
+
+    @cached_property
+    def _mass(self) -> FloatArray:
+        """Weights below each node of the grid, continued beyond the diagonal."""
+        half = self.cell_weights
+        mass = np.zeros(np.array(half.shape) + 1)
+        mass[1:, 1:] = (half + half.T).cumsum(0).cumsum(1)
+        return mass
+
+    def _demagnetizing(self) -> FloatArray:
+        """Path that alternates and falls to zero by half a cell at a time."""
+        count = int(self.cells)
+        size = self.limit * np.arange(count, -1, -1) / count
+        path = np.repeat(size, 2)
+        path[1::2] *= -1
+        path[-1] = 0.0
+        return np.asarray(path)
