@@ -12,6 +12,7 @@ from hystbench.adaptive import make_filter, step_names
 from hystbench.calibration.constraints import violations
 from hystbench.calibration.targets import Target
 from hystbench.calibration.twin import STEP_NAMES, make_twin, step_sizes
+from hystbench.measurement import measure
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 from hystbench.signals import Signal
@@ -71,17 +72,8 @@ class Objective:
 
     def record(self, name: str, model: Model, input_zero: float) -> Record:
         """Measure a signal on the twin as ``hystbench measure`` does."""
-        signal = self.signals[name]
-        rng = np.random.default_rng([self.seed, *name.encode()])
-        return Record(
-            name=name,
-            dt=signal.dt,
-            u=signal.u + input_zero,
-            y=model.simulate(signal.u, signal.dt, rng),
-            input=model.input,
-            output=model.output,
-            origin="twin",
-        )
+        settings = {"seed": self.seed, "input_zero_error": input_zero}
+        return measure(self.signals[name], model, settings, "calibration")
 
     def mse(self, model: str, record: Record, steps: Mapping[str, float]) -> float:
         """MSE of a filter on a record after the start of the window."""

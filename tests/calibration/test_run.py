@@ -1,0 +1,68 @@
+"""A calibration from settings to files, on two short records."""
+
+import numpy as np
+import pytest
+
+from hystbench.calibration import run as running
+from hystbench.calibration.fit import Fit
+from hystbench.calibration.run import run_calibration
+from hystbench.errors import InputError
+from hystbench.files import read_json
+from hystbench.model import load_model
+
+from .test_calibration import FILTERS, START
+
+COMMON = {
+    "amplitude": 0.632,
+    "duration_s": 0.1,
+    "sampling_frequency_hz": 10_000,
+    "unit": "A",
+}
+
+
+def job(*frequencies):
+    return {
+        "signals": {
+            f"sine-{f:03d}hz": {
+                "definition": {"sine": {"frequency_hz": f}},
+                "common": COMMON,
+            }
+            for f in frequencies
+        },
+        "filters": FILTERS,
+        "seed": 1,
+        "starts": 1,
+        "search_seed": 1,
+        "twins": 2,
+    }
+
+
+def files(tmp_path):
+    return {
+        "model": tmp_path / "gma.yaml",
+        "uncertainty": tmp_path / "uncertainty",
+        "report": tmp_path / "calibration.json",
+    }
+
+
+def test_it_writes_the_twin_its_like_and_a_report(tmp_path, monkeypatch):
+    monkeypatch.setattr(running, "calibrate", lambda *a, **k: Fit(dict(START), 50.0))
+    where = files(tmp_path)
+    run_calibration(job(40, 100), **where)
+    twin = load_model(where["model"])
+    assert twin.value("calibration-error.offset") == START["offset"]
+    others = [load_model(path) for path in sorted(where["uncertainty"].iterdir())]
+    assert [other.name for other in others] == ["gma-01", "gma-02"]
+    assert others[0].chain != others[1].chain
+    report = read_json(where["report"])
+    assert report["convergence_factor"]["gpo"] == {"mu": START["gpo step"]}
+    assert [item["signal"] for item in report["left_out"]] == list(
+        report["cells"]["mse"]
+    )
+    assert np.isfinite(report["cells"]["rms"]["sine-040hz"])
+
+
+def test_a_held_out_signal_never_gets_in(tmp_path):
+    with pytest.raises(InputError, match="'sine-060hz' is held out"):
+        run_calibration(job(40, 60), **files(tmp_path))
+    assert not list(tmp_path.iterdir())
