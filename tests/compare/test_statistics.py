@@ -1,5 +1,7 @@
 """Shared measures of claims against hand-worked paths."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -69,3 +71,34 @@ def test_cycles_of_a_sine_on_an_offset():
     # rises through its middle at phase 0, so the first whole cycle's middle is half a
     # cycle after 1 / (2 pi 7.3)
     assert when[0] == pytest.approx((1 / (2 * np.pi) + 0.5) / 7.3, abs=1e-4)
+
+
+@given(
+    st.lists(st.integers(-50, 50).map(float), min_size=2, max_size=30),
+    st.integers(1, 60),
+    st.integers(1, 4),
+)
+def test_points_on_the_way_add_no_turn(values, swing, parts):
+    # whole numbers and quarters are exact, plateaus included
+    ends = np.array(values)
+    way = [a + (b - a) * k / 4 for a, b in pairwise(ends) for k in range(parts)]
+    path = [*way, ends[-1]]
+    found = turning_points(np.array(path), swing + 0.5)
+    np.testing.assert_array_equal(found, _plain_turning_points(path, swing + 0.5))
+
+
+def _plain_turning_points(path, swing):
+    """Look from each turn for the farthest point before the path comes back."""
+    found, start, side = [], 0, 0
+    while True:
+        for k in range(start, len(path)):
+            part = path[start : k + 1]
+            back = {1: max(part) - path[k], -1: path[k] - min(part)}
+            sides = [s for s in (1, -1) if s != -side and back[s] > swing]
+            if sides:
+                break
+        else:
+            return found
+        if side:
+            found.append(max(part) if side == 1 else min(part))
+        side, start = -sides[0] if not side else -side, k

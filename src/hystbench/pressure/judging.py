@@ -112,7 +112,7 @@ def count(
 def _about_signals(claim: Claim, restricted: Evidence) -> bool:
     """Tell whether a claim can be judged on some signals, and only with them."""
     without = replace(restricted, runs={}, records={}, envelope_errors={})
-    return holds(claim, restricted) is not None and holds(claim, without) is None
+    return holds(claim, without) is None and holds(claim, restricted) is not None
 
 
 def _count(

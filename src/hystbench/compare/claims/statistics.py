@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.record import FloatArray
 
@@ -29,7 +30,7 @@ def turning_points(x: FloatArray, swing: float) -> FloatArray:
     found: list[float] = []
     low = high = float(x[0])
     rising: bool | None = None
-    for value in map(float, x):
+    for value in map(float, x[_extremes(x)]):
         low, high = min(low, value), max(high, value)
         if rising is not False and high - value > swing:
             if rising:
@@ -42,6 +43,13 @@ def turning_points(x: FloatArray, swing: float) -> FloatArray:
             rising, high = True, value
             low = value
     return np.array(found)
+
+
+def _extremes(x: FloatArray) -> NDArray[np.bool_]:
+    """Mark both ends and where x does not go on the way it came: few in a long x."""
+    step = np.diff(x)
+    inside = step[:-1] * step[1:] <= 0
+    return np.concatenate(([True], inside, [True]))[: len(x)]
 
 
 def minor_turning_points(x: FloatArray, tolerance: float = 0.1) -> int:
