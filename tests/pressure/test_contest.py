@@ -16,7 +16,7 @@ from hystbench.pressure.contest import (
     run_grid,
 )
 from hystbench.pressure.ensemble import draw_signals, measure_twin
-from hystbench.pressure.twins import read_twin
+from hystbench.pressure.twins import read_twins
 
 from .conftest import SIGNALS
 
@@ -27,7 +27,7 @@ CALIBRATED = ["sine-100hz", "sine-150hz"]
 def records(settings, twin_file):
     job = settings.contest_job
     signals = draw_signals(job["signals"], 0).values()
-    return measure_twin(read_twin(twin_file), signals, job["measure"], 0)
+    return measure_twin(read_twins([twin_file])[0], signals, job["measure"], 0)
 
 
 def grid(mse, signals=("a", "b", "c")):
@@ -106,7 +106,7 @@ def test_each_step_size_of_volterra_has_the_whole_grid(settings, records):
 
 
 def test_held_out_signals_never_choose_their_own_step(settings, twin_file):
-    job, twin = settings.contest_job, read_twin(twin_file)
+    job, twin = settings.contest_job, read_twins([twin_file])[0]
     entries = hold_contest(twin, job)
     held_out = [e for e in entries if e.protocol == "held-out"]
     best = {
@@ -134,7 +134,7 @@ def test_held_out_signals_never_choose_their_own_step(settings, twin_file):
 def test_without_a_calibration_signal_there_is_no_contest(settings, twin_file):
     job = settings.contest_job | {"calibrated": ["sine-010hz"]}
     with pytest.raises(InputError, match="no signal to choose a step size on"):
-        hold_contest(read_twin(twin_file), job)
+        hold_contest(read_twins([twin_file])[0], job)
 
 
 def entry(signal, model, mse):

@@ -1,21 +1,18 @@
 """The ensemble against runs made one by one, and its draws."""
 
-import json
-
 import numpy as np
 import pytest
 
 from hystbench.adaptive import make_filter, run_filter
 from hystbench.pressure.ensemble import (
     draw_signals,
-    filter_jobs,
     fit_rdgpi,
     measure_twin,
     run_ensemble,
     scaled,
     step_choices,
 )
-from hystbench.pressure.twins import read_twin
+from hystbench.pressure.twins import read_twins
 
 from .conftest import SIGNALS
 
@@ -24,7 +21,7 @@ FILTERS = ["gpo", "backlash", "volterra", "delayed"]
 
 @pytest.fixture
 def ensemble(settings, twin_file):
-    job, twin = settings.ensemble_job, read_twin(twin_file)
+    job, twin = settings.ensemble_job, read_twins([twin_file])[0]
     return run_ensemble(twin, job, fit_rdgpi(twin, job), seed=0, factors=[0.5, 1.0])
 
 
@@ -63,27 +60,15 @@ def test_half_the_step_size_is_half_of_each(settings):
 
 
 def test_a_filter_beyond_its_bound_diverges_and_is_kept(settings, twin_file):
-    job, twin = settings.ensemble_job, read_twin(twin_file)
+    job, twin = settings.ensemble_job, read_twins([twin_file])[0]
     wild = run_ensemble(twin, job | {"rdgpi": None}, None, 0, [1e3])
     run = wild.runs["delayed", 1e3]["sine-100hz", "delayed"]
     assert run.mse is None
     assert run.diverged.startswith("diverged at sample")
 
 
-def test_a_twins_own_readings_win(settings, twin_file):
-    own = {"convergence_factor": {"gpo": {"mu": 0.25}}, "input_zero_error": 0.5}
-    twin_file.with_suffix(".json").write_text(json.dumps(own))
-    job, twin = settings.ensemble_job, read_twin(twin_file)
-    jobs = filter_jobs(twin, job)
-    assert jobs["gpo"]["convergence_factor"] == {"mu": 0.25}
-    assert jobs["delayed"] == settings.filter_job("delayed")
-    signals = draw_signals(job["signals"], 0)
-    (record,) = measure_twin(twin, [signals["sine-100hz"]], job["measure"], 0).values()
-    assert record.u.mean() == pytest.approx(0.5)
-
-
 def test_a_seed_is_another_draw_of_noise_and_of_the_random_sum(settings, twin_file):
-    job, twin = settings.ensemble_job, read_twin(twin_file)
+    job, twin = settings.ensemble_job, read_twins([twin_file])[0]
     first, other = (
         measure_twin(twin, draw_signals(job["signals"], s).values(), job["measure"], s)
         for s in (0, 1)

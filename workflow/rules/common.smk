@@ -93,12 +93,6 @@ def figure(name, suffix):
     return f"{RESULTS}/{folder}/{name}.{suffix}"
 
 
-def readings(model_file):
-    """File of what was calibrated with a twin but is no part of its model, or None."""
-    file = Path(model_file).with_suffix(".json")
-    return str(file) if file.is_file() else None
-
-
 def options(name, files):
     """An option of the command line, once for each file."""
     return " ".join(f"{name} {file}" for file in files)

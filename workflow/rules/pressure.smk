@@ -11,7 +11,6 @@ if TWIN:
     rule twins:
         input:
             twins=SETTINGS.twin_files,
-            readings=[file for file in map(readings, SETTINGS.twin_files) if file],
             code=code("hystbench.commands.twins", *FILTER_MODULES),
         output:
             errors=f"{RESULTS}/twins/errors.csv",
@@ -29,7 +28,6 @@ if TWIN:
     rule press:
         input:
             twins=SETTINGS.twin_files,
-            readings=[file for file in map(readings, SETTINGS.twin_files) if file],
             code=code("hystbench.commands.pressure", *FILTER_MODULES),
         output:
             claims=f"{PRESSURE}/claims.csv",
@@ -50,7 +48,6 @@ if TWIN:
     rule contest:
         input:
             twins=SETTINGS.contest_files,
-            readings=[file for file in map(readings, SETTINGS.contest_files) if file],
             published=PUBLISHED,
             code=code("hystbench.commands.contest", *FILTER_MODULES),
         output:

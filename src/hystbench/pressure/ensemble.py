@@ -104,7 +104,7 @@ def run_ensemble(
     signals = draw_signals(settings["signals"], seed)
     records = measure_twin(twin, signals.values(), settings["measure"], seed)
     asked = {name: records[name] for name in settings["asked"]}
-    jobs = filter_jobs(twin, settings)
+    jobs = settings["filters"]
     found = _identify(records, settings)
     runs = {
         (model, factor): _run_filter(model, scaled(job, factor), asked, found)
@@ -174,19 +174,9 @@ def draw_signals(definitions: Mapping[str, Settings], seed: int) -> dict[str, Si
 def measure_twin(
     twin: Twin, signals: Iterable[Signal], settings: Settings, seed: int
 ) -> dict[str, Record]:
-    """Simulate a twin on signals, with its own zero error of the recorded input."""
-    zero = twin.readings.get("input_zero_error", settings["input_zero_error"])
-    job = {"seed": settings["seed"] + seed, "input_zero_error": zero}
+    """Simulate a twin on signals; another seed draws another noise."""
+    job = dict(settings) | {"seed": settings["seed"] + seed}
     return {each.name: measure(each, twin.model, job, twin.place) for each in signals}
-
-
-def filter_jobs(twin: Twin, settings: Settings) -> dict[str, dict[str, Any]]:
-    """Give each filter's settings with the twin's own step sizes, if it has some."""
-    own = twin.readings.get("convergence_factor", {})
-    return {
-        model: dict(job) | ({"convergence_factor": own[model]} if model in own else {})
-        for model, job in settings["filters"].items()
-    }
 
 
 def scaled(job: Settings, factor: float) -> dict[str, Any]:
