@@ -16,6 +16,8 @@ from hystbench.errors import InputError
 from hystbench.model import Model, Provenance, load_model
 from hystbench.record import Channel
 
+from .blocks.examples import EXAMPLES
+
 TEXT = """
 name: small
 input: {name: current, unit: A}
@@ -84,26 +86,24 @@ def test_every_parameter_has_a_name():
 
 @st.composite
 def blocks(draw):
+    """Draw a block: its example, each parameter scaled by a factor of its own."""
     block = registry()[draw(st.sampled_from(sorted(registry())))]
-    length = draw(st.integers(1, 4))
-    values = {}
+    values = dict(EXAMPLES[block.name])
     for key, about in block.parameters().items():
-        one = st.floats(max(about.low, -1e6), min(about.high, 1e6))
         if about.kind == "choice":
             values[key] = draw(st.sampled_from(about.options))
-        elif about.kind == "number":
-            values[key] = draw(one)
-        else:
-            n = len(about.names) or length
-            values[key] = draw(st.lists(one, min_size=n, max_size=n))
-    if block.name == "transfer-function":  # only stable ones can be made
-        roots = draw(st.lists(st.floats(-1e3, -1), min_size=1, max_size=3))
-        values["denominator"] = [float(c) for c in np.poly(roots)]
-        values["numerator"] = values["numerator"][: len(roots) + 1]
-    if block.name == "rdgpi":
-        values |= {"alpha1": abs(values["alpha1"]), "c": abs(values["c"])}
-        values["order"] = draw(st.integers(0, 40))
+        elif key in values:
+            factor = draw(st.floats(0.5, 1.0))
+            values[key] = scaled(values[key], factor, about.low, about.high)
     return block.from_mapping(values)
+
+
+def scaled(value, factor, low, high):
+    if isinstance(value, dict):
+        return {key: scaled(item, factor, low, high) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [scaled(item, factor, low, high) for item in value]
+    return value if isinstance(value, int) else min(max(factor * value, low), high)
 
 
 words = st.text("abcdefghijklmnopqrstuvwxyz -µ:#'\"{}[]0123456789.", min_size=1)
