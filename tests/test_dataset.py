@@ -111,6 +111,19 @@ def with_row(row: str) -> str:
             ["no column 'current_A'", "did you mean 'curent_A'?"],
         ),
         (csv_text(TIME, U * 0 + 3, Y), ["'current_A'", "constant"]),
+        (csv_text(TIME, U * 1e200, Y), ["'current_A'", "e+199", "some unit"]),
+        (
+            csv_text(TIME, U, Y, "time_s,current_A,displacement_um").replace(
+                "time_s", "current_A", 1
+            ),
+            ["'time_s'"],
+        ),
+        (
+            "\n".join(
+                line + "," + line.split(",")[1] for line in csv_text(TIME, U, Y).split()
+            ),
+            ["2 columns 'current_A'; expected one"],
+        ),
         (csv_text(TIME, U, Y * 0), ["'displacement_um'", "constant"]),
         (csv_text(TIME[:1], U[:1], Y[:1]), ["at least 2 samples"]),
         ("time_s,current_A,displacement_um\n", ["at least 2 samples"]),
@@ -136,6 +149,7 @@ def test_a_bad_file_is_told_in_one_line(write_dataset, text, expected):
         (("name: bench", "name: bench\nidentification: q"), "no record 'q'"),
         (("name: bench", "name: ../up"), "'../up'"),
         (("name: bench", "name: [bench"), "line"),
+        (("column: displacement_um", "column: current_A"), "named twice"),
     ],
 )
 def test_a_bad_header_is_told_in_one_line(write_dataset, change, expected):
@@ -155,3 +169,11 @@ def test_rounded_times_pass_and_a_stated_tolerance_counts(write_dataset):
     loose = HEADER.replace("unit: s}", "unit: s, tolerance: 0.05}")
     path.write_text(loose + records)
     assert load_dataset(path).read("r").dt == pytest.approx(0.001, rel=1e-3)
+
+
+def test_text_that_is_not_utf_8_is_told(write_dataset):
+    path = write_dataset({"r.csv": csv_text(TIME, U, Y)})
+    (path.parent / "r.csv").write_bytes("time_s,Spannung_µV\n".encode("latin-1"))
+    assert "expected text in UTF-8" in message(lambda: load_dataset(path).read("r"))
+    path.write_bytes("name: prüf\n".encode("latin-1"))
+    assert "expected text in UTF-8" in message(lambda: load_dataset(path))

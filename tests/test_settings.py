@@ -11,6 +11,9 @@ SCHEMA = ROOT / "workflow" / "schemas" / "config.schema.yaml"
 CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())
 
 
+SHORT = {"sine": {"frequency_hz": 10, "duration_s": 0.005}}
+
+
 def changed(*path_and_value):
     """The project's config with one value changed; None takes the key away."""
     *path, key, value = path_and_value
@@ -60,14 +63,17 @@ def test_every_key_of_the_config_is_in_the_schema_and_the_other_way_round():
     ("config", "expected"),
     [
         (changed("sorce", "twin"), "unknown key 'sorce'; did you mean 'source'?"),
-        (changed("source", None), "'source' is a required property"),
+        (changed("source", None), "config.yaml: expected the key 'source'"),
         (changed("filters", "ordr", 3), "filters: unknown key 'ordr'"),
-        (changed("filters", "order", "30"), "filters: order: '30' is no integer"),
+        (
+            changed("filters", "order", "30"),
+            "filters: order: '30'; expected a whole number",
+        ),
         (changed("filters", "order", 0), "filters: order"),
         (changed("filters", "envelopes", "publishd"), "did you mean 'published'?"),
         (changed("signals", ["sine-040h"]), "did you mean 'sine-040hz'?"),
         (changed("models", ["gpo", "voltera"]), "did you mean 'volterra'?"),
-        (changed("signals", "sine-040hz"), "signals: 'sine-040hz' is no array"),
+        (changed("signals", "sine-040hz"), "signals: 'sine-040hz'; expected a list"),
         (changed("signals", []), "signals"),
         (changed("identification", "signal", "sine-1hz"), "'sine-001hz'"),
         (changed("order_sweep", "signal", "x"), "order_sweep: signal: no signal 'x'"),
@@ -83,11 +89,46 @@ def test_every_key_of_the_config_is_in_the_schema_and_the_other_way_round():
             "convergence_factor: volterra: second_order: -0.001",
         ),
         (changed("measured", "fraction_of_bound", 0), "fraction_of_bound: 0"),
+        (changed("filters", "order", 30.0), "order: 30.0; expected a whole number"),
+        (changed("filters", "order", 5000), "order: 5000; expected a number of 4095"),
+        (
+            changed("filters", "convergence_factor", "gpo", "mu", float("nan")),
+            "mu: nan; expected a finite number",
+        ),
+        (
+            changed("filters", "convergence_factor", "gpo", "mu", "1e-2"),
+            "expected a finite number (YAML wants 1.0e-2 for 1e-2)",
+        ),
+        (
+            changed("twin", "input_zero_error", float("inf")),
+            "input_zero_error: inf; expected a finite number",
+        ),
+        (changed("excitation", "unit", "V"), "expected 'A', the input of"),
+        (changed("source", "Twin"), "did you mean 'twin'?"),
+        (
+            changed("excitations", "sine-010hz", {"sine": {"frequency_hz": 0}}),
+            "frequency_hz: 0; expected above 0",
+        ),
+        (
+            changed("excitations", "sine-010hz", {"sine": {"frequency_hz": 5000}}),
+            "expected below 5000 Hz, half the sampling frequency",
+        ),
+        (
+            changed("excitations", "sine-010hz", {"sine": {"frequency_hz": [1, 2]}}),
+            "frequency_hz: [1, 2]; expected a finite number",
+        ),
+        (
+            changed("excitations", "sine-010hz", {"sine": {}, "chirp": {}}),
+            "expected 1 key",
+        ),
         (
             changed("excitations", "sine-010hz", {"sine": {"frequenzy_hz": 10}}),
             "did you mean 'frequency_hz'?",
         ),
-        (changed("excitation", "duration_s", 0.001), "too few for filters of order 30"),
+        (
+            changed("excitations", "sine-010hz", SHORT),
+            "50 samples are too few for filters of order 30",
+        ),
     ],
 )
 def test_a_bad_config_is_told_in_one_line(config, expected):
@@ -126,3 +167,39 @@ def test_a_record_shorter_than_its_filter_is_refused(write_dataset, loop_csv):
     path = write_dataset({"short.csv": short})
     with pytest.raises(InputError, match=r"short\.csv: 39 samples are too few"):
         read(changed("source", str(path)))
+
+
+def test_signals_narrow_a_dataset_and_a_misspelt_one_is_refused(
+    write_dataset, loop_csv
+):
+    path = write_dataset({"slow.csv": loop_csv, "fast.csv": loop_csv})
+    narrowed = changed("source", str(path)) | {"signals": ["fast"]}
+    assert read(narrowed).signals == ["fast"]
+    misspelt = changed("source", str(path)) | {"signals": ["fas"]}
+    with pytest.raises(InputError, match="no signal 'fas'; did you mean 'fast'"):
+        read(misspelt)
+
+
+def test_twins_are_named_packaged_or_in_a_folder(tmp_path):
+    twin = read(CONFIG).model_file
+    for name in ("b", "a"):
+        (tmp_path / f"{name}.yaml").write_text("name: any\n")
+    config = changed("pressure", "twins", [str(tmp_path), CONFIG["twin"]["model"]])
+    # the twin comes first and once, a folder's files in order
+    assert read(config).twin_files == [
+        twin,
+        str(tmp_path / "a.yaml"),
+        str(tmp_path / "b.yaml"),
+    ]
+
+
+def test_a_folder_without_twins_is_refused(tmp_path):
+    with pytest.raises(InputError, match="pressure: twins: no model file in"):
+        read(changed("pressure", "twins", [str(tmp_path)]))
+    with pytest.raises(InputError, match="contest: twins: no model or file 'gmo'; did"):
+        read(changed("contest", "twins", ["gmo"]))
+
+
+def test_a_calibration_signal_that_is_not_defined_is_refused():
+    with pytest.raises(InputError, match="calibration: signals: no signal 'sine-10hz'"):
+        read(changed("calibration", "signals", ["sine-10hz"]))

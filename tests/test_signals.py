@@ -131,7 +131,10 @@ def test_comes_back_from_its_file(tmp_path):
         ({"sin": {}}, "did you mean 'sine'?"),
         ({"sine": {"frequency": 4}}, "did you mean 'frequency_hz'?"),
         ({"sine": {}}, "misses the key 'frequency_hz'"),
-        ({"sine": {"frequency_hz": "ten"}}, "frequency_hz: 'ten'; expected numbers"),
+        (
+            {"sine": {"frequency_hz": "ten"}},
+            "frequency_hz: 'ten'; expected a finite number",
+        ),
         (
             {"sum-of-sines": {"frequencies_hz": [1], "amplitudes": [1, 2]}},
             "1 frequencies_hz but 2 amplitudes",

@@ -156,7 +156,7 @@ def run_filter(
         "one-step a priori",
         transient_fraction=settings["transient_fraction"],
         smoothing_fraction=settings["smoothing_fraction"],
-        diverged=_divergence(result, steps, bounds),
+        diverged=divergence(adaptive, record.u, result),
     )
     kept |= {
         "order": adaptive.order,
@@ -182,11 +182,21 @@ def finite_or_none(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
-def _divergence(
-    result: Result, steps: Mapping[str, float], bounds: Mapping[str, float]
+def divergence(
+    adaptive: AdaptiveFilter, x: FloatArray, result: Result
 ) -> dict[str, Any] | None:
+    """Tell where a run diverged, with each step size beside its bound by Eq. 19.
+
+    Returns
+    -------
+    dict or None
+        ``sample`` and ``sentence``; None where it did not diverge.
+    """
     if result.diverged_at is None:
         return None
+    bounds = step_bounds(adaptive, x)
+    names = step_names(adaptive.name)
+    steps = {name: getattr(adaptive, own) for name, own in names.items()}
     told = ", ".join(
         f"{'mu' if name == 'mu' else 'mu of ' + name.replace('_', ' ')} = {step:.4g} "
         f"{'above' if step > bounds[name] else 'below'} 1/tr[R] = {bounds[name]:.4g}"

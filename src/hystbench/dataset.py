@@ -18,6 +18,9 @@ from hystbench.schema import check_against_schema, load_yaml
 #: printed times are rounded, and a clock that is off by more is no uniform clock.
 UNIFORM_TOLERANCE = 0.01
 
+#: The smallest range of a channel; the largest value is one over it.
+SMALLEST = 1e-30
+
 _CHANNEL = {
     "type": "object",
     "required": ["column", "unit"],
@@ -124,11 +127,7 @@ class Dataset:
             time_about.get("tolerance", UNIFORM_TOLERANCE),
         )
         for item, values in zip(channels, (u, y), strict=True):
-            if np.ptp(values) == 0:
-                raise InputError(
-                    f"{file}: column {item['column']!r}: constant "
-                    f"({values[0]:g} {item['unit']}); expected a signal that moves"
-                )
+            _check_moves(file, item, values)
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
         return Record(name, dt, u, y, given, measured, "measured", self.use(name))
 
@@ -136,7 +135,7 @@ class Dataset:
     def identification(self) -> str:
         """Name of the record for identification: the one named, or the slowest.
 
-        The slowest has the least rms(du/dt) / rms(u - mean(u)); only records with
+        The slowest has the least rms(du/dt) / rms(u); only records with
         ``use: fit`` are looked at.
         """
         named = self.about.get("identification")
@@ -182,18 +181,32 @@ def load_dataset(path: str | Path) -> Dataset:
         )
     if not any(dataset.use(name) == "fit" for name in files):
         raise InputError(f"{file}: records: expected at least one with 'use: fit'")
+    columns = [about[channel]["column"] for channel in ("time", "input", "output")]
+    for column in columns:
+        if columns.count(column) > 1:
+            raise InputError(
+                f"{file}: column {column!r} is named twice; "
+                "expected one each for time, input and output"
+            )
     _seconds(file, about["time"]["unit"])
     return dataset
 
 
 def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
     """Read named columns of a CSV file as numbers."""
-    lines = file.read_text(encoding="utf-8-sig").splitlines()
+    try:
+        lines = file.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: expected text in UTF-8 ({error.reason})") from error
     header = [name.strip() for name in next(csv.reader(lines[:1]), [])]
     for column in columns:
         if column not in header:
             raise InputError(
                 f"{file}: no column {column!r}; {nearest(column, header or ['time_s'])}"
+            )
+        if header.count(column) > 1:
+            raise InputError(
+                f"{file}: {header.count(column)} columns {column!r}; expected one"
             )
     places = [header.index(column) for column in columns]
     rows = [line for line in lines[1:] if line.strip()]
@@ -225,6 +238,23 @@ def _first_bad_cell(lines: list[str], header: list[str], places: list[int]) -> s
                     "expected a finite number"
                 )
     return "expected rows of numbers, separated by commas"
+
+
+def _check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None:
+    """Refuse a channel that does not move, or whose squares leave floating point."""
+    where = f"{file}: column {item['column']!r}"
+    span = float(np.ptp(values))
+    if span == 0:
+        raise InputError(
+            f"{where}: constant ({values[0]:g} {item['unit']}); "
+            "expected a signal that moves"
+        )
+    largest = float(np.abs(values).max())
+    if not (span > SMALLEST and largest < 1 / SMALLEST):
+        raise InputError(
+            f"{where}: a range of {span:g} and values up to {largest:g} "
+            f"{item['unit']}; expected {SMALLEST:g} to {1 / SMALLEST:g} in some unit"
+        )
 
 
 def _sampling_interval(file: Path, time: FloatArray, tolerance: float) -> float:

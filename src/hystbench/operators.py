@@ -154,6 +154,14 @@ def thresholds(envelope: Envelope, amplitude: float, order: int) -> FloatArray:
     return _equal_intervals(largest, order)
 
 
+def fewest_samples(order: int) -> int:
+    """Count the samples that N + 1 weights and an envelope's 8 parameters need.
+
+    Twice the weights, so that a filter sees each more than once, and 8 more.
+    """
+    return 2 * (order + 1) + 8
+
+
 def play_thresholds(amplitude: float, order: int) -> FloatArray:
     """Thresholds of the play operators: Eq. 10 with the input as its own envelope.
 

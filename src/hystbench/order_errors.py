@@ -7,7 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hystbench.adaptive import fraction_of_bound, make_filter, with_fraction_of_bound
+from hystbench.adaptive import (
+    divergence,
+    fraction_of_bound,
+    make_filter,
+    with_fraction_of_bound,
+)
 from hystbench.filters import AdaptiveFilter, run_many
 from hystbench.metrics import mean_square_error
 from hystbench.record import Record
@@ -63,10 +68,8 @@ def order_errors(
     results = run_many(((each, record.u, record.y) for each in listed), threads)
     found = []
     for each, result in zip(listed, results, strict=True):
-        if result.diverged_at is None:
-            mse, status = mean_square_error(result.error), "finite"
-            found.append(OrderError(each.name, each.order, mse, status))
-        else:
-            told = f"diverged at sample {result.diverged_at}"
-            found.append(OrderError(each.name, each.order, None, told))
+        told = divergence(each, record.u, result)
+        mse = None if told else mean_square_error(result.error)
+        status = told["sentence"] if told else "finite"
+        found.append(OrderError(each.name, each.order, mse, status))
     return found

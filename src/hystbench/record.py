@@ -83,10 +83,9 @@ class Record:
 
     @property
     def rate(self) -> float:
-        """How fast the input moves: rms(du/dt) / rms(u - mean(u)), in 1/s."""
-        moving = self.u - self.u.mean()
+        """How fast the input moves: rms(du/dt) / rms(u), in 1/s."""
         speed = np.gradient(self.u, self.dt)
-        return float(np.sqrt(np.mean(speed**2) / np.mean(moving**2)))
+        return float(np.sqrt(np.mean(speed**2) / np.mean(self.u**2)))
 
     def save(self, path: str | Path) -> None:
         """Write the record as a NumPy archive (no pickle), all of it or nothing."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,8 @@ def load_yaml(path: str | Path) -> Any:
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}; expected a YAML file") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: expected text in UTF-8 ({error.reason})") from error
     try:
         return yaml.safe_load(text)
     except yaml.YAMLError as error:
@@ -52,37 +55,67 @@ def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) ->
     """
     from jsonschema import Draft202012Validator
     from jsonschema.exceptions import best_match
+    from jsonschema.validators import extend
 
-    errors = list(Draft202012Validator(schema).iter_errors(content))
+    # JSON takes 30.0 for an integer and NaN for a number; an order is neither.
+    types = Draft202012Validator.TYPE_CHECKER.redefine_many(
+        {"integer": lambda _, value: type(value) is int, "number": _is_finite_number}
+    )
+    validator = extend(Draft202012Validator, type_checker=types)(schema)  # type: ignore[no-untyped-call]
+    errors = list(validator.iter_errors(content))
     # A misspelt key is also a missing one: the misspelling tells more.
     misspelt = [item for item in errors if item.validator == "additionalProperties"]
     error = best_match(misspelt or errors)
     if error is None:
         return
-    path = [f"{item}" for item in error.absolute_path]
-    where = ": ".join([place, *path])
-    if error.validator == "additionalProperties":
+    where = ": ".join([place, *map(str, error.absolute_path)])
+    rule, value = error.validator, error.instance
+    if rule == "additionalProperties":
         known = list(error.schema["properties"])
-        unknown = next(key for key in error.instance if key not in known)
+        unknown = next(key for key in value if key not in known)
         raise InputError(f"{where}: unknown key {unknown!r}; {nearest(unknown, known)}")
-    if error.validator == "enum":
-        near = nearest(error.instance, error.validator_value)
-        raise InputError(f"{where}: {error.instance!r} is unknown; {near}")
-    if error.validator == "type":
-        raise InputError(
-            f"{where}: {error.instance!r} is no {error.validator_value}; "
-            f"expected {_expected(error.schema, error.validator_value)}"
-        )
-    raise InputError(f"{where}: {error.message}")
+    if rule == "enum":
+        near = nearest(value, error.validator_value)
+        raise InputError(f"{where}: {value!r} is unknown; {near}")
+    if rule == "required":
+        missing = next(key for key in error.validator_value if key not in value)
+        raise InputError(f"{where}: expected the key {missing!r}")
+    expected = _EXPECTED.get(rule, error.message).format(error.validator_value)
+    if rule == "type":
+        expected = _TYPES.get(error.validator_value, error.validator_value)
+    raise InputError(f"{where}: {value!r}; expected {expected}{_hint(value)}")
 
 
-def _expected(schema: Mapping[str, Any], kind: Any) -> str:
-    article = {
-        "array": "a list",
-        "object": "a mapping of keys",
-        "integer": "a whole number",
-    }
-    kinds = kind if isinstance(kind, list) else [kind]
-    words = " or ".join(article.get(item, f"a {item}") for item in kinds)
-    about = schema.get("description")
-    return f"{words} ({about})" if about else words
+_TYPES = {
+    "array": "a list",
+    "object": "a mapping of keys",
+    "integer": "a whole number",
+    "number": "a finite number",
+    "string": "a word",
+}
+
+_EXPECTED = {
+    "exclusiveMinimum": "a number above {}",
+    "minimum": "a number of {} or more",
+    "exclusiveMaximum": "a number below {}",
+    "maximum": "a number of {} or less",
+    "minItems": "at least {} in the list",
+    "minLength": "a word",
+    "minProperties": "at least {} key",
+    "maxProperties": "{} key",
+    "uniqueItems": "each item once",
+    "pattern": "a name of the form {}",
+}
+
+
+def _is_finite_number(_: object, value: object) -> bool:
+    return type(value) in (int, float) and math.isfinite(value)  # type: ignore[arg-type]
+
+
+def _hint(value: object) -> str:
+    """Explain why YAML read a number as a word."""
+    try:
+        float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return ""
+    return " (YAML wants 1.0e-2 for 1e-2)" if isinstance(value, str) else ""

@@ -14,8 +14,9 @@ from typing import Any
 
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.errors import InputError, nearest
+from hystbench.operators import fewest_samples
 from hystbench.schema import check_against_schema, load_yaml
-from hystbench.signals import check_definition
+from hystbench.signals import Signal, make_signal
 
 #: The four LMS filters, in the order of the paper's tables.
 FILTER_NAMES = ("gpo", "backlash", "volterra", "delayed")
@@ -58,9 +59,12 @@ class Settings:
     @property
     def signals(self) -> list[str]:
         """Names of the signals to run; a dataset's are its records."""
+        named = list(self.config["signals"])
         if self.dataset is None:
-            return list(self.config["signals"])
-        return list(self.dataset.record_files)
+            return named
+        records = self.dataset.record_files
+        # The signals of the paper say nothing of a dataset: then all its records run.
+        return [name for name in named if name in records] or list(records)
 
     @property
     def models(self) -> list[str]:
@@ -226,7 +230,9 @@ class Settings:
         return job
 
 
-def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Settings:
+def read_settings(
+    config: Mapping[str, Any], schema_file: str | Path, place: str = "config.yaml"
+) -> Settings:
     """Check a config as a whole.
 
     Parameters
@@ -235,6 +241,8 @@ def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Setting
         What Snakemake read from config.yaml, further files and ``--config``.
     schema_file : str or Path
         The JSON Schema, as YAML.
+    place : str
+        Where the config comes from, for messages.
 
     Returns
     -------
@@ -245,11 +253,12 @@ def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Setting
     InputError
         With the first mistake found.
     """
-    place = "config.yaml"
     check_against_schema(config, load_yaml(schema_file), place)
-    excitations = config["excitations"]
-    for name, definition in excitations.items():
-        check_definition(name, definition, config["excitation"])
+    # To make all signals costs less than to find out later that one cannot be made.
+    excitations = {
+        name: make_signal(name, definition, config["excitation"], place)
+        for name, definition in config["excitations"].items()
+    }
     named = [
         *(("signals", name) for name in config["signals"]),
         *(("calibration: signals", name) for name in config["calibration"]["signals"]),
@@ -259,13 +268,21 @@ def read_settings(config: Mapping[str, Any], schema_file: str | Path) -> Setting
     ]
     if config["source"] == "twin":
         _check_names(place, named, excitations)
-        _check_lengths(place, config)
+        _check_lengths(place, config, excitations)
         _check_model(place, "twin: model", config["twin"]["model"])
+        _check_twin(place, config)
         for key in ("pressure", "contest"):
             for name in config[key]["twins"]:
                 _check_model(place, f"{key}: twins", name)
         return Settings(config, None)
+    if not Path(config["source"]).exists():
+        raise InputError(
+            f"{place}: source: no file {config['source']!r}; "
+            f"{nearest(config['source'], ['twin', 'path/to/dataset.yaml'])}"
+        )
     dataset = load_dataset(config["source"])
+    known = [*dataset.record_files, *excitations]
+    _check_names(place, named[: len(config["signals"])], known)
     for name in dataset.record_files:
         _check_length(
             str(dataset.record_files[name]),
@@ -315,22 +332,33 @@ def _check_names(
             )
 
 
-def _check_lengths(place: str, config: Mapping[str, Any]) -> None:
-    common = config["excitation"]
-    orders = config["order_sweep"]["orders"]
+def _check_twin(place: str, config: Mapping[str, Any]) -> None:
+    """Read the twin's model file and hold its input against the signals' unit."""
+    from hystbench.model import load_model  # late: a measured dataset has no twin
+
+    for file in _model_files(config["twin"]["model"]):
+        unit = load_model(file).input.unit
+        if unit != config["excitation"]["unit"]:
+            raise InputError(
+                f"{place}: excitation: unit: {config['excitation']['unit']!r}; "
+                f"expected {unit!r}, the input of {file}"
+            )
+
+
+def _check_lengths(
+    place: str, config: Mapping[str, Any], signals: Mapping[str, Signal]
+) -> None:
     used = dict.fromkeys(config["signals"], config["filters"]["order"])
-    sweep = config["order_sweep"]["signal"]
-    used[sweep] = max([*orders, used.get(sweep, 1)])
+    sweep = config["order_sweep"]
+    used[sweep["signal"]] = max([*sweep["orders"], used.get(sweep["signal"], 1)])
+    used[config["identification"]["signal"]] = config["filters"]["order"]
     for name, order in used.items():
-        ((_, given),) = config["excitations"][name].items()
-        duration = given.get("duration_s", common["duration_s"])
-        samples = round(duration * common["sampling_frequency_hz"])
-        _check_length(f"{place}: excitations: {name}", samples, order)
+        _check_length(f"{place}: excitations: {name}", len(signals[name].u), order)
 
 
 def _check_length(place: str, samples: int, order: int) -> None:
-    """Refuse a record shorter than twice the N + 1 taps of a filter."""
-    expected = 2 * (order + 1)
+    """Refuse a record that no filter or identification of an order can use."""
+    expected = fewest_samples(order)
     if samples < expected:
         raise InputError(
             f"{place}: {samples} samples are too few for filters of order {order}; "

@@ -130,7 +130,7 @@ def sum_of_sines(
     """
     if len(frequencies_hz) != len(amplitudes):
         raise InputError(
-            f"sum-of-sines: {len(frequencies_hz)} frequencies_hz but "
+            f"{len(frequencies_hz)} frequencies_hz but "
             f"{len(amplitudes)} amplitudes; expected as many"
         )
     time = _times(duration_s, sampling_frequency_hz)
@@ -180,11 +180,15 @@ def random_sum_of_sines(
     """
     time = _times(duration_s, sampling_frequency_hz)
     count = len(time)
+    if len(band) != 2 or not 0 <= band[0] < band[1] <= 1:
+        raise InputError(
+            f"band: {band}; expected two fractions of the Nyquist frequency"
+        )
     low, high = (edge * count / 2 for edge in band)
     lines = np.arange(max(1, int(np.ceil(low))), int(np.floor(high)) + 1)
     if len(lines) < sines:
         raise InputError(
-            f"random-sum-of-sines: the band {list(band)} holds {len(lines)} lines in "
+            f"the band {list(band)} holds {len(lines)} lines in "
             f"{duration_s:g} s; expected at least {sines} (key 'sines')"
         )
     # Evenly spaced, counted from the band's upper end so that its edge is excited.
@@ -210,7 +214,10 @@ KINDS: dict[str, Callable[..., FloatArray]] = {
 
 
 def check_definition(
-    name: str, definition: Mapping[str, Mapping[str, Any]], common: Mapping[str, Any]
+    name: str,
+    definition: Mapping[str, Mapping[str, Any]],
+    common: Mapping[str, Any],
+    place: str = "config.yaml",
 ) -> tuple[str, dict[str, Any]]:
     """Check a signal's definition in config.yaml without making the signal.
 
@@ -222,6 +229,8 @@ def check_definition(
         One key, the kind, and its parameters; they win over ``common``.
     common : mapping
         Values for the parameters that the definition leaves out.
+    place : str
+        Name of the file, for messages.
 
     Returns
     -------
@@ -234,11 +243,12 @@ def check_definition(
     InputError
         If the kind or a parameter is unknown, or one is missing.
     """
-    place = f"config.yaml: excitations: {name}"
+    place = f"{place}: excitations: {name}"
     ((kind, given),) = definition.items()
     if kind not in KINDS:
         raise InputError(f"{place}: unknown kind {kind!r}; {nearest(kind, KINDS)}")
-    expected = list(inspect.signature(KINDS[kind]).parameters)
+    parameters = inspect.signature(KINDS[kind]).parameters
+    expected = list(parameters)
     for key in given:
         if key not in expected:
             raise InputError(f"{place}: unknown key {key!r}; {nearest(key, expected)}")
@@ -246,23 +256,65 @@ def check_definition(
     for key in expected:
         if key not in values:
             raise InputError(f"{place}: {kind} misses the key {key!r}")
-        numbers = values[key] if isinstance(values[key], list) else [values[key]]
-        if not all(type(number) in (int, float) for number in numbers):
-            raise InputError(f"{place}: {key}: {values[key]!r}; expected numbers")
+        _check_value(f"{place}: {key}", key, values[key], parameters[key].annotation)
     return kind, values
 
 
+def _check_value(place: str, key: str, value: object, annotation: str) -> None:
+    """Refuse what is not of the parameter's type, or no frequency or count."""
+    numbers = value if annotation == "Sequence[float]" else [value]
+    types = (int,) if annotation == "int" else (int, float)
+    if not isinstance(numbers, list) or not all(
+        type(number) in types and np.isfinite(number) for number in numbers
+    ):
+        expected = {"int": "a whole number", "float": "a finite number"}
+        told = expected.get(annotation, "a list of finite numbers")
+        raise InputError(f"{place}: {value!r}; expected {told}")
+    least = (
+        0 if key in _MAY_BE_ZERO else 1 if annotation == "int" else np.nextafter(0, 1)
+    )
+    if key not in _ANY_SIGN and any(number < least for number in numbers):
+        more = "0 or more" if least == 0 else "1 or more" if least == 1 else "above 0"
+        raise InputError(f"{place}: {value!r}; expected {more}")
+
+
+_MAY_BE_ZERO = {"seed", "band"}
+_ANY_SIGN = {"amplitude", "amplitudes", "gain"}
+
+
 def make_signal(
-    name: str, definition: Mapping[str, Mapping[str, Any]], common: Mapping[str, Any]
+    name: str,
+    definition: Mapping[str, Mapping[str, Any]],
+    common: Mapping[str, Any],
+    place: str = "config.yaml",
 ) -> Signal:
     """Make a signal from its definition in config.yaml.
 
     Takes what :func:`check_definition` takes; ``common`` has the ``unit`` as well.
+
+    Raises
+    ------
+    InputError
+        As there, or if a frequency is not below half the sampling frequency or the
+        signal does not move.
     """
-    kind, values = check_definition(name, definition, common)
-    return Signal(
-        name=name,
-        dt=1 / values["sampling_frequency_hz"],
-        u=KINDS[kind](**values),
-        unit=common["unit"],
-    )
+    kind, values = check_definition(name, definition, common, place)
+    where = f"{place}: excitations: {name}"
+    nyquist = values["sampling_frequency_hz"] / 2
+    for key, value in values.items():
+        if key.endswith("_hz") and key != "sampling_frequency_hz":
+            highest = max(value) if isinstance(value, list) else value
+            if highest >= nyquist:
+                raise InputError(
+                    f"{where}: {key}: {highest:g}; expected below {nyquist:g} Hz, "
+                    "half the sampling frequency"
+                )
+    try:
+        u = KINDS[kind](**values)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+    if len(u) < 2 or np.ptp(u) == 0:
+        raise InputError(
+            f"{where}: {len(u)} samples that do not move; expected a signal"
+        )
+    return Signal(name, 1 / values["sampling_frequency_hz"], u, common["unit"])

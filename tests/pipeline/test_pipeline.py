@@ -259,17 +259,28 @@ def measured_csv(frequency: float) -> str:
     return "\n".join(["time_s,current_A,displacement_um", *rows]) + "\n"
 
 
+HEADER = """\
+name: bench
+time: {column: time_s, unit: s}
+input: {column: current_A, unit: A}
+output: {column: displacement_um, unit: um}
+records:
+"""
+
+
 def test_measured_records_go_the_same_way_beside_the_reproduction(
     workflow, write_dataset
 ):
-    files = {"slow.csv": measured_csv(2), "fast.csv": measured_csv(20)}
-    dataset = write_dataset(files)
+    # Names that a shell would take apart.
+    files = {"slow.csv": measured_csv(2), "it's $HOME.csv": measured_csv(20)}
+    records = "".join(f'  - {{file: "{name}"}}\n' for name in files)
+    dataset = write_dataset(files, HEADER + records)
     before = workflow.files()
     workflow.run("--config", f"source={dataset}")
     after = workflow.files()
     assert {name: after[name] for name in before} == before
     results = workflow.folder / "results" / "datasets" / "bench"
-    for signal in ["slow", "fast"]:
+    for signal in ["slow", "it's $HOME"]:
         for model in [*FILTERS, "rdgpi"]:
             run = load(results / "filters" / signal / f"{model}.json")
             assert run["origin"] == "measured"

@@ -18,6 +18,13 @@ shell.prefix(f"PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; ")
 PACKAGE = Path(os.path.relpath(Path(hystbench.__file__).parent))
 GRAPH = grimp.build_graph("hystbench", cache_dir=".snakemake/imports")
 SCHEMA = workflow.source_path("../schemas/config.schema.yaml")
+# Where a mistake in the config may be.
+PLACE = ", ".join(
+    dict.fromkeys(
+        ["config.yaml", *map(str, workflow.overwrite_configfiles or [])]
+        + ["--config"] * bool(workflow.config_settings.config)
+    )
+)
 KERNELS = sorted(PACKAGE.glob("kernels/*.so"))
 
 try:
@@ -28,7 +35,7 @@ try:
     for source in PACKAGE.glob("kernels/*.[ch]"):
         if source.stat().st_mtime > KERNELS[0].stat().st_mtime:
             raise InputError(f"{source}: newer than the compiled kernels; run 'make'")
-    SETTINGS = read_settings(config, SCHEMA)
+    SETTINGS = read_settings(config, SCHEMA, PLACE)
 except InputError as error:
     sys.exit(f"hystbench: {error}")
 
@@ -88,14 +95,15 @@ def identified(wildcards):
 
 
 def figure(name, suffix):
-    """Picture of a figure; that of the identification lies beside its numbers."""
-    folder = "identify" if name == "identification" else "figures"
+    """Picture of a figure; those of the identification lie beside its numbers."""
+    shown = {"identification", "figure-03-play", "figure-04-generalized-play"}
+    folder = "identify" if name in shown else "figures"
     return f"{RESULTS}/{folder}/{name}.{suffix}"
 
 
 def options(name, files):
     """An option of the command line, once for each file."""
-    return " ".join(f"{name} {file}" for file in files)
+    return " ".join(f"{name} {shlex.quote(str(file))}" for file in files)
 
 
 # The paper's own numbers, an input of all that is compared with them.

@@ -58,10 +58,10 @@ if TWIN:
             "tables, claims and audit"
         shell:
             "hystbench compare {params.runs} {params.records}"
-            " --order-sweep {input.order_sweep} --identified {input.identified}"
-            " --envelopes {input.envelopes} --twin-errors {input.twin_errors}"
-            " --twin-claims {input.twin_claims} --settings {params.settings:q}"
-            " --out {params.folder} 2> {log}"
+            " --order-sweep {input.order_sweep:q} --identified {input.identified:q}"
+            " --envelopes {input.envelopes:q} --twin-errors {input.twin_errors:q}"
+            " --twin-claims {input.twin_claims:q} --settings {params.settings:q}"
+            " --out {params.folder:q} 2> {log:q}"
 
 else:
 
@@ -91,8 +91,8 @@ else:
         message:
             "tables, claims and audit"
         shell:
-            "hystbench compare-measured {params.dataset} {params.runs}"
-            " --out {params.folder} 2> {log}"
+            "hystbench compare-measured {params.dataset:q} {params.runs}"
+            " --out {params.folder:q} 2> {log:q}"
 
 
 # `snakemake compare` prints ours beside theirs, whether anything was to do or not.
@@ -104,4 +104,4 @@ rule compare:
     message:
         "ours beside theirs"
     shell:
-        "hystbench show {input} 2> {log}"
+        "hystbench show {input:q} 2> {log:q}"

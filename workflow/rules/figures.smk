@@ -84,8 +84,8 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
         message:
             f"figure {NAME}"
         shell:
-            "hystbench figure {params.name} {params.given}"
-            " --out {output.png} --out {output.svg} 2> {log}"
+            "hystbench figure {params.name:q} {params.given}"
+            " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
 
 
 FIGURES = [figure(name, suffix) for name in FIGURE_INPUTS for suffix in ("png", "svg")]

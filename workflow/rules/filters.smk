@@ -19,9 +19,9 @@ rule filter:
     message:
         "{wildcards.filter} on {wildcards.signal}"
     shell:
-        "hystbench filter {input.record} --model {wildcards.filter}"
+        "hystbench filter {input.record:q} --model {wildcards.filter:q}"
         " {params.identified} --settings {params.settings:q}"
-        " --out {output.run} --arrays {output.arrays} 2> {log}"
+        " --out {output.run:q} --arrays {output.arrays:q} 2> {log:q}"
 
 
 # Figure 7: the error against the order, all filters in one job.
@@ -42,5 +42,5 @@ rule order_sweep:
     message:
         "error against order"
     shell:
-        "hystbench order-sweep {input.record} --identified {input.identified}"
-        " --settings {params.settings:q} --threads {threads} --out {output} 2> {log}"
+        "hystbench order-sweep {input.record:q} --identified {input.identified:q}"
+        " --settings {params.settings:q} --threads {threads} --out {output:q} 2> {log:q}"

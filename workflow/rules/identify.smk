@@ -11,8 +11,8 @@ rule identify:
     message:
         "identification by Algorithm 1"
     shell:
-        "hystbench identify {input.record} --settings {params.settings:q}"
-        " --out {output} 2> {log}"
+        "hystbench identify {input.record:q} --settings {params.settings:q}"
+        " --out {output:q} 2> {log:q}"
 
 
 # The GPO filter with the identified and with the published envelope functions.
@@ -22,7 +22,11 @@ rule envelopes:
         identified=rules.identify.output,
         code=code("hystbench.commands.envelopes", "hystbench.filters.gpo"),
     output:
-        f"{RESULTS}/identify/envelopes.csv",
+        report(
+            f"{RESULTS}/identify/envelopes.csv",
+            caption="../report/envelopes.rst",
+            category="Comparison",
+        ),
     log:
         f"{RESULTS}/logs/identify/envelopes.log",
     params:
@@ -30,5 +34,5 @@ rule envelopes:
     message:
         "GPO filter with identified and published envelopes"
     shell:
-        "hystbench envelopes {input.records} --identified {input.identified}"
-        " --settings {params.settings:q} --out {output} 2> {log}"
+        "hystbench envelopes {input.records:q} --identified {input.identified:q}"
+        " --settings {params.settings:q} --out {output:q} 2> {log:q}"

@@ -15,8 +15,8 @@ if TWIN:
         message:
             "record {wildcards.signal}"
         shell:
-            "hystbench measure {input.signal} --model {input.model}"
-            " --settings {params.settings:q} --out {output} 2> {log}"
+            "hystbench measure {input.signal:q} --model {input.model:q}"
+            " --settings {params.settings:q} --out {output:q} 2> {log:q}"
 
 else:
 
@@ -32,4 +32,4 @@ else:
         message:
             "record {wildcards.signal}"
         shell:
-            "hystbench load {input.dataset} {wildcards.signal} --out {output} 2> {log}"
+            "hystbench load {input.dataset:q} {wildcards.signal:q} --out {output:q} 2> {log:q}"

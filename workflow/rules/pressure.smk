@@ -22,8 +22,8 @@ if TWIN:
         message:
             "all models on each twin"
         shell:
-            "hystbench twins {input.twins} --settings {params.settings:q}"
-            " --errors {output.errors} --claims {output.claims} 2> {log}"
+            "hystbench twins {input.twins:q} --settings {params.settings:q}"
+            " --errors {output.errors:q} --claims {output.claims:q} 2> {log:q}"
 
     rule press:
         input:
@@ -42,8 +42,8 @@ if TWIN:
         message:
             "claims on many twins, step sizes and seeds"
         shell:
-            "hystbench pressure {input.twins} --settings {params.settings:q}"
-            " --out {params.folder} 2> {log}"
+            "hystbench pressure {input.twins:q} --settings {params.settings:q}"
+            " --out {params.folder:q} 2> {log:q}"
 
     rule contest:
         input:
@@ -62,8 +62,8 @@ if TWIN:
         message:
             "each filter with its best step size"
         shell:
-            "hystbench contest {input.twins} --settings {params.settings:q}"
-            " --out {params.folder} 2> {log}"
+            "hystbench contest {input.twins:q} --settings {params.settings:q}"
+            " --out {params.folder:q} 2> {log:q}"
 
     rule draw_contest:
         input:
@@ -82,8 +82,8 @@ if TWIN:
         message:
             "figure contest"
         shell:
-            "hystbench figure contest --table {input.table}"
-            " --out {output.png} --out {output.svg} 2> {log}"
+            "hystbench figure contest --table {input.table:q}"
+            " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
 
     # `snakemake pressure`; `all` leaves it out for its time.
     rule pressure:

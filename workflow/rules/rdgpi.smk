@@ -11,8 +11,8 @@ rule rdgpi_identify:
     message:
         "identification of the RDGPI model"
     shell:
-        "hystbench rdgpi-identify {input.records} --settings {params.settings:q}"
-        " --out {output} 2> {log}"
+        "hystbench rdgpi-identify {input.records:q} --settings {params.settings:q}"
+        " --out {output:q} 2> {log:q}"
 
 
 rule rdgpi:
@@ -30,9 +30,9 @@ rule rdgpi:
     message:
         "rdgpi on {wildcards.signal}"
     shell:
-        "hystbench rdgpi {input.record} --identified {input.identified}"
+        "hystbench rdgpi {input.record:q} --identified {input.identified:q}"
         " --settings {params.settings:q}"
-        " --out {output.run} --arrays {output.arrays} 2> {log}"
+        " --out {output.run:q} --arrays {output.arrays:q} 2> {log:q}"
 
 
 # The eleven published values under our reading of the model, whatever comes out.
@@ -41,10 +41,14 @@ rule rdgpi_published:
         records=[record(signal) for signal in SETTINGS.signals],
         code=code("hystbench.commands.rdgpi_published"),
     output:
-        f"{RESULTS}/rdgpi/published-parameters.csv",
+        report(
+            f"{RESULTS}/rdgpi/published-parameters.csv",
+            caption="../report/rdgpi-published.rst",
+            category="Comparison",
+        ),
     log:
         f"{RESULTS}/logs/rdgpi/published.log",
     message:
         "RDGPI model with the published parameters"
     shell:
-        "hystbench rdgpi-published {input.records} --out {output} 2> {log}"
+        "hystbench rdgpi-published {input.records:q} --out {output:q} 2> {log:q}"

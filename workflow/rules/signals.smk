@@ -10,5 +10,5 @@ rule signal:
     message:
         "signal {wildcards.signal}"
     shell:
-        "hystbench signal {wildcards.signal} --settings {params.settings:q}"
-        " --out {output} 2> {log}"
+        "hystbench signal {wildcards.signal:q} --settings {params.settings:q}"
+        " --out {output:q} 2> {log:q}"

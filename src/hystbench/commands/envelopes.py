@@ -30,7 +30,9 @@ def envelopes(
     rows = []
     for path in records:
         record = load_record(path)
-        for source in ("identified", "published"):
+        # The published envelopes are those of one actuator, in amperes.
+        twin = record.origin == "twin"
+        for source in ("identified", "published") if twin else ("identified",):
             chosen = settings | {"envelopes": source}
             adaptive = make_filter("gpo", chosen, record, identified)
             kept, _ = run_filter(adaptive, record, chosen)

@@ -29,7 +29,7 @@ def filter(  # noqa: A001  (the command's name)
     arrays: Path,
 ) -> None:
     """Run the filter on RECORD: errors as JSON, output and error as arrays."""
-    measured = load_record(record)
-    adaptive = make_filter(model, settings, measured, identified)
-    kept, result = run_filter(adaptive, measured, settings)
+    evidence = load_record(record)
+    adaptive = make_filter(model, settings, evidence, identified)
+    kept, result = run_filter(adaptive, evidence, settings)
     save_run(out, arrays, kept, result.output, result.error)

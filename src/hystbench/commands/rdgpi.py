@@ -24,11 +24,11 @@ def rdgpi(
     record: Path, identified: Path, settings: dict[str, Any], out: Path, arrays: Path
 ) -> None:
     """Simulate the identified RDGPI model freely on RECORD."""
-    measured = load_record(record)
+    evidence = load_record(record)
     model = RateDependentGPI.from_dict(read_json(identified)["parameters"])
-    output = model.simulate(measured.u, measured.dt)
-    error = measured.y - output
-    result = run_result(measured, "rdgpi", error, "free-run simulation", **settings)
+    output = model.simulate(evidence.u, evidence.dt)
+    error = evidence.y - output
+    result = run_result(evidence, "rdgpi", error, "free-run simulation", **settings)
     result |= {
         "order": model.order,
         "taps": None,

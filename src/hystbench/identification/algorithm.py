@@ -20,7 +20,7 @@ from hystbench.identification.result import Identification
 from hystbench.identification.search import Progress, Search
 from hystbench.identification.weights import Samples, Start, lead_in, solve
 from hystbench.metrics import relative_error
-from hystbench.operators import Envelope, thresholds
+from hystbench.operators import Envelope, fewest_samples, thresholds
 from hystbench.record import FloatArray
 
 #: Samples of the thinned record on which starting points are improved.
@@ -250,10 +250,10 @@ def _checked(u: ArrayLike, y: ArrayLike, order: int) -> tuple[FloatArray, FloatA
         raise InputError(f"slow record: u {u.shape} and y {y.shape} must match")
     if order < 0:
         raise InputError(f"order: {order} given, expected 0 or more")
-    if len(u) < 2 * (order + 1) + 8:
+    if len(u) < fewest_samples(order):
         raise InputError(
-            f"slow record: {len(u)} samples, expected at least {2 * (order + 1) + 8} "
-            f"for order {order}"
+            f"slow record: {len(u)} samples, expected at least "
+            f"{fewest_samples(order)} for order {order}"
         )
     for name, values in (("u", u), ("y", y)):
         if not np.isfinite(values).all():

@@ -1,0 +1,65 @@
+"""``hystbench families``: twins with other hysteresis than the twin's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from hystbench import options
+from hystbench.calibration.targets import targets
+from hystbench.families import FAMILIES, Task, fit_family, loop_error
+from hystbench.files import write_json
+from hystbench.model import load_model
+from hystbench.signals import load_signal
+
+
+@click.command()
+@click.argument("signals", type=options.FILE, nargs=-1, required=True)
+@click.option("--model", type=options.FILE, required=True, help="The twin (YAML).")
+@click.option("--loop", type=options.FILE, required=True, help="The slow signal.")
+@options.settings
+@click.option(
+    "--out", type=options.NEW_FILE, required=True, help="Folder of the model files."
+)
+def families(
+    signals: tuple[Path, ...],
+    model: Path,
+    loop: Path,
+    settings: dict[str, Any],
+    out: Path,
+) -> None:
+    """Fit Preisach and Jiles-Atherton twins to the MODEL's loop and published RMS.
+
+    SIGNALS are calibration signals; the tables' implied RMS displacement of each is a
+    target. Writes a model file a family, and ``families.json``: the relative error of
+    the loop and the errors of the RMS, the first twin's own beside them.
+    """
+    excitations = tuple(load_signal(path) for path in signals)
+    wanted = targets(signal.name for signal in excitations)
+    task = Task(
+        load_model(model),
+        load_signal(loop),
+        excitations,
+        tuple(target.rms for target in wanted),
+        settings["seed"],
+    )
+    report = {task.model.name: _judge(task, task.model)}
+    for family in FAMILIES.values():
+        fit = fit_family(family, task, tell=lambda line: click.echo(line, err=True))
+        fit.twin.save(out / f"{fit.twin.name}.yaml")
+        report[fit.twin.name] = {
+            **_judge(task, fit.twin),
+            "at_bounds": list(fit.at_bounds),
+        }
+    write_json(out / "families.json", report)
+
+
+def _judge(task: Task, twin: Any) -> dict[str, Any]:
+    names = [signal.name for signal in task.signals]
+    percent = [round(100 * float(each), 4) for each in task.rms_errors(twin)]
+    return {
+        "loop_relative_error": loop_error(twin, task),
+        "rms_error_percent": dict(zip(names, percent, strict=True)),
+    }
