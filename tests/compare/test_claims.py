@@ -1,6 +1,7 @@
 """Every claim comes out both ways on evidence made for it."""
 
 import csv
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -329,6 +330,21 @@ BORN_OUT = {
     "chirp-times": "yes",
     "peak-to-peak-changes": "yes",
 }
+
+
+@pytest.mark.parametrize("name", ["order-sharp", "order-slow"])
+def test_divergence_at_the_lowest_order_is_no_fall(name):
+    evidence = order_points(lambda n: math.inf if n == 1 else 1 / n**2)
+    found = judge(BY_ID[name], evidence)
+    assert found.verdict == "not reproduced"
+
+
+def test_two_diverged_filters_say_nothing_of_the_envelopes():
+    signals = ("sine-010hz", "sine-020hz")
+    errors = {(s, e): math.inf for s in signals for e in ("identified", "published")}
+    evidence = Evidence(envelope_errors=errors)
+    found = judge(BY_ID["envelopes-serve-every-rate"], evidence)
+    assert found.verdict == "not reproduced"
 
 
 def test_what_the_papers_own_numbers_bear_out():

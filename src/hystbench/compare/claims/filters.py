@@ -216,9 +216,12 @@ def slopes(points: list[tuple[int, float]], knee: int) -> tuple[float, float]:
 def order_sharp(evidence: Evidence) -> Finding:
     """Follow each filter up to order 10."""
     knee = evidence.text.order_sweep_knee
+    curves = sweep(evidence)
+    diverged = [model for model, points in curves.items() if math.isinf(points[0][1])]
+    if diverged:
+        return Finding(False, f"diverged at the lowest order: {', '.join(diverged)}")
     falls = {
-        model: dict(points)[knee] / points[0][1]
-        for model, points in sweep(evidence).items()
+        model: dict(points)[knee] / points[0][1] for model, points in curves.items()
     }
     told = ", ".join(f"{model} {ratio:.3g}" for model, ratio in falls.items())
     return Finding(
@@ -245,7 +248,10 @@ def order_slow(evidence: Evidence) -> Finding:
         for model, (before, after) in rates.items()
     )
     return Finding(
-        all(abs(after) <= abs(before) / 10 for before, after in rates.values()),
+        all(
+            math.isfinite(before) and abs(after) <= abs(before) / 10
+            for before, after in rates.values()
+        ),
         f"mean fall of the MSE for each order (um^2): {told}",
     )
 
