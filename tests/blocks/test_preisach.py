@@ -1,4 +1,4 @@
-"""The block ``preisach`` against a plain sum over its relays, and its two properties."""
+"""The block ``preisach`` against a plain sum over relays; its two properties."""
 
 import math
 from dataclasses import replace

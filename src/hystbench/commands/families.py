@@ -9,9 +9,9 @@ import click
 
 from hystbench import options
 from hystbench.calibration.targets import targets
-from hystbench.families import FAMILIES, Task, fit_family, loop_error
+from hystbench.families import FAMILIES, Task, fit_family
 from hystbench.files import write_json
-from hystbench.model import load_model
+from hystbench.model import Model, load_model
 from hystbench.signals import load_signal
 
 
@@ -56,10 +56,10 @@ def families(
     write_json(out / "families.json", report)
 
 
-def _judge(task: Task, twin: Any) -> dict[str, Any]:
+def _judge(task: Task, twin: Model) -> dict[str, Any]:
     names = [signal.name for signal in task.signals]
     percent = [round(100 * float(each), 4) for each in task.rms_errors(twin)]
     return {
-        "loop_relative_error": loop_error(twin, task),
+        "loop_relative_error": task.loop_error(twin),
         "rms_error_percent": dict(zip(names, percent, strict=True)),
     }
