@@ -90,6 +90,7 @@ def sentences(summary: Mapping[str, Any]) -> list[str]:
         f"{summary['claims_not_reproduced']} are not, and "
         f"{summary['claims_not_testable']} cannot be tested here."
     )
+    said.append(_by_kind(summary["claims_by_kind"]))
     said.extend(_families(summary["claims_reproduced_where"]))
     said.append(
         "The twin is a simulation, since the measured data are not public: agreement "
@@ -97,6 +98,18 @@ def sentences(summary: Mapping[str, Any]) -> list[str]:
         "measured again."
     )
     return said
+
+
+def _by_kind(kinds: Mapping[str, Mapping[str, int]]) -> str:
+    """Say how many of the claims could have failed: results, apart from the rest."""
+    results = kinds.get("result", {})
+    given = kinds.get("condition", {})
+    return (
+        f"Among them are {sum(results.values())} results, of which "
+        f"{results.get('reproduced', 0)} are reproduced and "
+        f"{results.get('not_reproduced', 0)} are not; {given.get('reproduced', 0)} are "
+        "conditions that hold because signals, orders and envelopes are made so."
+    )
 
 
 def _families(where: Mapping[str, int]) -> list[str]:

@@ -141,7 +141,7 @@ def delay_line_difference(
     "eq10",
     "the thresholds 'can be chosen to be equal intervals'",
     "Section 2.3, Eq. 10",
-    "theory",
+    "condition",
     "N + 1 identified thresholds rise in equal steps from zero, one weight each",
 )
 def eq10(evidence: Evidence) -> Finding:

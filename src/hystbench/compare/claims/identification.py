@@ -50,7 +50,7 @@ def algorithm_converges(evidence: Evidence) -> Finding:
     "weights and envelopes 'can be identified through minimization' of the sum of "
     "squared errors, iteratively",
     "Section 2.3, Eq. 11",
-    "result",
+    "condition",
     "J falls over the iterations, or is below the tolerable error at the first",
 )
 def identification_iterative(evidence: Evidence) -> Finding:

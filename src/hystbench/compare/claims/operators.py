@@ -174,8 +174,9 @@ def _order(evidence: Evidence) -> Finding:
     "envelopes-non-decreasing",
     "the envelopes are 'continuous non-decreasing functions'",
     "Section 2.2, Eqs. 5-6",
-    "result",
-    "ours: the identified envelopes; theirs: the published ones",
+    "condition",
+    "ours: the identified envelopes, which the search holds to it; theirs: the "
+    "published ones",
     theirs=_non_decreasing,
 )
 def envelopes_non_decreasing(evidence: Evidence) -> Finding:
@@ -189,8 +190,9 @@ def envelopes_non_decreasing(evidence: Evidence) -> Finding:
     "envelopes-ordered",
     "'gamma_l > gamma_r'",
     "Section 2.2",
-    "result",
-    "ours: the identified envelopes; theirs: the published ones",
+    "condition",
+    "ours: the identified envelopes, which the search holds to it; theirs: the "
+    "published ones",
     theirs=_order,
 )
 def envelopes_ordered(evidence: Evidence) -> Finding:
