@@ -181,6 +181,7 @@ class Settings:
         grid = {k: v for k, v in self.config["contest"].items() if k != "twins"}
         return {
             "signals": {name: self.signal_job(name) for name in self.signals},
+            "asked": self.signals,
             "measure": self.measure_job,
             "filters": {name: self.filter_job(name) for name in self.filters},
             **self.compare_job,

@@ -27,6 +27,8 @@ def small_config() -> dict:
     config["filters"]["order"] = 6
     config["rdgpi"] |= {"fit_signals": ["sine-100hz"], "starts": 1}
     config["order_sweep"] |= {"signal": "sine-050hz", "orders": [1, 3]}
+    config["pressure"] |= {"twins": []}
+    config["contest"] |= {"twins": []}
     return config
 
 

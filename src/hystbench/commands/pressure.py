@@ -11,7 +11,12 @@ import click
 from hystbench import options
 from hystbench.compare.claims.claim import Claim
 from hystbench.compare.comparison import held_out_signals
-from hystbench.pressure.ensemble import fit_rdgpi, run_ensemble, step_choices
+from hystbench.pressure.ensemble import (
+    filter_jobs,
+    fit_rdgpi,
+    run_ensemble,
+    step_choices,
+)
 from hystbench.pressure.judging import Count, count, press, pressed_claims
 from hystbench.pressure.report import write_pressure
 from hystbench.pressure.twins import read_twins
@@ -24,7 +29,7 @@ from hystbench.pressure.twins import read_twins
 def pressure(twins: tuple[Path, ...], settings: dict[str, Any], out: Path) -> None:
     """Judge the claims on TWINS with several seeds and step sizes."""
     design = settings["design"]
-    factors, filters = design["step_factors"], list(settings["filters"])
+    factors, filters = design["step_factors"], list(filter_jobs(settings))
     held_out = held_out_signals(settings["calibrated"])
     read = read_twins(twins)
     claims: tuple[Claim, ...] = ()

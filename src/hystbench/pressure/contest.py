@@ -20,7 +20,12 @@ from hystbench.adaptive import make_filter, step_bounds, step_names
 from hystbench.errors import InputError
 from hystbench.filters import AdaptiveFilter, run_many
 from hystbench.metrics import mean_square_error
-from hystbench.pressure.ensemble import Settings, draw_signals, measure_twin
+from hystbench.pressure.ensemble import (
+    Settings,
+    draw_signals,
+    filter_jobs,
+    measure_twin,
+)
 from hystbench.pressure.twins import Twin
 from hystbench.record import FloatArray, Record
 
@@ -100,7 +105,7 @@ def hold_contest(twin: Twin, settings: Settings) -> list[Entry]:
     ----------
     twin : Twin
     settings : mapping
-        ``signals``, ``measure`` and ``filters`` as for
+        ``signals``, ``asked``, ``measure`` and ``filters`` as for
         :func:`hystbench.pressure.ensemble.run_ensemble`; ``calibrated``, the signals
         on which step sizes are chosen; ``fractions``, the grid; and
         ``regularization_share`` of tr[R], for the normalized LMS.
@@ -110,7 +115,8 @@ def hold_contest(twin: Twin, settings: Settings) -> list[Entry]:
     InputError
         If none of the signals is one of the calibration's.
     """
-    signals = draw_signals(settings["signals"], 0)
+    asked = {name: settings["signals"][name] for name in settings["asked"]}
+    signals = draw_signals(asked, 0)
     records = measure_twin(twin, signals.values(), settings["measure"], 0)
     chosen_on = [name for name in records if name in set(settings["calibrated"])]
     if not chosen_on:
@@ -129,7 +135,7 @@ def hold_contest(twin: Twin, settings: Settings) -> list[Entry]:
                 settings["fractions"],
                 settings["regularization_share"],
             )
-            for model, job in settings["filters"].items()
+            for model, job in filter_jobs(settings).items()
         }
         for entry in _entries(grids, chosen_on):
             about: dict[str, Any] = {"twin": twin.name, "family": twin.family}

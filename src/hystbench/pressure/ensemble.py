@@ -27,6 +27,7 @@ from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error, relative_error
 from hystbench.order_errors import filters_by_order, order_errors
 from hystbench.pressure.twins import Twin
+from hystbench.published import FILTERS
 from hystbench.rdgpi import RateDependentGPI, identify_rdgpi
 from hystbench.record import Record
 from hystbench.signals import Signal, make_signal
@@ -104,7 +105,7 @@ def run_ensemble(
     signals = draw_signals(settings["signals"], seed)
     records = measure_twin(twin, signals.values(), settings["measure"], seed)
     asked = {name: records[name] for name in settings["asked"]}
-    jobs = settings["filters"]
+    jobs = filter_jobs(settings)
     found = _identify(records, settings)
     runs = {
         (model, factor): _run_filter(model, scaled(job, factor), asked, found)
@@ -177,6 +178,11 @@ def measure_twin(
     """Simulate a twin on signals; another seed draws another noise."""
     job = dict(settings) | {"seed": settings["seed"] + seed}
     return {each.name: measure(each, twin.model, job, twin.place) for each in signals}
+
+
+def filter_jobs(settings: Settings) -> dict[str, Settings]:
+    """Give the settings of each filter, in the order of the paper's tables."""
+    return {m: settings["filters"][m] for m in FILTERS if m in settings["filters"]}
 
 
 def scaled(job: Settings, factor: float) -> dict[str, Any]:

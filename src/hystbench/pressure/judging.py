@@ -159,8 +159,8 @@ class Pressed:
         Fraction on each other family.
     finite : int
         Members on twins of the first family in which no filter diverged.
-    on_gpi_twin_finite : float or None
-        Fraction of these.
+    on_gpi_twin_finite, on_other_families_finite : float or None
+        Fraction of these, and of such members on twins of other families.
     """
 
     claim: Claim
@@ -171,6 +171,7 @@ class Pressed:
     by_family: dict[str, float]
     finite: int
     on_gpi_twin_finite: float | None
+    on_other_families_finite: float | None
 
 
 def press(counts: Sequence[Count], claims: Iterable[Claim]) -> list[Pressed]:
@@ -197,8 +198,9 @@ def press(counts: Sequence[Count], claims: Iterable[Claim]) -> list[Pressed]:
                 on_other_families=_fraction([c for c in whole if c.family != first]),
                 by_family={f: part for f, part in apart.items() if part is not None},
                 finite=sum(c.finite for c in same),
-                on_gpi_twin_finite=_part(
-                    sum(c.held_finite for c in same), sum(c.finite for c in same)
+                on_gpi_twin_finite=_fraction_finite(same),
+                on_other_families_finite=_fraction_finite(
+                    [c for c in whole if c.family != first]
                 ),
             )
         )
@@ -207,6 +209,10 @@ def press(counts: Sequence[Count], claims: Iterable[Claim]) -> list[Pressed]:
 
 def _fraction(counts: Sequence[Count]) -> float | None:
     return _part(sum(c.held for c in counts), sum(c.members for c in counts))
+
+
+def _fraction_finite(counts: Sequence[Count]) -> float | None:
+    return _part(sum(c.held_finite for c in counts), sum(c.finite for c in counts))
 
 
 def _part(held: int, members: int) -> float | None:

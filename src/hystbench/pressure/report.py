@@ -21,6 +21,7 @@ COLUMNS = (
     "on_gpi_twin_finite",
     "on_held_out",
     "on_other_families",
+    "on_other_families_finite",
     "by_family",
     "members",
     "finite",
@@ -69,6 +70,7 @@ def write_pressure(
             each.on_gpi_twin_finite,
             each.on_held_out,
             each.on_other_families,
+            each.on_other_families_finite,
             "; ".join(f"{name} {part:.3f}" for name, part in each.by_family.items()),
             each.members,
             each.finite,
@@ -110,6 +112,7 @@ def _firm(pressed: Sequence[Pressed]) -> dict[str, Any]:
         "on_gpi_twin_finite",
         "on_held_out",
         "on_other_families",
+        "on_other_families_finite",
     )
     found: dict[str, Any] = {"number": len(pressed)}
     for column in columns:
@@ -133,6 +136,7 @@ def markdown(pressed: Sequence[Pressed], summary: dict[str, Any]) -> str:
             _percent(each.on_gpi_twin_finite),
             _percent(each.on_held_out),
             _percent(each.on_other_families),
+            _percent(each.on_other_families_finite),
         ]
         for each in pressed
     ]
@@ -143,6 +147,7 @@ def markdown(pressed: Sequence[Pressed], summary: dict[str, Any]) -> str:
         "on these, no filter diverged",
         "on these, held-out signals",
         "on twins of other families",
+        "on the others, no filter diverged",
     ]
     table = tabulate(lines, headers, tablefmt="pipe", disable_numparse=True)
     return f"{_design(summary)}\n\n{table}\n\n{_firmly(summary)}\n"
@@ -173,6 +178,7 @@ def _firmly(summary: dict[str, Any]) -> str:
                 ("on_gpi_twin_finite", "on these where no filter diverged"),
                 ("on_held_out", "on these with the held-out signals alone"),
                 ("on_other_families", "on twins of other families"),
+                ("on_other_families_finite", "on these where no filter diverged"),
             )
             if (part := summary[key][column])["judged"]
         ]
