@@ -23,7 +23,7 @@ def reproduced(tmp_path_factory) -> Workflow:
     """The project's own config, run in full."""
     workflow = Workflow(tmp_path_factory.mktemp("reproduction"))
     workflow.configure(yaml.safe_load((ROOT / "config.yaml").read_text()))
-    workflow.run("all", "pressure")
+    workflow.run()
     return workflow
 
 
