@@ -194,6 +194,27 @@ class Settings:
         return {"calibrated": list(self.config["calibration"]["signals"])}
 
     @property
+    def calibration_job(self) -> dict[str, Any]:
+        """Settings of the twin's calibration.
+
+        The step sizes are what it finds, and the published envelope functions made
+        the published tables: neither is taken from the filters' settings.
+        """
+        section = self.config["calibration"]
+        unused = {"convergence_factor", *self.error_job}
+        filters = {
+            name: {k: v for k, v in self.filter_job(name).items() if k not in unused}
+            for name in FILTER_NAMES
+        }
+        filters["gpo"]["envelopes"] = "published"
+        return {
+            "signals": {name: self.signal_job(name) for name in section["signals"]},
+            "filters": filters,
+            "seed": self.config["twin"]["seed"],
+            **{key: section[key] for key in ("starts", "search_seed", "twins")},
+        }
+
+    @property
     def error_job(self) -> dict[str, Any]:
         """Settings of the errors of any model."""
         filters = self.config["filters"]

@@ -204,7 +204,10 @@ def _value(item: Unknown, place: float) -> float:
 def _key(
     objective: Objective, targets: tuple[Target, ...], starts: int, seed: int
 ) -> str:
+    sources = sorted(Path(__file__).parent.glob("*.py"))
     about = {
+        # An edited module is another calibration: what was done counts no more.
+        "sources": [hashlib.sha256(file.read_bytes()).hexdigest() for file in sources],
         "unknowns": [asdict(item) for item in UNKNOWNS],
         "targets": [asdict(item) for item in targets],
         "filters": {name: dict(job) for name, job in objective.filters.items()},

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from hystbench.adaptive import make_filter, step_names
+from hystbench.adaptive import make_filter
 from hystbench.calibration.constraints import violations
 from hystbench.calibration.targets import Target
 from hystbench.calibration.twin import STEP_NAMES, make_twin, step_sizes
@@ -57,7 +57,7 @@ class Objective:
         Excitations by name.
     filters : mapping of str to mapping
         Settings of each filter's job, as :func:`hystbench.adaptive.make_filter` takes
-        them; the step sizes in them are replaced.
+        them, but for the step sizes.
     seed : int
         Seed of the sensor noise, as of ``hystbench measure``.
     window_start_s : float
@@ -77,11 +77,8 @@ class Objective:
 
     def mse(self, model: str, record: Record, steps: Mapping[str, float]) -> float:
         """MSE of a filter on a record after the start of the window."""
-        adaptive = make_filter(model, self.filters[model], record)
-        own: dict[str, Any] = {
-            own: steps[key] for key, own in step_names(model).items()
-        }
-        adaptive = replace(adaptive, **own)
+        settings = {**self.filters[model], "convergence_factor": steps}
+        adaptive = make_filter(model, settings, record)
         result = adaptive.run(record.u, record.y)
         if result.diverged_at is not None:
             return DIVERGED
