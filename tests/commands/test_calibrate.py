@@ -1,0 +1,118 @@
+"""The commands of the calibration, as the workflow calls them."""
+
+import csv
+import json
+
+import pytest
+import yaml
+from click.testing import CliRunner
+
+from hystbench.calibration import fit as fitting
+from hystbench.calibration.choice import CHOICE
+from hystbench.calibration.fit import descend
+from hystbench.commands.calibrate import calibrate
+from hystbench.commands.tried import tried
+from hystbench.files import read_json
+from hystbench.model import load_model
+from hystbench.settings import read_settings
+from tests.conftest import ROOT, run_hystbench
+
+
+@pytest.fixture
+def job():
+    """The project's own settings on short records of two signals."""
+    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config["excitation"]["duration_s"] = 0.1
+    config["calibration"] |= {
+        "signals": ["sine-080hz", "sine-100hz"],
+        "starts": 2,
+        "twins": 2,
+    }
+    schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
+    return read_settings(config, schema).calibration_job
+
+
+@pytest.fixture
+def starts(monkeypatch):
+    """Where each descent began, each cut down to one step."""
+    begun = []
+
+    def short(problem, aims, start, evaluations):
+        begun.append(dict(start))
+        return descend(problem, aims, start, evaluations=2)
+
+    monkeypatch.setattr(fitting, "descend", short)
+    return begun
+
+
+def call(job, out):
+    words = ["--settings", json.dumps(job), "--out", str(out)]
+    return CliRunner().invoke(calibrate, words)
+
+
+def test_an_interrupted_run_ends_as_an_uninterrupted_one(
+    job, starts, tmp_path, monkeypatch
+):
+    whole = call(job, tmp_path / "whole")
+    assert whole.exit_code == 0, whole.output
+    assert len(starts) == 2 * 2 + 1
+    steps = read_json(tmp_path / "whole" / "report.json")["convergence_factor"]
+    mu = steps["gpo"]["mu"]
+    assert f"config.yaml: filters: convergence_factor: gpo: mu: {mu:.6g}\n" in (
+        whole.stdout
+    )
+    assert "config.yaml: twin: input_zero_error: " in whole.stdout
+
+    with monkeypatch.context() as patch:
+        tune = fitting.tune_steps
+
+        def interrupt(problem, aims, values):
+            if len(starts) > 5 + 2:
+                raise KeyboardInterrupt
+            return tune(problem, aims, values)
+
+        patch.setattr(fitting, "tune_steps", interrupt)
+        assert call(job, tmp_path / "parts").exit_code == 1
+    assert [file.name for file in (tmp_path / "parts").iterdir()] == ["state.json"]
+    del starts[:]
+    parts = call(job, tmp_path / "parts")
+    assert parts.exit_code == 0, parts.output
+    # The first start is done: both descents of the second, and the last one.
+    assert len(starts) == 2 + 1
+    assert parts.stdout == whole.stdout
+    for name in ("gma.yaml", "uncertainty/gma-02.yaml", "report.json"):
+        texts = [(tmp_path / run / name).read_text() for run in ("whole", "parts")]
+        assert texts[0] == texts[1]
+    assert not (tmp_path / "parts" / "state.json").exists()
+    assert load_model(tmp_path / "parts" / "gma.yaml").name == "gma"
+
+
+def test_a_held_out_signal_is_refused_in_one_line(job, tmp_path):
+    job["signals"]["sine-060hz"] = job["signals"]["sine-080hz"]
+    words = ["calibrate", "--settings", json.dumps(job), "--out", tmp_path / "out"]
+    refused = run_hystbench(*words)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("hystbench: calibration: 'sine-060hz' is held out")
+    assert refused.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_job_holds_none_of_what_is_calibrated(job):
+    assert all("convergence_factor" not in each for each in job["filters"].values())
+    assert "input_zero_error" not in json.dumps(job)
+
+
+def test_what_was_tried_has_a_row_each_and_one_that_was_chosen(tmp_path):
+    done = CliRunner().invoke(tried, ["--out", str(tmp_path / "tried.csv")])
+    assert done.exit_code == 0, done.output
+    with (tmp_path / "tried.csv").open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    choice = yaml.safe_load(CHOICE.read_text())
+    assert len(rows) == len(choice["tried"])
+    scores = [float(row["left_out_score"]) for row in rows]
+    assert scores == sorted(scores)
+    chosen = [row for row in rows if row["chosen"]]
+    assert [row["structure"] for row in chosen] == [choice["chosen"]["structure"]]
+    # What choice.yaml gives as the reason: least among those of the whole record.
+    whole = [row for row in rows if float(row["window_start_s"]) == 0]
+    assert chosen[0] == whole[0]
