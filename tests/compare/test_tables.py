@@ -12,7 +12,7 @@ from hystbench.compare.evidence import Evidence
 from hystbench.compare.tables import Table, paper_table, paper_tables
 from hystbench.compare.verdict import sentences, verdict_markdown, verdict_rst
 
-from .made import published_runs
+from .made import make_run, published_runs
 
 
 def table(number, changes=None, missing=()):
@@ -162,3 +162,13 @@ def test_text_for_the_terminal(comparison):
     assert "0.0094" in text
     assert "gpo-best-anywhere" in text
     assert text.count("with ours beside it") == 4
+
+
+def test_a_diverged_run_is_told_below_its_table():
+    told = "diverged at sample 7, mu = 3 above 1/tr[R] = 2"
+    runs = published_runs()
+    first = next(iter(runs))
+    runs[first] = make_run(*first, None, diverged=told)
+    table = paper_table(1, compare_cells(Evidence(runs=runs)))
+    assert f"{first[0]}, {first[1]}: {told}" in table.legend
+    assert "diverged" in table.markdown()

@@ -176,9 +176,21 @@ def paper_table(number: int, cells: Iterable[ComparedCell]) -> Table:
             f"{error_kind(columns)}. The paper's are of a measured actuator, ours of "
             "its twin, a simulation."
         ),
-        legend=LEGEND,
+        legend="; ".join(
+            [LEGEND, *_divergences(c for c in listed if c.table == number)]
+        ),
         frame=pd.DataFrame(content, dtype=str),
     )
+
+
+def _divergences(cells: Iterable[ComparedCell]) -> list[str]:
+    """Say of each diverged run where it diverged and how its steps stood to Eq. 19."""
+    told = {
+        (cell.signal, cell.model): cell.status
+        for cell in cells
+        if cell.ours is None and cell.status != NOT_RUN
+    }
+    return [f"{signal}, {model}: {status}" for (signal, model), status in told.items()]
 
 
 def paper_tables(cells: Iterable[ComparedCell]) -> tuple[Table, ...]:

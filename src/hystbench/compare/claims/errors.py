@@ -84,8 +84,8 @@ def gpo_best_anywhere(errors: Errors) -> Finding:
     without = [p for n in (1, 2, 3) for p in errors.table(n) if p not in with_rdgpi]
     first = best(errors, with_rdgpi, "gpo", MODELS)
     second = best(errors, without, "gpo", FILTERS)
-    if first.holds and second.holds:
-        return first
+    if first.holds and second.holds and without:
+        return Finding(True, f"{first.evidence}; {second.evidence}")
     return second if first.holds else first
 
 

@@ -54,7 +54,8 @@ def within_bound(run: Run) -> bool:
     "mean'",
     "Section 3.2, Eq. 19",
     "theory",
-    "no run within the bound diverged; runs above it are told but not judged",
+    "no run within the bound diverged, which is a sign of convergence in the mean and "
+    "not the same; runs above it are told but not judged",
 )
 def eq19_convergence(evidence: Evidence) -> Finding:
     """Count the diverged runs within the bound."""
