@@ -24,7 +24,7 @@ COMMANDS = {
     "envelopes": "Run the GPO filter with identified and published envelopes.",
     "order-sweep": "Run the filters over a range of orders (Figure 7).",
     "calibrate": "Fit the twin and the step sizes to the published tables.",
-    "tried": "Write what the calibration tried as a table.",
+    "tried": "Write what the calibration tried and found as tables.",
     "families": "Fit twins with other hysteresis.",
     "rdgpi-identify": "Identify the rate-dependent GPI model.",
     "rdgpi": "Simulate the rate-dependent GPI model on one record.",

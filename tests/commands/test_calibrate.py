@@ -10,6 +10,8 @@ from click.testing import CliRunner
 from hystbench.calibration import fit as fitting
 from hystbench.calibration.choice import CHOICE
 from hystbench.calibration.fit import descend
+from hystbench.calibration.found import values_of
+from hystbench.calibration.twin import UNKNOWNS, make_twin
 from hystbench.commands.calibrate import calibrate
 from hystbench.commands.tried import tried
 from hystbench.files import read_json
@@ -43,6 +45,20 @@ def starts(monkeypatch):
 
     monkeypatch.setattr(fitting, "descend", short)
     return begun
+
+
+VALUES = {item.name: item.start for item in UNKNOWNS}
+
+
+def tables(folder, *models):
+    words = [str(folder / model) for model in models]
+    for name in ("tried", "found"):
+        words += [f"--{name}", str(folder / f"{name}.csv")]
+    done = CliRunner().invoke(tried, words)
+    assert done.exit_code == 0, done.output
+    for name in ("tried", "found"):
+        with (folder / f"{name}.csv").open(newline="", encoding="utf-8") as stream:
+            yield list(csv.DictReader(stream))
 
 
 def call(job, out):
@@ -103,10 +119,8 @@ def test_the_job_holds_none_of_what_is_calibrated(job):
 
 
 def test_what_was_tried_has_a_row_each_and_one_that_was_chosen(tmp_path):
-    done = CliRunner().invoke(tried, ["--out", str(tmp_path / "tried.csv")])
-    assert done.exit_code == 0, done.output
-    with (tmp_path / "tried.csv").open(newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    make_twin(VALUES).save(tmp_path / "gma.yaml")
+    rows, _ = tables(tmp_path, "gma.yaml")
     choice = yaml.safe_load(CHOICE.read_text())
     assert len(rows) == len(choice["tried"])
     scores = [float(row["left_out_score"]) for row in rows]
@@ -116,3 +130,23 @@ def test_what_was_tried_has_a_row_each_and_one_that_was_chosen(tmp_path):
     # What choice.yaml gives as the reason: least among those of the whole record.
     whole = [row for row in rows if float(row["window_start_s"]) == 0]
     assert chosen[0] == whole[0]
+
+
+def test_values_are_read_back_from_the_twin_they_made():
+    found = values_of(make_twin(VALUES))
+    for name, value in found.items():
+        assert value == pytest.approx(VALUES[name], rel=1e-5), name
+    # Step sizes and the input's zero error are the experiment's.
+    assert {name for name in VALUES if name not in found} == {
+        "input zero",
+        *(name for name in VALUES if name.endswith(" step")),
+    }
+
+
+def test_the_spread_is_that_over_the_twins(tmp_path):
+    make_twin(VALUES).save(tmp_path / "gma.yaml")
+    make_twin(VALUES | {"gain": 80.0}).save(tmp_path / "gma-01.yaml")
+    _, rows = tables(tmp_path, "gma.yaml", "gma-01.yaml")
+    found = {row["unknown"]: row for row in rows}
+    assert (found["gain"]["twins_low"], found["gain"]["twins_high"]) == ("80", "94")
+    assert found["mode"]["twins_low"] == found["mode"]["twins_high"] == "63"

@@ -6,19 +6,23 @@ if TWIN:
     # Found by name, so that no import tells of them.
     CALIBRATED_FILTERS = sorted(GRAPH.find_children("hystbench.filters"))
 
-    # What the calibration tried and chose, for docs/.
+    # What the calibration tried and found, for docs/.
     rule tried:
         input:
             choice=PACKAGE / "calibration/choice.yaml",
+            twin=PACKAGE / "plants/gma.yaml",
+            others=sorted(PACKAGE.glob("plants/uncertainty/gma-*.yaml")),
             code=code("hystbench.commands.tried"),
         output:
-            f"{COMPARE}/tried.csv",
+            tried=f"{COMPARE}/tried.csv",
+            found=f"{COMPARE}/found.csv",
         log:
             f"{RESULTS}/logs/tried.log",
         message:
-            "what the calibration tried"
+            "what the calibration tried and found"
         shell:
-            "hystbench tried --out {output:q} 2> {log:q}"
+            "hystbench tried {input.twin:q} {input.others:q} --tried {output.tried:q}"
+            " --found {output.found:q} 2> {log:q}"
 
     rule calibration:
         input:

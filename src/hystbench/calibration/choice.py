@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from hystbench.calibration.twin import STEP_NAMES
 from hystbench.files import write_csv
+from hystbench.published import FILTERS
 from hystbench.schema import load_yaml
 
 CHOICE = Path(__file__).with_name("choice.yaml")
@@ -22,7 +22,7 @@ COLUMNS = (
     "chosen",
     "in_sample_cost",
     "left_out_score",
-    *(f"left_out_median_{model}" for model in STEP_NAMES),
+    *(f"left_out_median_{model}" for model in FILTERS),
     *HOW,
 )
 
@@ -48,6 +48,6 @@ def _row(item: dict[str, Any], chosen: dict[str, Any]) -> list[Any]:
         "yes" if all(item[key] == chosen[key] for key in WHAT) else "",
         item["in_sample_cost"],
         item["left_out_score"],
-        *(medians[model] for model in STEP_NAMES),
+        *(medians[model] for model in FILTERS),
         *(item[key] for key in HOW),
     ]
