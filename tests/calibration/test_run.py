@@ -66,3 +66,13 @@ def test_a_held_out_signal_never_gets_in(tmp_path):
     with pytest.raises(InputError, match="'sine-060hz' is held out"):
         run_calibration(job(40, 60), **files(tmp_path))
     assert not list(tmp_path.iterdir())
+
+
+def test_the_order_of_the_signals_does_not_matter(tmp_path, monkeypatch):
+    monkeypatch.setattr(running, "calibrate", lambda *a, **k: Fit(dict(START), 50.0))
+    reports = []
+    for name, frequencies in (("up", (40, 100)), ("down", (100, 40))):
+        where = files(tmp_path / name)
+        run_calibration(job(*frequencies), **where)
+        reports.append(where["report"].read_bytes())
+    assert reports[0] == reports[1]

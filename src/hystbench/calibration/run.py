@@ -12,7 +12,7 @@ from hystbench.calibration.crossvalidation import leave_one_out
 from hystbench.calibration.ensemble import equally_good
 from hystbench.calibration.fit import Fit, Tell, calibrate
 from hystbench.calibration.objective import Objective
-from hystbench.calibration.targets import targets
+from hystbench.calibration.targets import CALIBRATION_SIGNALS, targets
 from hystbench.calibration.twin import make_twin, step_sizes
 from hystbench.files import write_json
 from hystbench.signals import make_signal
@@ -53,11 +53,13 @@ def run_calibration(
         If a signal is held out, a constraint cannot be met or too few equally good
         twins are found.
     """
+    wanted = {aim.signal: aim for aim in targets(job["signals"])}
+    # In one order, since sums of residuals in another end at another last digit.
+    aims = tuple(wanted[name] for name in CALIBRATION_SIGNALS if name in wanted)
     signals = {
-        name: make_signal(name, about["definition"], about["common"])
-        for name, about in job["signals"].items()
+        aim.signal: make_signal(aim.signal, **job["signals"][aim.signal])
+        for aim in aims
     }
-    aims = targets(signals)
     objective = Objective(signals, job["filters"], job["seed"])
     best = calibrate(
         objective,
