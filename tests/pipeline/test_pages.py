@@ -48,10 +48,11 @@ def test_pages_hold_the_numbers_of_the_results(reproduced):
     for page, copy in zip(pages, copies, strict=True):
         written, filled = page.read_text(), copy.read_text()
         assert FILLING.sub("#", written) == FILLING.sub("#", filled), page.name
-        # Optimisers end elsewhere in the last digits on another processor.
+        # Optimisers end elsewhere in the last digits on another processor, and may
+        # take a step more.
         for there, here in zip(
             NUMBER.findall(written), NUMBER.findall(filled), strict=True
         ):
-            assert float(there) == pytest.approx(float(here), rel=0.02, abs=2e-4), (
-                page.name
-            )
+            least = 1 if there.isdigit() and here.isdigit() else 2e-4
+            near = pytest.approx(float(here), rel=0.02, abs=least)
+            assert float(there) == near, page.name
