@@ -203,3 +203,21 @@ def test_a_folder_without_twins_is_refused(tmp_path):
 def test_a_calibration_signal_that_is_not_defined_is_refused():
     with pytest.raises(InputError, match="calibration: signals: no signal 'sine-10hz'"):
         read(changed("calibration", "signals", ["sine-10hz"]))
+
+
+def test_a_misspelt_target_gets_the_nearest_name():
+    settings = read(CONFIG)
+    for target in [
+        "compare",
+        "results/filters/sine-040hz/gpo.json",
+        "results/filters/sine-050hz/rdgpi.npz",
+        "results/records/whatever.npz",
+    ]:
+        settings.check_target(target)
+    for target, expected in [
+        ("results/filters/sine-40hz/gpo.json", "did you mean 'sine-040hz'?"),
+        ("results/filters/sine-040hz/gop.json", "did you mean 'gpo'?"),
+    ]:
+        with pytest.raises(InputError, match=r"no '.*'; ") as caught:
+            settings.check_target(target)
+        assert expected in str(caught.value)

@@ -110,6 +110,30 @@ class Settings:
         section = "filters" if self.dataset is None else "measured"
         return str(self.config[section]["envelopes"])
 
+    def check_target(self, target: str) -> None:
+        """Refuse a run's file that no rule makes, with the nearest name.
+
+        Parameters
+        ----------
+        target : str
+            What is asked of Snakemake: a rule or a file.
+
+        Raises
+        ------
+        InputError
+            If it is ``results/filters/<signal>/<model>`` of an unknown name.
+        """
+        path = Path(target)
+        if path.parent.parent != Path(self.results, "filters"):
+            return
+        signals = self.all_records
+        if self.dataset is None:
+            signals = [*signals, *self.config["excitations"]]
+        models = [*FILTER_NAMES, "rdgpi"]
+        for name, known in ((path.parent.name, signals), (path.stem, models)):
+            if name not in known:
+                raise InputError(f"{target}: no {name!r}; {nearest(name, known)}")
+
     @property
     def model_file(self) -> str:
         """File of the twin's model: one of the package's by name, or a path."""

@@ -36,6 +36,9 @@ try:
         if source.stat().st_mtime > KERNELS[0].stat().st_mtime:
             raise InputError(f"{source}: newer than the compiled kernels; run 'make'")
     SETTINGS = read_settings(config, SCHEMA, PLACE)
+    # Snakemake itself would name no rule and no nearest name.
+    for argument in sys.argv[1:]:
+        SETTINGS.check_target(argument)
 except InputError as error:
     sys.exit(f"hystbench: {error}")
 
