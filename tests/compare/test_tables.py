@@ -124,7 +124,7 @@ def comparison():
 def test_verdict_takes_its_numbers_from_the_summary(comparison):
     summary = comparison.summary | {"within_factor_2": 0.25, "claims_reproduced": 777}
     text = " ".join(sentences(summary))
-    assert "25 % of them are within a factor of 2" in text
+    assert "25 % are within a factor of 2" in text
     assert "777 are reproduced" in text
     assert "78 of 78 pairs" in text
     assert "typical MSE is off by a factor of 1.00" in text
@@ -136,8 +136,22 @@ def test_verdict_without_runs_says_so():
 
 
 def test_verdict_where_most_diverged_says_so(comparison):
-    text = sentences(comparison.summary | {"median_abs_log10_ratio": None})[0]
+    text = sentences(comparison.summary | {"median_abs_log10_ratio": None})[1]
     assert "the typical run diverged" in text
+
+
+def test_verdict_never_mixes_calibrated_and_held_out():
+    held_out = ("sine-060hz", "chirp-1-100hz")
+    summary = compare_evidence(Evidence(runs=published_runs()), held_out).summary
+    changed = summary | {
+        "calibrated": summary["calibrated"] | {"within_factor_2": 0.5},
+        "held_out": summary["held_out"] | {"within_factor_2": 0.125},
+        "within_factor_2": 0.375,
+    }
+    text = " ".join(sentences(changed))
+    assert "Of the 44 to which it is fitted, 50 % are within" in text
+    assert "Of the 8 held out, 12 % are within" in text
+    assert "38 %" not in text
 
 
 def test_verdict_is_valid_rst(comparison):

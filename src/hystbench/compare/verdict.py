@@ -68,18 +68,17 @@ def sentences(summary: Mapping[str, Any]) -> list[str]:
             "its Tables 1-3."
         )
     else:
-        median = summary["median_abs_log10_ratio"]
-        typical = (
-            "the typical run diverged"
-            if median is None
-            else f"the typical MSE is off by a factor of {10**median:.2f}"
-        )
         said.append(
             f"Of the {summary['cells_published']} filter errors (MSE) in Tables 1-3, "
-            f"{summary['cells']} were run on the twin; "
-            f"{_percent(summary['within_factor_2'])} of them are within a factor of 2 "
-            f"of the paper and {typical}."
+            f"{summary['cells']} were run on the twin."
         )
+        # What a twin was fitted to and what it was not are never one number.
+        halves = {"calibrated": "to which it is fitted", "held_out": "held out"}
+        split = {key: words for key, words in halves.items() if key in summary}
+        for key, words in split.items() or {"": ""}.items():
+            part = summary[key] if key else summary
+            if part["cells"]:
+                said.append(_nearness(part, words))
         said.append(
             f"Ours order {order['agree']} of {order['compared']} pairs of filters "
             f"under one signal as the paper does (it has {order['published']})."
@@ -98,6 +97,23 @@ def sentences(summary: Mapping[str, Any]) -> list[str]:
         "measured again."
     )
     return said
+
+
+def _nearness(part: Mapping[str, Any], words: str) -> str:
+    """Say how near a part of the cells comes to the paper."""
+    medians = part["median_abs_log10_ratio"]
+    if isinstance(medians, Mapping):
+        medians = part["median_abs_log10_ratio_all"]
+    typical = (
+        "the typical run diverged"
+        if medians is None
+        else f"the typical MSE is off by a factor of {10**medians:.2f}"
+    )
+    return (
+        f"Of the {part['cells']}{f' {words}' if words else ''}, "
+        f"{_percent(part['within_factor_2'])} are within a factor of 2 of the paper "
+        f"and {typical}."
+    )
 
 
 def _by_kind(kinds: Mapping[str, Mapping[str, int]]) -> str:
