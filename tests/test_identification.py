@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, thresholds
 from hystbench.errors import InputError
 from hystbench.identification import fit_weights, identify, shape
 from hystbench.identification.search import Search
@@ -16,7 +17,6 @@ from hystbench.identification.weights import (
     solve,
     turning_points,
 )
-from hystbench.operators import PUBLISHED_ENVELOPE, Envelope, thresholds
 
 AMPLITUDE, ORDER = 0.632, 8
 

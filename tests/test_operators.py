@@ -4,17 +4,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, play_thresholds, thresholds
 from hystbench.errors import InputError
 from hystbench.operators import (
-    PUBLISHED_ENVELOPE,
-    Envelope,
     generalized_play,
     generalized_prandtl_ishlinskii,
     play,
-    play_thresholds,
     rate_dependent_prandtl_ishlinskii,
     state_space,
-    thresholds,
 )
 
 # Steps of 1/1024: equal values then are equal, and differences are exact.

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
 from hystbench.filters import FILTERS, AdaptiveFilter, Result
-from hystbench.operators import PUBLISHED_ENVELOPE, Envelope
 from hystbench.record import FloatArray, Record
 from hystbench.results import run_result
 

@@ -6,8 +6,6 @@ Using a GPO-Based Adaptive Filter".
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -19,165 +17,6 @@ from hystbench.record import FloatArray
 
 Form = Literal["eq4", "eq12"]
 FORMS: tuple[Form, ...] = ("eq4", "eq12")
-
-
-@dataclass(frozen=True)
-class Envelope:
-    """Envelope functions of the generalized play operator, Eqs. 5 and 6.
-
-    The left one, ``a0 tanh(a1 v + a2) + a3``, bounds the output from above where
-    the input falls; the right one, ``a4 tanh(a5 v + a6) + a7``, from below where it
-    rises.
-
-    Parameters
-    ----------
-    a0, a1, a2, a3 : float
-        Left envelope; ``a0`` and ``a3`` in the unit of the output, ``a1`` in 1 per
-        unit of the input.
-    a4, a5, a6, a7 : float
-        Right envelope, likewise.
-
-    Raises
-    ------
-    InputError
-        If a parameter is not finite.
-    """
-
-    a0: float
-    a1: float
-    a2: float
-    a3: float
-    a4: float
-    a5: float
-    a6: float
-    a7: float
-
-    def __post_init__(self) -> None:
-        """Refuse parameters that are not finite."""
-        for name, value in asdict(self).items():
-            if not np.isfinite(value):
-                raise InputError(f"envelope.{name}: {value} is not a finite number")
-
-    def left(self, v: ArrayLike) -> FloatArray:
-        """Left envelope, Eq. 5, at each input."""
-        return _curve(self.a0, self.a1, self.a2, self.a3, v)
-
-    def right(self, v: ArrayLike) -> FloatArray:
-        """Right envelope, Eq. 6, at each input."""
-        return _curve(self.a4, self.a5, self.a6, self.a7, v)
-
-    def gap(self, low: float, high: float, points: int = 2001) -> FloatArray:
-        """Left minus right envelope on an even grid from ``low`` to ``high``.
-
-        Where it is negative the envelopes have crossed, and Eqs. 4 and 12 part.
-        """
-        v = np.linspace(low, high, points)
-        return self.left(v) - self.right(v)
-
-    def ordered(self, low: float, high: float, points: int = 2001) -> bool:
-        """Tell whether the left envelope lies above the right one on a range."""
-        return bool((self.gap(low, high, points) > 0).all())
-
-    def crossings(self, low: float, high: float, points: int = 2001) -> list[float]:
-        """Inputs between ``low`` and ``high`` where the envelopes cross.
-
-        Found by the changes of sign on an even grid, then by bisection to the
-        last bit; two crossings within one step of the grid go unseen.
-        """
-        v = np.linspace(low, high, points)
-        above = self.gap(low, high, points) > 0
-        found = []
-        for place in np.flatnonzero(above[1:] != above[:-1]):
-            start, stop = float(v[place]), float(v[place + 1])
-            while start < (middle := 0.5 * (start + stop)) < stop:
-                if (self.left(middle) > self.right(middle)) == above[place]:
-                    start = middle
-                else:
-                    stop = middle
-            found.append(start)
-        return found
-
-    def to_dict(self) -> dict[str, float]:
-        """Give the eight parameters by name."""
-        return asdict(self)
-
-    @classmethod
-    def from_dict(cls, parameters: Mapping[str, float]) -> Envelope:
-        """Make an envelope from its eight parameters by name.
-
-        Raises
-        ------
-        InputError
-            If a name is missing or unknown.
-        """
-        known = [field.name for field in fields(cls)]
-        for name in parameters:
-            if name not in known:
-                raise InputError(f"envelope.{name}: unknown; {nearest(name, known)}")
-        for name in known:
-            if name not in parameters:
-                raise InputError(f"envelope.{name}: missing")
-        return cls(**{name: float(parameters[name]) for name in known})
-
-
-PUBLISHED_ENVELOPE = Envelope(
-    a0=1.2878,
-    a1=0.36,
-    a2=0.6025,
-    a3=-0.6671,
-    a4=0.3223,
-    a5=1.2233,
-    a6=0.1104,
-    a7=-0.0248,
-)
-"""What the paper identified at 1 Hz, input in amperes (section 4)."""
-
-
-def thresholds(envelope: Envelope, amplitude: float, order: int) -> FloatArray:
-    """Thresholds of the generalized play operators, Eq. 10.
-
-    Parameters
-    ----------
-    envelope : Envelope
-        Envelope functions.
-    amplitude : float
-        Largest magnitude of the input.
-    order : int
-        Order N.
-
-    Returns
-    -------
-    ndarray, shape (order + 1,)
-        ``i / (N + 1) * max(right(amplitude), left(amplitude))``, i from 0 to N.
-    """
-    largest = max(float(envelope.right(amplitude)), float(envelope.left(amplitude)))
-    return _equal_intervals(largest, order)
-
-
-def fewest_samples(order: int) -> int:
-    """Count the samples that N + 1 weights and an envelope's 8 parameters need.
-
-    Twice the weights, so that a filter sees each more than once, and 8 more.
-    """
-    return 2 * (order + 1) + 8
-
-
-def play_thresholds(amplitude: float, order: int) -> FloatArray:
-    """Thresholds of the play operators: Eq. 10 with the input as its own envelope.
-
-    Parameters
-    ----------
-    amplitude : float
-        Largest magnitude of the input.
-    order : int
-        Order N.
-
-    Returns
-    -------
-    ndarray, shape (order + 1,)
-        ``i / (N + 1) * amplitude``, i from 0 to N.
-    """
-    return _equal_intervals(amplitude, order)
 
 
 def play(
@@ -433,19 +272,6 @@ def follow_direction(v: FloatArray, left: FloatArray, right: FloatArray) -> None
     kernels.call("hb_follow_direction", len(v), v, left, right)
 
 
-def _curve(
-    height: float, slope: float, place: float, offset: float, v: ArrayLike
-) -> FloatArray:
-    # in place: fresh memory for each step would cost more than the tanh
-    v = _array(v)
-    curve = np.multiply(v, slope, out=np.empty(v.shape))
-    curve += place
-    np.tanh(curve, out=curve)
-    curve *= height
-    curve += offset
-    return curve
-
-
 def _array(values: ArrayLike) -> FloatArray:
     return np.asarray(values, dtype=np.float64, order="C")
 
@@ -455,14 +281,6 @@ def _signal(name: str, values: ArrayLike) -> FloatArray:
     if array.ndim != 1:
         raise InputError(f"{name}: {array.ndim} dimensions given, 1 expected")
     return array
-
-
-def _equal_intervals(largest: float, order: int) -> FloatArray:
-    if order < 0:
-        raise InputError(f"order: {order} given, 0 or more expected")
-    if not 0 < largest < np.inf:
-        raise InputError(f"thresholds: the largest would be {largest}; check amplitude")
-    return np.arange(order + 1) / (order + 1) * largest
 
 
 def _thresholds(values: ArrayLike) -> FloatArray:

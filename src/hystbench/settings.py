@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.dataset import Dataset, load_dataset
+from hystbench.envelope import fewest_samples
 from hystbench.errors import InputError, nearest
-from hystbench.operators import fewest_samples
 from hystbench.schema import check_against_schema, load_yaml
 from hystbench.signals import Signal, make_signal
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.identification import Identification, Progress, identify
 from hystbench.identification.shape import envelope_scale
-from hystbench.operators import PUBLISHED_ENVELOPE
 from hystbench.record import Record
 
 

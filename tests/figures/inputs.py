@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.files import write_json
 from hystbench.identification import identify
-from hystbench.operators import PUBLISHED_ENVELOPE
 from hystbench.record import Channel, FloatArray, Record
 from hystbench.results import run_result, save_run
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
 from hystbench.figures import drawer, style
-from hystbench.operators import PUBLISHED_ENVELOPE
 from hystbench.published import load_text
 from tests.figures.inputs import (
     DIVERGED,

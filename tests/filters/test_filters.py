@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
 from hystbench.filters import FILTERS, AdaptiveFilter, run_many
-from hystbench.operators import PUBLISHED_ENVELOPE
 
 OPTIONS = {
     "delayed": [{}],

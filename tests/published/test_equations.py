@@ -55,7 +55,7 @@ def test_thresholds_are_equally_spaced_from_zero():
 
 
 def test_published_envelope_is_the_one_the_filters_run_with():
-    from hystbench.operators import PUBLISHED_ENVELOPE
+    from hystbench.envelope import PUBLISHED_ENVELOPE
 
     assert PUBLISHED_ENVELOPE.to_dict() == ENVELOPE
 

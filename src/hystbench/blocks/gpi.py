@@ -7,8 +7,9 @@ from typing import ClassVar
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import numbers
+from hystbench.envelope import Envelope
 from hystbench.errors import InputError
-from hystbench.operators import Envelope, generalized_prandtl_ishlinskii
+from hystbench.operators import generalized_prandtl_ishlinskii
 from hystbench.record import FloatArray
 
 

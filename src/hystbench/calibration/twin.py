@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hystbench.envelope import PUBLISHED_ENVELOPE, thresholds
 from hystbench.model import Model
-from hystbench.operators import PUBLISHED_ENVELOPE, thresholds
 from hystbench.record import FloatArray
 
 ORDER = 30

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from hystbench.envelope import PUBLISHED_ENVELOPE, thresholds
 from hystbench.figures import style
 from hystbench.figures.arrows import arrows, sweep
-from hystbench.operators import PUBLISHED_ENVELOPE, generalized_play, thresholds
+from hystbench.operators import generalized_play
 from hystbench.published import load_text
 
 # The operator in the middle of a small bank has a loop that shows both envelopes.

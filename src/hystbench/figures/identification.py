@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
+from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope
 from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.files import read_json
 from hystbench.identification import Identification, fit_weights
-from hystbench.operators import PUBLISHED_ENVELOPE, Envelope
 from hystbench.record import Record, load_record
 
 _IDENTIFIED: dict[str, Any] = {"color": style.BLUE, "linestyle": "-"}

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from hystbench.envelope import play_thresholds
 from hystbench.errors import InputError, nearest
 from hystbench.filters.plays import PlayFilter
-from hystbench.operators import play_thresholds
 from hystbench.record import FloatArray
 
 Structure = Literal["delay-line", "current-input"]

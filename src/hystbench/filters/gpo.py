@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, thresholds
 from hystbench.filters.plays import PlayFilter
-from hystbench.operators import PUBLISHED_ENVELOPE, Envelope, thresholds
 from hystbench.record import FloatArray
 
 

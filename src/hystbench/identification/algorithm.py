@@ -14,13 +14,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hystbench.envelope import Envelope, fewest_samples, thresholds
 from hystbench.errors import InputError
 from hystbench.identification import shape
 from hystbench.identification.result import Identification
 from hystbench.identification.search import Progress, Search
 from hystbench.identification.weights import Samples, Start, lead_in, solve
 from hystbench.metrics import relative_error
-from hystbench.operators import Envelope, fewest_samples, thresholds
 from hystbench.record import FloatArray
 
 #: Samples of the thinned record on which starting points are improved.

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hystbench.envelope import Envelope
 from hystbench.identification.weights import Samples, Start, lead_in
-from hystbench.operators import Envelope
 from hystbench.record import FloatArray
 
 

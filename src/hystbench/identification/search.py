@@ -9,9 +9,9 @@ from typing import cast
 import numpy as np
 
 from hystbench.bounded_least_squares import damped_step
+from hystbench.envelope import Envelope, thresholds
 from hystbench.identification import shape
 from hystbench.identification.weights import Samples, Start, lead_in, reduced, solve
-from hystbench.operators import Envelope, thresholds
 from hystbench.record import FloatArray
 
 Progress = Callable[[int, float], None]

@@ -23,8 +23,8 @@ from typing import cast
 
 import numpy as np
 
+from hystbench.envelope import Envelope
 from hystbench.errors import InputError
-from hystbench.operators import Envelope
 from hystbench.record import FloatArray
 
 _LOG = np.array([True, False, True, False, True, False, True])

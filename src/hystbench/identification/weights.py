@@ -8,11 +8,8 @@ from typing import Literal, cast
 import numpy as np
 from scipy.optimize import nnls
 
-from hystbench.operators import (
-    Envelope,
-    generalized_play,
-    generalized_prandtl_ishlinskii,
-)
+from hystbench.envelope import Envelope
+from hystbench.operators import generalized_play, generalized_prandtl_ishlinskii
 from hystbench.record import FloatArray
 
 Start = Literal["rest", "settled"]
