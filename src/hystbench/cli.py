@@ -25,6 +25,8 @@ COMMANDS = {
     "order-sweep": "Run the filters over a range of orders (Figure 7).",
     "calibrate": "Fit the twin and the step sizes to the published tables.",
     "tried": "Write what the calibration tried and found as tables.",
+    "structure": "Try one structure on the calibration signals.",
+    "structures": "Write a table of the structures that were tried.",
     "families": "Fit twins with other hysteresis.",
     "rdgpi-identify": "Identify the rate-dependent GPI model.",
     "rdgpi": "Simulate the rate-dependent GPI model on one record.",

@@ -239,6 +239,15 @@ class Settings:
         }
 
     @property
+    def structure_job(self) -> dict[str, Any]:
+        """Settings of a structure's trial: it starts from what is committed."""
+        return {
+            **self.calibration_job,
+            "convergence_factor": self.config["filters"]["convergence_factor"],
+            "input_zero_error": self.config["twin"]["input_zero_error"],
+        }
+
+    @property
     def error_job(self) -> dict[str, Any]:
         """Settings of the errors of any model."""
         filters = self.config["filters"]

@@ -1,3 +1,6 @@
+from hystbench.calibration.structures import STRUCTURES
+
+
 # The twin itself. `snakemake calibrate` fits it to the published tables and puts it into
 # the package; it is committed there, so no other target makes it. The step sizes and
 # the zero error that belong to it are printed, for config.yaml.
@@ -61,3 +64,33 @@ if TWIN:
             "{{ cp {input.model:q} {params.folder:q}"
             " && rm -f {params.folder:q}/uncertainty/gma-*.yaml"
             " && cp {input.uncertainty:q} {params.folder:q}/uncertainty; }} 2> {log:q}"
+
+    # Structures and readings beside the chosen one; `all` leaves them out for their time.
+    rule structure:
+        input:
+            twin=PACKAGE / "plants/gma.yaml",
+            published=PUBLISHED,
+            code=code("hystbench.commands.structure", *CALIBRATED_FILTERS),
+        output:
+            f"{RESULTS}/structures/{{structure}}.json",
+        log:
+            f"{RESULTS}/logs/structures/{{structure}}.log",
+        params:
+            settings=settings_text(SETTINGS.structure_job),
+        message:
+            "structure {wildcards.structure}"
+        shell:
+            "hystbench structure {wildcards.structure} --model {input.twin:q}"
+            " --settings {params.settings:q} --out {output:q} 2> {log:q}"
+
+    rule structures:
+        input:
+            [f"{RESULTS}/structures/{item.name}.json" for item in STRUCTURES],
+        output:
+            f"{RESULTS}/structures/tried.csv",
+        log:
+            f"{RESULTS}/logs/structures/tried.log",
+        message:
+            "structures that were tried"
+        shell:
+            "hystbench structures {input:q} --out {output:q} 2> {log:q}"
