@@ -350,7 +350,9 @@ def read_settings(
 def packaged_models() -> dict[str, str]:
     """Files of the package's own model files, by name."""
     folder = Path(os.path.relpath(Path(__file__).parent / "plants"))
-    return {file.stem: str(file) for file in sorted(folder.glob("*.yaml"))}
+    # choice.yaml beside them says which structure was chosen, and is no model.
+    files = [file for file in folder.glob("*.yaml") if file.name != "choice.yaml"]
+    return {file.stem: str(file) for file in sorted(files)}
 
 
 def _model_files(name: str) -> list[str]:

@@ -12,7 +12,7 @@ if TWIN:
     # What the calibration tried and found, for docs/.
     rule tried:
         input:
-            choice=PACKAGE / "calibration/choice.yaml",
+            choice=PACKAGE / "plants/choice.yaml",
             twin=PACKAGE / "plants/gma.yaml",
             others=sorted(PACKAGE.glob("plants/uncertainty/gma-*.yaml")),
             code=code("hystbench.commands.tried"),
