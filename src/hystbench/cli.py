@@ -27,6 +27,7 @@ COMMANDS = {
     "tried": "Write what the calibration tried and found as tables.",
     "structure": "Try one structure on the calibration signals.",
     "structures": "Write a table of the structures that were tried.",
+    "held-out": "Judge the structures that were tried on the held-out signals.",
     "families": "Fit twins with other hysteresis.",
     "rdgpi-identify": "Identify the rate-dependent GPI model.",
     "rdgpi": "Simulate the rate-dependent GPI model on one record.",

@@ -15,6 +15,7 @@ from typing import Any
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.errors import InputError, nearest
 from hystbench.operators import fewest_samples
+from hystbench.published import load
 from hystbench.schema import check_against_schema, load_yaml
 from hystbench.signals import Signal, make_signal
 
@@ -246,6 +247,14 @@ class Settings:
             "convergence_factor": self.config["filters"]["convergence_factor"],
             "input_zero_error": self.config["twin"]["input_zero_error"],
         }
+
+    @property
+    def held_out_job(self) -> dict[str, Any]:
+        """Settings of the structures' trial on the signals that no fit has seen."""
+        calibrated = self.calibration_job
+        unseen = sorted({pair.signal for pair in load()} - set(calibrated["signals"]))
+        signals = {name: self.signal_job(name) for name in unseen}
+        return {**calibrated, "signals": signals}
 
     @property
     def error_job(self) -> dict[str, Any]:

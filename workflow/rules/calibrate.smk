@@ -94,3 +94,22 @@ if TWIN:
             "structures that were tried"
         shell:
             "hystbench structures {input:q} --out {output:q} 2> {log:q}"
+
+    # After the choice: all structures on the held-out signals, by one rule.
+    rule held_out:
+        input:
+            tried=rules.structures.input,
+            choice=PACKAGE / "plants/choice.yaml",
+            published=PUBLISHED,
+            code=code("hystbench.commands.held_out", *CALIBRATED_FILTERS),
+        output:
+            f"{RESULTS}/structures/held-out.csv",
+        log:
+            f"{RESULTS}/logs/structures/held-out.log",
+        params:
+            settings=settings_text(SETTINGS.held_out_job),
+        message:
+            "structures on the held-out signals"
+        shell:
+            "hystbench held-out {input.tried:q} --choice {input.choice:q}"
+            " --settings {params.settings:q} --out {output:q} 2> {log:q}"
