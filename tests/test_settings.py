@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from hystbench.errors import InputError
-from hystbench.settings import read_settings
+from hystbench.settings import packaged_models, read_settings
 from tests.conftest import ROOT
 
 SCHEMA = ROOT / "workflow" / "schemas" / "config.schema.yaml"
@@ -221,3 +221,8 @@ def test_a_misspelt_target_gets_the_nearest_name():
         with pytest.raises(InputError, match=r"no '.*'; ") as caught:
             settings.check_target(target)
         assert expected in str(caught.value)
+
+
+def test_the_record_of_the_choice_is_no_model():
+    assert "gma" in packaged_models()
+    assert "choice" not in packaged_models()

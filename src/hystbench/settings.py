@@ -15,6 +15,7 @@ from typing import Any
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.envelope import fewest_samples
 from hystbench.errors import InputError, nearest
+from hystbench.published import load
 from hystbench.schema import check_against_schema, load_yaml
 from hystbench.signals import Signal, make_signal
 
@@ -239,6 +240,23 @@ class Settings:
         }
 
     @property
+    def structure_job(self) -> dict[str, Any]:
+        """Settings of a structure's trial: it starts from what is committed."""
+        return {
+            **self.calibration_job,
+            "convergence_factor": self.config["filters"]["convergence_factor"],
+            "input_zero_error": self.config["twin"]["input_zero_error"],
+        }
+
+    @property
+    def held_out_job(self) -> dict[str, Any]:
+        """Settings of the structures' trial on the signals that no fit has seen."""
+        calibrated = self.calibration_job
+        unseen = sorted({pair.signal for pair in load()} - set(calibrated["signals"]))
+        signals = {name: self.signal_job(name) for name in unseen}
+        return {**calibrated, "signals": signals}
+
+    @property
     def error_job(self) -> dict[str, Any]:
         """Settings of the errors of any model."""
         filters = self.config["filters"]
@@ -341,7 +359,9 @@ def read_settings(
 def packaged_models() -> dict[str, str]:
     """Files of the package's own model files, by name."""
     folder = Path(os.path.relpath(Path(__file__).parent / "plants"))
-    return {file.stem: str(file) for file in sorted(folder.glob("*.yaml"))}
+    # choice.yaml beside them says which structure was chosen, and is no model.
+    files = [file for file in folder.glob("*.yaml") if file.name != "choice.yaml"]
+    return {file.stem: str(file) for file in sorted(files)}
 
 
 def _model_files(name: str) -> list[str]:

@@ -8,6 +8,7 @@ EXAMPLES = {
     "calibration-error": {"gain": 1.05, "offset": 0.1},
     "creep": {"magnitudes": [0.05, 0.03], "time_constants_s": [0.2, 2.0]},
     "drive-lag": {"time_constant_s": 0.002},
+    "eddy-diffusion": {"time_constant_s": 0.003},
     "gain": {"value": 12.0, "offset": 0.5},
     "gpi": {
         "envelope": [1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248],

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 import scipy.signal
+import scipy.special
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
 from hystbench.blocks.creep import Creep
 from hystbench.blocks.drive_lag import DriveLag
+from hystbench.blocks.eddy_diffusion import EddyDiffusion
 from hystbench.blocks.linear import LinearBlock, interpolate
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.transfer_function import TransferFunction
@@ -42,7 +44,28 @@ CASES = {
 
 def test_every_linear_block_has_a_case():
     linear = {k for k, block in registry().items() if issubclass(block, LinearBlock)}
-    assert linear == set(CASES)
+    # Diffusion is no ratio of polynomials; its own test is below.
+    assert linear == {*CASES, "eddy-diffusion"}
+
+
+@pytest.mark.parametrize("geometry", ["slab", "rod"])
+def test_eddy_diffusion_is_the_analytic_response(geometry):
+    tau = 0.003
+    frequency = np.logspace(-1, 3, 40)
+    q = np.sqrt(2j * np.pi * frequency * tau)
+    if geometry == "slab":
+        expected = np.tanh(q) / q
+    else:
+        expected = 2 * scipy.special.iv(1, q) / (q * scipy.special.iv(0, q))
+    block = EddyDiffusion(time_constant_s=tau, geometry=geometry)
+    found = block.frequency_response(frequency)
+    # 24 modes; what the last one holds too much is of the order of the bound.
+    assert np.abs(found - expected).max() < 2e-3
+
+
+def test_eddy_diffusion_settles_at_its_input():
+    block = EddyDiffusion(time_constant_s=0.003)
+    assert block.simulate(np.ones(400), np.ones(400), DT)[-1] == pytest.approx(1.0)
 
 
 def rough_input(n=400):

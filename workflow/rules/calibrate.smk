@@ -1,3 +1,6 @@
+from hystbench.calibration.structures import STRUCTURES
+
+
 # The twin itself. `snakemake calibrate` fits it to the published tables and puts it into
 # the package; it is committed there, so no other target makes it. The step sizes and
 # the zero error that belong to it are printed, for config.yaml.
@@ -9,7 +12,7 @@ if TWIN:
     # What the calibration tried and found, for docs/.
     rule tried:
         input:
-            choice=PACKAGE / "calibration/choice.yaml",
+            choice=PACKAGE / "plants/choice.yaml",
             twin=PACKAGE / "plants/gma.yaml",
             others=sorted(PACKAGE.glob("plants/uncertainty/gma-*.yaml")),
             code=code("hystbench.commands.tried"),
@@ -61,3 +64,52 @@ if TWIN:
             "{{ cp {input.model:q} {params.folder:q}"
             " && rm -f {params.folder:q}/uncertainty/gma-*.yaml"
             " && cp {input.uncertainty:q} {params.folder:q}/uncertainty; }} 2> {log:q}"
+
+    # Structures and readings beside the chosen one; `all` leaves them out for their time.
+    rule structure:
+        input:
+            twin=PACKAGE / "plants/gma.yaml",
+            published=PUBLISHED,
+            code=code("hystbench.commands.structure", *CALIBRATED_FILTERS),
+        output:
+            f"{RESULTS}/structures/{{structure}}.json",
+        log:
+            f"{RESULTS}/logs/structures/{{structure}}.log",
+        params:
+            settings=settings_text(SETTINGS.structure_job),
+        message:
+            "structure {wildcards.structure}"
+        shell:
+            "hystbench structure {wildcards.structure} --model {input.twin:q}"
+            " --settings {params.settings:q} --out {output:q} 2> {log:q}"
+
+    rule structures:
+        input:
+            [f"{RESULTS}/structures/{item.name}.json" for item in STRUCTURES],
+        output:
+            f"{RESULTS}/structures/tried.csv",
+        log:
+            f"{RESULTS}/logs/structures/tried.log",
+        message:
+            "structures that were tried"
+        shell:
+            "hystbench structures {input:q} --out {output:q} 2> {log:q}"
+
+    # After the choice: all structures on the held-out signals, by one rule.
+    rule held_out:
+        input:
+            tried=rules.structures.input,
+            choice=PACKAGE / "plants/choice.yaml",
+            published=PUBLISHED,
+            code=code("hystbench.commands.held_out", *CALIBRATED_FILTERS),
+        output:
+            f"{RESULTS}/structures/held-out.csv",
+        log:
+            f"{RESULTS}/logs/structures/held-out.log",
+        params:
+            settings=settings_text(SETTINGS.held_out_job),
+        message:
+            "structures on the held-out signals"
+        shell:
+            "hystbench held-out {input.tried:q} --choice {input.choice:q}"
+            " --settings {params.settings:q} --out {output:q} 2> {log:q}"

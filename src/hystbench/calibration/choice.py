@@ -9,7 +9,7 @@ from hystbench.files import write_csv
 from hystbench.published import FILTERS
 from hystbench.schema import load_yaml
 
-CHOICE = Path(__file__).with_name("choice.yaml")
+CHOICE = Path(__file__).parents[1] / "plants" / "choice.yaml"
 WHAT = ("structure", "input_zero", "window_start_s")
 """What tells one reading from another."""
 HOW = (

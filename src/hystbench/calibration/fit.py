@@ -37,16 +37,20 @@ class Fit:
     cost: float
 
 
-def to_point(values: dict[str, float]) -> FloatArray:
+def to_point(
+    values: dict[str, float], unknowns: tuple[Unknown, ...] = UNKNOWNS
+) -> FloatArray:
     """Place values in the unit cube of the bounds; logarithms where they are meant."""
-    return np.array([_place(item, values[item.name]) for item in UNKNOWNS])
+    return np.array([_place(item, values[item.name]) for item in unknowns])
 
 
-def to_values(point: FloatArray) -> dict[str, float]:
+def to_values(
+    point: FloatArray, unknowns: tuple[Unknown, ...] = UNKNOWNS
+) -> dict[str, float]:
     """Give the values of a point in the unit cube."""
     return {
         item.name: _value(item, float(p))
-        for item, p in zip(UNKNOWNS, point, strict=True)
+        for item, p in zip(unknowns, point, strict=True)
     }
 
 
@@ -60,16 +64,16 @@ def descend(
     from scipy.optimize import least_squares  # late: takes a second
 
     def residuals(point: FloatArray) -> FloatArray:
-        return objective.residuals(to_values(point), targets)
+        return objective.residuals(to_values(point, objective.unknowns), targets)
 
     def slope(point: FloatArray) -> FloatArray:
         return jacobian(objective, targets, point)
 
-    inside = np.clip(to_point(start), 1e-6, 1 - 1e-6)
+    inside = np.clip(to_point(start, objective.unknowns), 1e-6, 1 - 1e-6)
     result = least_squares(
         residuals, inside, jac=slope, bounds=(0.0, 1.0), max_nfev=evaluations
     )
-    return Fit(to_values(result.x), float(result.cost))
+    return Fit(to_values(result.x, objective.unknowns), float(result.cost))
 
 
 def tune_steps(
@@ -82,7 +86,7 @@ def tune_steps(
     """
     objective.residuals(values, targets)  # measures the records
     best = dict(values)
-    limits = {item.name: (item.low, item.high) for item in UNKNOWNS}
+    limits = {item.name: (item.low, item.high) for item in objective.unknowns}
     for model, own in STEP_NAMES.items():
         cost = np.sum(objective.step_residuals(best, targets, model) ** 2)
         better = True
@@ -109,18 +113,20 @@ def jacobian(
     ndarray, shape (residuals, unknowns)
         A change of 0.002 of the bounds: finer ones see the steps of the play operators.
     """
-    now = objective.residuals(to_values(point), targets)
+    now = objective.residuals(to_values(point, objective.unknowns), targets)
     columns = np.zeros((len(now), len(point)))
     owner = {name: model for model, own in STEP_NAMES.items() for name in own.values()}
     models = list(STEP_NAMES)
     # Steps first: they use the records that the call above has left.
-    order = sorted(range(len(point)), key=lambda k: UNKNOWNS[k].name not in owner)
+    order = sorted(
+        range(len(point)), key=lambda k: objective.unknowns[k].name not in owner
+    )
     for k in order:
-        name = UNKNOWNS[k].name
+        name = objective.unknowns[k].name
         h = 2e-3 if point[k] + 2e-3 <= 1 else -2e-3
         moved = point.copy()
         moved[k] += h
-        values = to_values(moved)
+        values = to_values(moved, objective.unknowns)
         if name in owner:
             rows = np.arange(len(targets)) * len(models) + models.index(owner[name])
             after = objective.step_residuals(values, targets, owner[name])

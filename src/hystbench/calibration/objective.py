@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,7 +11,13 @@ import numpy as np
 from hystbench.adaptive import make_filter
 from hystbench.calibration.constraints import violations
 from hystbench.calibration.targets import Target
-from hystbench.calibration.twin import STEP_NAMES, make_twin, step_sizes
+from hystbench.calibration.twin import (
+    STEP_NAMES,
+    UNKNOWNS,
+    Unknown,
+    make_twin,
+    step_sizes,
+)
 from hystbench.measurement import measure
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -62,12 +68,18 @@ class Objective:
         Seed of the sensor noise, as of ``hystbench measure``.
     window_start_s : float
         Errors before it are left out of the MSE.
+    unknowns : tuple of Unknown
+        What is free.
+    make : callable
+        The twin that values of the unknowns make.
     """
 
     signals: Mapping[str, Signal]
     filters: Mapping[str, Mapping[str, Any]]
     seed: int
     window_start_s: float = 0.0
+    unknowns: tuple[Unknown, ...] = UNKNOWNS
+    make: Callable[[dict[str, float]], Model] = make_twin
     _records: dict[str, Record] = field(default_factory=dict, repr=False)
 
     def record(self, name: str, model: Model, input_zero: float) -> Record:
@@ -87,10 +99,10 @@ class Objective:
 
     def cells(self, values: Mapping[str, float], names: Iterable[str]) -> Cells:
         """Errors of every filter on some signals."""
-        twin, steps = make_twin(dict(values)), step_sizes(dict(values))
+        twin, steps = self.make(dict(values)), step_sizes(dict(values))
         mse, rms = {}, {}
         for name in names:
-            record = self.record(name, twin, values["input zero"])
+            record = self.record(name, twin, values.get("input zero", 0.0))
             self._records[name] = record
             start = round(self.window_start_s / record.dt)
             rms[name] = float(np.sqrt(np.mean(record.y[start:] ** 2)))
@@ -115,7 +127,7 @@ class Objective:
         ]
         out += [
             max(excess, 0.0) / CONSTRAINT_SCALE[name]
-            for name, excess in violations(make_twin(dict(values))).items()
+            for name, excess in violations(self.make(dict(values))).items()
         ]
         return np.array(out)
 
