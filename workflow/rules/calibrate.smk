@@ -1,6 +1,5 @@
 from hystbench.calibration.structures import STRUCTURES
 
-
 # The twin itself. `snakemake calibrate` fits it to the published tables and puts it into
 # the package; it is committed there, so no other target makes it. The step sizes and
 # the zero error that belong to it are printed, for config.yaml.
