@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from dataclasses import astuple, fields
 from pathlib import Path
 
-from hystbench.files import atomic_path
+from hystbench.files import write_csv
 from hystbench.published import FILTERS, Pair, load
 from hystbench.published.consistency import SignalCheck, check
 from hystbench.published.discrepancies import AuditRow, discrepancies
@@ -61,10 +60,5 @@ def audit() -> tuple[AuditRow, ...]:
 
 def write_audit(path: str | Path) -> None:
     """Write the audit as CSV: kind, where, statement, evidence."""
-    with (
-        atomic_path(path) as temporary,
-        temporary.open("w", encoding="utf-8", newline="") as stream,
-    ):
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow([field.name for field in fields(AuditRow)])
-        writer.writerows(astuple(row) for row in audit())
+    columns = [field.name for field in fields(AuditRow)]
+    write_csv(path, columns, (astuple(row) for row in audit()))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from hystbench.compare.claims import (
 )
 from hystbench.compare.claims.claim import Claim, Judgement, judge
 from hystbench.compare.evidence import Evidence
-from hystbench.files import atomic_path
+from hystbench.files import write_csv
 
 _MODULES = (
     operators,
@@ -59,18 +58,12 @@ def judge_all(evidence: Evidence) -> tuple[Judgement, ...]:
 
 def write_claims(judgements: Iterable[Judgement], path: str | Path) -> None:
     """Write the ledger as CSV; see ``COLUMNS``."""
-    with (
-        atomic_path(path) as temporary,
-        temporary.open("w", encoding="utf-8", newline="") as stream,
-    ):
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        for j in judgements:
-            c = j.claim
-            writer.writerow(
-                (
-                    *(c.id, c.claim, c.where, c.kind, c.reading),
-                    *(j.verdict, j.holds_on, j.evidence),
-                    *(j.published_bears_out, j.published_evidence),
-                )
-            )
+    rows = (
+        (
+            *(j.claim.id, j.claim.claim, j.claim.where, j.claim.kind, j.claim.reading),
+            *(j.verdict, j.holds_on, j.evidence),
+            *(j.published_bears_out, j.published_evidence),
+        )
+        for j in judgements
+    )
+    write_csv(path, COLUMNS, rows)
