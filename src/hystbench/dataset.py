@@ -103,9 +103,14 @@ class Dataset:
 
     def use(self, name: str) -> Use:
         """Tell what a record may be used for."""
-        entries = {Path(entry["file"]).stem: entry for entry in self.about["records"]}
-        use: Use = entries[name].get("use", "fit")
+        use: Use = self._entry(name).get("use", "fit")
         return use
+
+    def _entry(self, name: str) -> Mapping[str, Any]:
+        """Give what dataset.yaml says of a record."""
+        entries = {Path(entry["file"]).stem: entry for entry in self.about["records"]}
+        entry: Mapping[str, Any] = entries[name]
+        return entry
 
     def read(self, name: str) -> Record:
         """Read and check one record.
@@ -129,7 +134,18 @@ class Dataset:
         for item, values in zip(channels, (u, y), strict=True):
             _check_moves(file, item, values)
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
-        return Record(name, dt, u, y, given, measured, "measured", self.use(name))
+        entry = self._entry(name)
+        return Record(
+            name,
+            dt,
+            u,
+            y,
+            given,
+            measured,
+            "measured",
+            self.use(name),
+            entry.get("period_samples"),
+        )
 
     @property
     def identification(self) -> str:

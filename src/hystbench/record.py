@@ -49,6 +49,8 @@ class Record:
         Whether a simulation or a device made ``y``.
     use : {"fit", "hold-out"}
         Whether models may be fitted to the record.
+    period_samples : int, optional
+        Samples of a period, where the input repeats itself.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Record:
     output: Channel
     origin: Origin
     use: Use = "fit"
+    period_samples: int | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays: a record is evidence."""
@@ -96,6 +99,7 @@ class Record:
             "output": asdict(self.output),
             "origin": self.origin,
             "use": self.use,
+            "period_samples": self.period_samples,
         }
         with atomic_path(path) as temporary, temporary.open("wb") as stream:
             np.savez(stream, u=self.u, y=self.y, about=np.array(json.dumps(about)))
@@ -124,4 +128,5 @@ def load_record(path: str | Path) -> Record:
         output=Channel(**about["output"]),
         origin=about["origin"],
         use=about["use"],
+        period_samples=about["period_samples"],
     )

@@ -1,0 +1,1 @@
+"""Closing the gap between a simulator and measurements: docs/gap.md."""

@@ -1,0 +1,104 @@
+"""What gap.json holds, as a JSON Schema: the contract with readers and judges."""
+
+from __future__ import annotations
+
+from typing import Any
+
+NUMBER = {"type": "number"}
+OPTIONAL = {"type": ["number", "null"]}
+NAMES = {"type": "array", "items": {"type": "string"}}
+
+
+def _object(required: dict[str, Any], **optional: Any) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "required": list(required),
+        "additionalProperties": False,
+        "properties": required | optional,
+    }
+
+
+VALUE = _object(
+    {
+        "value": {"type": ["number", "string", "array"]},
+        "standard_error": {"type": ["number", "null", "array"]},
+        "unit": {"type": "string"},
+    }
+)
+
+EFFECT = _object(
+    {
+        "name": {"type": "string"},
+        "place": {"type": "string"},
+        "parameters": {"type": "object", "additionalProperties": VALUE},
+        "confidence": {"type": "number", "minimum": 0, "maximum": 1},
+        "cannot_be_told_from": NAMES,
+    }
+)
+
+VIEW = _object(
+    {
+        "view": {
+            "enum": [
+                "frequency",
+                "amplitude",
+                "rate",
+                "branch",
+                "slow-time",
+                "delay",
+                "unexplained",
+                "record",
+            ]
+        },
+        "axis": {"type": "string"},
+        "from": {"type": ["number", "string"]},
+        "to": {"type": ["number", "string"]},
+        "unit": {"type": "string"},
+        "share_of_gap_power": NUMBER,
+        "p_value": {"type": "number", "minimum": 0, "maximum": 1},
+        "sentence": {"type": "string"},
+    }
+)
+
+GAP = _object(
+    {
+        "before": NUMBER,
+        "after": NUMBER,
+        "noise_floor": NUMBER,
+        "floor_method": {"enum": ["repeats", "declared", "upper-bound"]},
+        # The share of the power above the floor that is gone; a range where the floor
+        # is only an upper bound; null where there is no power above it.
+        "explained": {
+            "oneOf": [OPTIONAL, {"type": "array", "items": NUMBER, "minItems": 2}]
+        },
+    },
+    interval={"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2},
+)
+
+RANK = _object(
+    {"name": {"type": "string"}, "place": {"type": "string"}},
+    form={"type": "string"},
+    score=NUMBER,
+    gain=NUMBER,
+    explained=NUMBER,
+    declined={"type": "string"},
+)
+
+SCHEMA = _object(
+    {
+        "dataset": {"type": "string"},
+        "model": {"type": "string"},
+        "unit": {"type": "string"},
+        "verdict": {"enum": ["named", "parameters", "no-gap", "unnamed"]},
+        "reason": {"type": "string"},
+        "effects": {"type": "array", "items": EFFECT},
+        "where": {"type": "array", "items": VIEW},
+        "gap": GAP,
+        "ranking": {"type": "array", "items": RANK},
+        "next_experiment": {"type": ["object", "null"]},
+    },
+    records={"type": "array"},
+    ladder={"type": "array"},
+    black_box={"type": ["object", "null"]},
+    base_parameters={"type": "object"},
+)
