@@ -1,0 +1,23 @@
+"""``backlash``: play in the joint at the output."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class Backlash(Effect):
+    """A play operator behind the mechanics."""
+
+    name = "backlash"
+    place = "mechanics"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer half-widths up to a third of the largest output."""
+        end = len(scene.chain)
+        largest = scene.largest(end)
+        yield self.inserted(
+            scene, end, grids={"half_width": logarithmic(3e-4 * largest, largest / 3, 4)}
+        )

@@ -1,0 +1,186 @@
+"""What an effect must say so that the search can try it.
+
+An effect offers variants: a place in the chain and a form. A variant says how the blocks
+from that place on look for given values of its parameters. Parameters that the output
+depends on in a curved way (a time constant, a limit) are searched on a grid; those that
+scale a contribution (a magnitude) are solved for.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from hystbench.blocks import registry
+from hystbench.blocks.base import Block, WrappingBlock
+from hystbench.gap.scene import Scene
+from hystbench.record import FloatArray, Record
+
+Values = Mapping[str, float]
+
+
+class Declined(Exception):  # noqa: N818  (an answer, not an error)
+    """An effect cannot be judged on these records or in this chain; says why."""
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A signal that the input does not explain, new in every record.
+
+    Parameters
+    ----------
+    effect : str
+    order : int
+        How many shapes of it there are: harmonics, or the degree of a path.
+    columns : callable
+        ``columns(record, values, order)`` gives the shapes, shape (n, k); each record
+        has amplitudes of its own.
+    """
+
+    effect: str
+    order: int
+    columns: Callable[[Record, Values, int], FloatArray]
+
+
+@dataclass(frozen=True)
+class Variant:
+    """An effect at one place in one form.
+
+    Parameters
+    ----------
+    effect, place, form : str
+    start : int
+        The first block of the chain that changes.
+    build : callable
+        Blocks from ``start`` on, from values of all parameters.
+    position : int
+        Where the effect's block stands in what ``build`` gives.
+    grids : dict of str to ndarray
+        Values to search, by parameter.
+    unit : dict of str to float
+        Parameters that are solved for, and a small step of each.
+    positive : tuple of str
+        Of these, the ones that may not be negative.
+    free : tuple of str
+        Parameters of the block that a refit may change.
+    beside : Beside, optional
+        Added to the output of the chain, which stays as it is.
+    charge : float, optional
+        Parameters to be charged, where it is not the number of those searched.
+    """
+
+    effect: str
+    place: str
+    form: str
+    start: int
+    build: Callable[[Values], tuple[Block, ...]]
+    position: int
+    grids: dict[str, FloatArray] = field(default_factory=dict)
+    unit: dict[str, float] = field(default_factory=dict)
+    positive: tuple[str, ...] = ()
+    free: tuple[str, ...] = ()
+    beside: Beside | None = None
+    charge: float | None = None
+
+    @property
+    def freedom(self) -> float:
+        """Number of parameters that are charged."""
+        own = len(self.grids) + len(self.unit)
+        return own if self.charge is None else self.charge
+
+    @property
+    def label(self) -> str:
+        """The effect, with its form where it has several."""
+        return f"{self.effect} ({self.form})" if self.form else self.effect
+
+
+class Effect(ABC):
+    """One physical effect of the vocabulary."""
+
+    name: ClassVar[str]
+    place: ClassVar[str]
+
+    @abstractmethod
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Give the variants that make sense in a chain on its records.
+
+        Raises
+        ------
+        Declined
+            If there is none: why.
+        """
+
+    def inserted(
+        self,
+        scene: Scene,
+        place: int,
+        values: Callable[[Values], dict[str, Any]] = dict,
+        *,
+        form: str = "",
+        grids: dict[str, FloatArray] | None = None,
+        unit: dict[str, float] | None = None,
+        positive: tuple[str, ...] = (),
+        free: tuple[str, ...] = (),
+    ) -> Variant:
+        """Give the variant that puts the effect's block before the block at a place.
+
+        A block that wraps the hysteresis changes the chain from the hysteresis on.
+        """
+        block = registry()[self.name]
+        start = place
+        if issubclass(block, WrappingBlock) and scene.hysteresis is not None:
+            start = scene.hysteresis
+        between, rest = scene.chain[start:place], scene.chain[place:]
+
+        def build(given: Values) -> tuple[Block, ...]:
+            return (*between, block.from_mapping(values(given)), *rest)
+
+        return Variant(
+            self.name,
+            self.place,
+            form,
+            start,
+            build,
+            len(between),
+            grids or {},
+            unit or {},
+            positive,
+            free or (*(grids or {}), *(unit or {})),
+        )
+
+    def added(
+        self,
+        scene: Scene,
+        beside: Beside,
+        *,
+        form: str,
+        charge: float,
+        grids: dict[str, FloatArray] | None = None,
+    ) -> Variant:
+        """Give the variant that adds a signal to the output of the chain."""
+        end = len(scene.chain)
+        return Variant(
+            self.name,
+            self.place,
+            form,
+            end,
+            lambda given: (),
+            0,
+            grids or {},
+            beside=beside,
+            charge=charge,
+        )
+
+    def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
+        """Give the block of a signal beside, from its amplitudes (records, k)."""
+        raise NotImplementedError
+
+
+def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:
+    """Give values from low to high, so many a decade, evenly in their logarithm."""
+    count = max(2, int(np.ceil(np.log10(high / low) * per_decade)) + 1)
+    return np.geomspace(low, high, count)

@@ -1,0 +1,32 @@
+"""``calibration-error``: the sensor's gain and zero are off."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.scene import Scene
+
+
+class CalibrationError(Effect):
+    """A gain and an offset behind the last block."""
+
+    name = "calibration-error"
+    place = "sensor"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer the gain, the offset and both."""
+        end = len(scene.chain)
+        step = {"gain": 1e-3, "offset": 1e-3 * scene.largest(end)}
+        for used in (("gain",), ("offset",), ("gain", "offset")):
+            yield self.inserted(
+                scene,
+                end,
+                # The gain is solved for as what it adds to one.
+                lambda given: {
+                    "gain": 1.0 + given.get("gain", 0.0),
+                    "offset": given.get("offset", 0.0),
+                },
+                form=" and ".join(used),
+                unit={name: step[name] for name in used},
+            )

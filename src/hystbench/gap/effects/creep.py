@@ -1,0 +1,58 @@
+"""``creep``: slow displacement that follows a step."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from hystbench.gap.effects.base import Declined, Effect, Values, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class Creep(Effect):
+    """One slow element, or three a decade and a half apart."""
+
+    name = "creep"
+    place = "mechanics"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer creep behind the hysteresis.
+
+        Time constants go from a fiftieth to the whole of the longest record; a slower
+        element is a ramp that one record cannot tell from drift.
+        """
+        if scene.span < 500 * scene.step:
+            raise Declined("records are too short for anything slow")
+        low, high = scene.span / 200, scene.span
+        for count in (1, 3):
+            unit = {f"magnitude {k + 1}": 1e-3 for k in range(count)}
+            spread = SPREAD ** np.arange(count)
+
+            def values(given: Values, spread: Any = spread) -> dict[str, Any]:
+                return {
+                    "magnitudes": [
+                        given[f"magnitude {k + 1}"] for k in range(len(spread))
+                    ],
+                    "time_constants_s": [
+                        float(x) for x in given["time_constant_s"] * spread
+                    ],
+                }
+
+            yield self.inserted(
+                scene,
+                scene.behind_hysteresis,
+                values,
+                form="one element" if count == 1 else "three elements",
+                grids={
+                    "time_constant_s": logarithmic(low, high / spread[-1] * 1.001, 3)
+                },
+                unit=unit,
+                positive=tuple(unit),
+                free=("magnitudes", "time_constants_s"),
+            )
+
+
+SPREAD = 5.0
+"""Ratio between neighbouring time constants of three elements."""

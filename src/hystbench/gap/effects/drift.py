@@ -1,0 +1,48 @@
+"""``drift``: something slow that the input does not explain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hystbench.gap.effects.base import Beside, Effect, Values, Variant
+from hystbench.gap.scene import Scene
+from hystbench.record import FloatArray, Record
+
+
+class Drift(Effect):
+    """A ramp or a slow path, of its own in every record."""
+
+    name = "drift"
+    place = "sensor"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer one slope for all records, a ramp in each, and a path in each."""
+        end = len(scene.chain)
+        small = 1e-3 * scene.largest(end) / scene.span
+        yield self.inserted(scene, end, form="one slope", unit={"slope": small})
+        for form, order in (("ramp", 1), ("path", PATH_ORDER)):
+            yield self.added(
+                scene,
+                Beside(self.name, order, path),
+                form=form,
+                charge=0.5 * order * len(scene.records),
+            )
+
+    def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, float]:
+        """Give the block's slope: the mean one; a path's is that of its straight part."""
+        return {"slope": float(np.mean(amplitudes[:, 0]))}
+
+
+PATH_ORDER = 4
+
+
+def path(record: Record, given: Values, order: int) -> FloatArray:
+    """Give a ramp, and for a path Legendre polynomials beside it, shape (n, k)."""
+    ramp = record.time[:, None]
+    if order == 1:
+        return ramp
+    x = np.linspace(-1.0, 1.0, len(record))
+    curved = np.polynomial.legendre.legvander(x, order)
+    return np.ascontiguousarray(np.hstack([ramp, curved[:, :1], curved[:, 2:]]))

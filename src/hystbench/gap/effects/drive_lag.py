@@ -1,0 +1,23 @@
+"""``drive-lag``: amplifier or coil, a first-order lag before the material."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class DriveLag(Effect):
+    """A lag before everything else."""
+
+    name = "drive-lag"
+    place = "drive"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer the lag before the first block."""
+        yield self.inserted(
+            scene,
+            0,
+            grids={"time_constant_s": logarithmic(scene.step / 20, scene.span / 20)},
+        )

@@ -1,0 +1,22 @@
+"""``drive-saturation``: the amplifier runs out of current."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.scene import Scene
+
+
+class DriveSaturation(Effect):
+    """A limit below the largest input of the records."""
+
+    name = "drive-saturation"
+    place = "drive"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer limits from 30 to 99.5 % of the largest input."""
+        share = 1.0 - np.geomspace(0.7, 0.005, 12)
+        yield self.inserted(scene, 0, grids={"limit": scene.largest(0) * share})

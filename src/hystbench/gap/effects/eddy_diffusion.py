@@ -1,0 +1,26 @@
+"""``eddy-diffusion``: the field diffuses into a conducting slab or rod."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class EddyDiffusion(Effect):
+    """Magnetic diffusion before the material, in a slab or in a rod."""
+
+    name = "eddy-diffusion"
+    place = "drive"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer both shapes of the cross-section before the first block."""
+        for geometry in ("slab", "rod"):
+            yield self.inserted(
+                scene,
+                0,
+                lambda given, geometry=geometry: {**given, "geometry": geometry},
+                form=geometry,
+                grids={"time_constant_s": logarithmic(scene.step / 5, scene.span / 5)},
+            )

@@ -1,0 +1,27 @@
+"""``friction``: a force that opposes the direction of motion."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class Friction(Effect):
+    """Smooth Coulomb friction behind the mechanics."""
+
+    name = "friction"
+    place = "mechanics"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer it behind the last block, by the velocity at which it saturates."""
+        end = len(scene.chain)
+        yield self.inserted(
+            scene,
+            end,
+            grids={
+                "velocity_scale": logarithmic(1e-4 * scene.fastest, scene.fastest, 2)
+            },
+            unit={"coulomb": 1e-3 * scene.largest(end)},
+        )

@@ -1,0 +1,50 @@
+"""``hysteresis-shape``: the chain has a hysteresis, of the wrong shape."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Declined, Effect, Variant
+from hystbench.gap.scene import Scene
+
+
+class HysteresisShape(Effect):
+    """Play operators, their squares, and powers of the input beside the hysteresis.
+
+    Its parameters are many: it is charged for all the directions that reshaping has.
+    """
+
+    name = "hysteresis-shape"
+    place = "material"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer the correction of the chain's hysteresis."""
+        if scene.hysteresis is None:
+            raise Declined("the chain has no hysteresis whose shape could be wrong")
+        amplitude = scene.largest(scene.hysteresis)
+        thresholds = [amplitude * k / OPERATORS for k in range(1, OPERATORS)]
+        weights = [f"weight {k}" for k in range(1, OPERATORS)]
+        squares = [f"square {k}" for k in range(1, OPERATORS)]
+        powers = [f"power {k}" for k in range(1, POWERS + 1)]
+        size = 1e-3 * scene.largest(scene.behind_hysteresis)
+        unit = (
+            {name: size / amplitude for name in weights}
+            | {name: size / amplitude**2 for name in squares}
+            | {name: size / amplitude**k for k, name in enumerate(powers, start=1)}
+        )
+        yield self.inserted(
+            scene,
+            scene.hysteresis + 1,
+            lambda given: {
+                "thresholds": thresholds,
+                "weights": [given[name] for name in weights],
+                "square_weights": [given[name] for name in squares],
+                "powers": [given[name] for name in powers],
+            },
+            unit=unit,
+            free=("weights", "square_weights", "powers"),
+        )
+
+
+OPERATORS = 10
+POWERS = 5

@@ -1,0 +1,59 @@
+"""``mains-pickup``: a tone and its harmonics that the input does not explain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from hystbench.gap.effects.base import Beside, Declined, Effect, Values, Variant
+from hystbench.gap.scene import Scene
+from hystbench.record import FloatArray, Record
+
+MAINS_HZ = (50.0, 60.0)
+HARMONICS = 3
+"""Of the mains that are looked at: the fundamental, the second and the third."""
+
+
+class MainsPickup(Effect):
+    """A tone near a mains frequency, of one amplitude and a new phase in every record."""
+
+    name = "mains-pickup"
+    place = "sensor"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer the fundamental alone and with harmonics, within 1 % of the mains."""
+        usable = [f for f in MAINS_HZ if f < 0.45 / scene.step and f * scene.span > 3]
+        if not usable:
+            raise Declined("records too short, or sampled too slowly, for the mains")
+        for harmonics in (1, HARMONICS):
+            yield self.added(
+                scene,
+                Beside(self.name, harmonics, tone),
+                form="fundamental" if harmonics == 1 else f"{harmonics} harmonics",
+                grids={
+                    "frequency_hz": np.concatenate(
+                        [f * np.linspace(0.99, 1.01, 5) for f in usable]
+                    )
+                },
+                charge=1 + harmonics * (1 + 0.25 * len(scene.records)),
+            )
+
+    def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
+        """Give the block's parameters; phases are those of the first record."""
+        pairs = amplitudes.reshape(len(amplitudes), -1, 2)
+        size = np.sqrt(np.mean(np.sum(pairs**2, axis=2), axis=0))
+        return {
+            "frequency_hz": given["frequency_hz"],
+            "amplitudes": [float(x) for x in size],
+            "phases": [float(x) for x in np.arctan2(pairs[0, :, 1], pairs[0, :, 0])],
+        }
+
+
+def tone(record: Record, given: Values, harmonics: int) -> FloatArray:
+    """Give sine and cosine of each harmonic over a record, shape (n, 2 harmonics)."""
+    angle = 2 * np.pi * given["frequency_hz"] * record.time
+    order = np.arange(1, harmonics + 1)
+    waves = np.stack([np.sin(np.outer(angle, order)), np.cos(np.outer(angle, order))])
+    return np.ascontiguousarray(waves.transpose(1, 2, 0).reshape(len(record), -1))

@@ -1,0 +1,44 @@
+"""``rate-dependent-hysteresis``: the loop widens with rate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hystbench.gap.effects.base import Declined, Effect, Variant
+from hystbench.gap.scene import Scene
+
+
+class RateDependentHysteresis(Effect):
+    """Thresholds that grow with rate, or a field that the rate takes away."""
+
+    name = "rate-dependent-hysteresis"
+    place = "material"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer both forms around the hysteresis.
+
+        The coefficient is searched by what it does at the fastest rate of the records.
+        """
+        if scene.hysteresis is None:
+            raise Declined("the chain has no hysteresis that could widen")
+        amplitude = scene.largest(scene.hysteresis)
+        sizes = {
+            "growing-thresholds": np.geomspace(0.01, 30, 9),
+            "excess-field": np.geomspace(1e-3, 1, 8) * amplitude,
+        }
+        for form, at_fastest in sizes.items():
+            for exponent in (0.5, 1.0):
+                yield self.inserted(
+                    scene,
+                    scene.hysteresis + 1,
+                    lambda given, form=form, exponent=exponent: {
+                        "exponent": exponent,
+                        **given,
+                        "form": form,
+                    },
+                    form=f"{form}, {exponent:g}",
+                    grids={"coefficient": at_fastest / scene.fastest**exponent},
+                    free=("coefficient", "exponent"),
+                )

@@ -1,0 +1,34 @@
+"""``resonance``: a mechanical mode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class Resonance(Effect):
+    """A mode behind the hysteresis, of less than a third of critical damping.
+
+    A heavily damped fast mode is a lag or a delay to the data: it may not take their
+    place.
+    """
+
+    name = "resonance"
+    place = "mechanics"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer modes between two periods in the longest record and 0.45 of its rate."""
+        low, high = 2 / scene.span, 0.45 / scene.step
+        yield self.inserted(
+            scene,
+            scene.behind_hysteresis,
+            grids={
+                "frequency_hz": logarithmic(low, high, 8),
+                "damping_ratio": np.array([0.02, 0.1, 0.3]),
+            },
+            unit={"participation": 0.01},
+        )

@@ -1,0 +1,23 @@
+"""``saturation``: the material gives less the more it gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class Saturation(Effect):
+    """An odd, soft limit behind the hysteresis."""
+
+    name = "saturation"
+    place = "material"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer levels from half to thirty times the largest signal there."""
+        place = scene.behind_hysteresis
+        largest = scene.largest(place)
+        yield self.inserted(
+            scene, place, grids={"level": logarithmic(0.5 * largest, 30 * largest, 6)}
+        )

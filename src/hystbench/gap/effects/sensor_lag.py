@@ -1,0 +1,23 @@
+"""``sensor-lag``: the sensor is late."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.scene import Scene
+
+
+class SensorLag(Effect):
+    """A first-order lag behind the last block."""
+
+    name = "sensor-lag"
+    place = "sensor"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer the lag behind the last block."""
+        yield self.inserted(
+            scene,
+            len(scene.chain),
+            grids={"time_constant_s": logarithmic(scene.step / 20, scene.span / 20)},
+        )

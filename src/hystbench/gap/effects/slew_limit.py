@@ -1,0 +1,23 @@
+"""``slew-limit``: the amplifier follows no faster than a rate."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.scene import Scene
+
+
+class SlewLimit(Effect):
+    """A rate below the fastest of the records' inputs."""
+
+    name = "slew-limit"
+    place = "drive"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Offer rates from 2 to 98 % of the fastest."""
+        yield self.inserted(
+            scene, 0, grids={"rate": scene.fastest * np.geomspace(0.02, 0.98, 14)}
+        )

@@ -1,0 +1,183 @@
+"""Fitting: one variant of an effect beside a model, and a model as a whole."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.gap.effects.base import Values, Variant
+from hystbench.gap.score import Score
+from hystbench.gap.state import State, beside_columns, with_effect
+from hystbench.record import FloatArray
+
+HALVINGS = 4
+"""Of the grid's step around its best value."""
+ROUNDS = 5
+"""Of Gauss and Newton in a refit."""
+ENOUGH = 0.05
+"""A round that lowers the score by less is the last."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A variant with the values that score least.
+
+    Parameters
+    ----------
+    variant : Variant
+    values : dict of str to float
+    score : float
+        Of the model with the effect, what the model may re-tune re-tuned to first
+        order.
+    """
+
+    variant: Variant
+    values: dict[str, float]
+    score: float
+
+
+class Attempt:
+    """One variant on one model, evaluated at values of its searched parameters."""
+
+    def __init__(self, state: State, variant: Variant, score: Score) -> None:
+        self.state, self.variant, self.score = state, variant, score
+        self.freedom = state.freedom + variant.freedom
+        self.known: dict[tuple[float, ...], Trial] = {}
+        self.more = np.hstack([state.tangents, state.beside_columns])
+        stiffness = np.zeros(self.more.shape[1])
+        stiffness[: len(state.free)] = state.stiffness
+        self.stiffness = stiffness
+
+    def at(self, point: tuple[float, ...]) -> Trial:
+        """Score the variant at a point of the grid."""
+        if point not in self.known:
+            self.known[point] = self._at(point)
+        return self.known[point]
+
+    def _at(self, point: tuple[float, ...]) -> Trial:
+        variant, state = self.variant, self.state
+        values = dict(zip(variant.grids, point, strict=True))
+        residual = state.residual
+        if variant.beside is not None:
+            own = beside_columns(state, variant.beside, values)
+        elif variant.unit:
+            own, residual = self._scaled(values)
+        else:
+            tail = variant.build(values)
+            residual = state.measured - state.sample.take(
+                state.scene.tail(variant.start, tail)
+            )
+            own = np.zeros((len(residual), 0))
+        count = len(variant.unit)
+        columns = np.hstack([own, self.more])
+        stiffness = np.concatenate([np.zeros(own.shape[1]), self.stiffness])
+        positive = [
+            k for k, name in enumerate(variant.unit) if name in variant.positive
+        ]
+        found = self.score.amplitudes(
+            residual, columns, self.freedom, stiffness, positive
+        )
+        amplitudes = found.values[:count]
+        values |= {
+            name: float(x) for name, x in zip(variant.unit, amplitudes, strict=True)
+        }
+        return Trial(variant, values, found.score)
+
+    def _scaled(self, values: Values) -> tuple[FloatArray, FloatArray]:
+        """How the output changes with each parameter that is solved for."""
+        variant, state = self.variant, self.state
+        take, tail = state.sample.take, state.scene.tail
+        zero = dict.fromkeys(variant.unit, 0.0)
+        now = take(tail(variant.start, variant.build({**values, **zero})))
+        columns = []
+        for name, step in variant.unit.items():
+            given = {**values, **zero, name: step}
+            after = take(tail(variant.start, variant.build(given)))
+            columns.append((after - now) / step)
+        return np.column_stack(columns), state.measured - now
+
+
+def coarse(attempt: Attempt) -> Trial:
+    """Score a variant over its grid."""
+    axes = attempt.variant.grids.values()
+    trials = []
+    for point in itertools.product(*(axis.tolist() for axis in axes)):
+        try:
+            trials.append(attempt.at(tuple(point)))
+        except InputError:
+            continue  # values that the block itself refuses are no candidates
+    return min(trials, key=lambda trial: trial.score)
+
+
+def fine(attempt: Attempt, start: Trial) -> Trial:
+    """Halve the grid's step around its best point, one parameter at a time."""
+    grids = attempt.variant.grids
+    best = start
+    steps = {
+        name: np.log(axis[1] / axis[0]) if len(axis) > 1 else 0.0
+        for name, axis in grids.items()
+    }
+    for _ in range(HALVINGS):
+        steps = {name: step / 2 for name, step in steps.items()}
+        for name, step in steps.items():
+            for sign in (1, -1):
+                here = {key: best.values[key] for key in grids}
+                here[name] *= float(np.exp(sign * step))
+                try:
+                    trial = attempt.at(tuple(here.values()))
+                except InputError:
+                    continue
+                if trial.score < best.score:
+                    best = trial
+                    break
+    return best
+
+
+def score_of(state: State, score: Score) -> float:
+    """Score a model as it is; amplitudes of what lies beside are solved for."""
+    return score.amplitudes(
+        state.residual, state.beside_columns, state.freedom
+    ).score
+
+
+def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, float]:
+    """Refit all free numbers together (Gauss and Newton on the score).
+
+    Returns
+    -------
+    state : State
+        Never worse than the one given.
+    score : float
+    """
+    best = score_of(state, score)
+    for _ in range(rounds if state.free else 0):
+        columns = np.hstack([state.tangents, state.beside_columns])
+        stiffness = np.zeros(columns.shape[1])
+        stiffness[: len(state.free)] = state.stiffness
+        found = score.amplitudes(
+            state.residual, columns, state.freedom, stiffness
+        ).values
+        change = dict(enumerate(found[: len(state.free)].tolist()))
+        before = best
+        for shrink in (1.0, 0.5, 0.2, 0.05):
+            try:
+                moved = state.with_chain(
+                    state.moved({k: shrink * x for k, x in change.items()})
+                )
+                value = score_of(moved, score)
+            except InputError:
+                continue  # out of what the blocks accept together: go less far
+            if value < best:
+                state, best = moved, value
+                break
+        if before - best < ENOUGH:
+            break
+    return state, best
+
+
+def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
+    """Add an effect as a trial found it and refit everything together."""
+    return refit(with_effect(state, trial.variant, trial.values), score)

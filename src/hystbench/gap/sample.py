@@ -1,0 +1,72 @@
+"""Which samples are scored: about a thousand of each record.
+
+Model error is not white, so more samples of a record say little more; fewer make a
+refit cheap. Simulation always runs over the whole record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.record import FloatArray, Record
+
+SAMPLES = 1000
+"""Scored samples of a record."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Positions of the scored samples in each record.
+
+    Parameters
+    ----------
+    positions : tuple of ndarray of int
+        By record, increasing.
+    """
+
+    positions: tuple[NDArray[np.intp], ...]
+
+    @classmethod
+    def of(cls, records: Sequence[Record], count: int = SAMPLES) -> Sample:
+        """Take one sample, at random, of each of ``count`` equal stretches."""
+        rng = np.random.default_rng(0)
+        positions = []
+        for record in records:
+            n = len(record)
+            edges = np.linspace(0, n, min(count, n) + 1).astype(np.intp)
+            place = rng.random(len(edges) - 1)
+            positions.append(
+                edges[:-1] + (place * np.diff(edges)).astype(np.intp)
+            )
+        return cls(tuple(positions))
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """Where each record's samples lie in a vector of all of them."""
+        ends = np.cumsum([0, *map(len, self.positions)])
+        return tuple(slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
+
+    def __len__(self) -> int:
+        """Count the scored samples of all records."""
+        return sum(map(len, self.positions))
+
+    def take(self, signals: Sequence[FloatArray]) -> FloatArray:
+        """Take the scored samples of one signal a record.
+
+        Parameters
+        ----------
+        signals : sequence of ndarray
+            By record, shape (n,) or (n, k).
+
+        Returns
+        -------
+        ndarray, shape (scored samples,) or (scored samples, k)
+        """
+        return np.concatenate(
+            [x[p] for x, p in zip(signals, self.positions, strict=True)]
+        )

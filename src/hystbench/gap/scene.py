@@ -1,0 +1,112 @@
+"""A chain of blocks on the fit records: signals before every block, kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from hystbench.blocks.base import Block, Wrapped, WrappingBlock
+from hystbench.record import FloatArray, Record
+
+Signals = tuple[FloatArray, ...]
+"""One signal a record."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A chain on records; what is computed once is kept.
+
+    Parameters
+    ----------
+    chain : tuple of Block
+    records : tuple of Record
+    """
+
+    chain: tuple[Block, ...]
+    records: tuple[Record, ...]
+
+    @cached_property
+    def before(self) -> tuple[Signals, ...]:
+        """Signals before each block, and behind the last: shape (blocks + 1, records).
+
+        Before a wrapping block stands the output of what it wraps, without it.
+        """
+        stages: list[Signals] = [tuple(record.u for record in self.records)]
+        for k in range(len(self.chain)):
+            start = k
+            while isinstance(self.chain[start], WrappingBlock):
+                start -= 1
+            stages.append(self.run(self.chain[start : k + 1], stages[start]))
+        return tuple(stages)
+
+    @property
+    def output(self) -> Signals:
+        """The chain's output."""
+        return self.before[-1]
+
+    def tail(self, start: int, blocks: Sequence[Block]) -> Signals:
+        """Simulate other blocks from ``start`` on, in place of those in the chain."""
+        return self.run(blocks, self.before[start])
+
+    def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
+        """Send signals through blocks, from rest."""
+        steps = joined(blocks)
+        out = []
+        for z, record in zip(signals, self.records, strict=True):
+            for step in steps:
+                z = step.simulate(z, record.u, record.dt)
+            out.append(z)
+        return tuple(out)
+
+    @cached_property
+    def hysteresis(self) -> int | None:
+        """Place of the hysteresis in the chain, if it has one."""
+        for k, block in enumerate(self.chain):
+            if block.hysteretic:
+                return k
+        return None
+
+    @cached_property
+    def behind_hysteresis(self) -> int:
+        """Place behind the hysteresis and what wraps it; 0 without a hysteresis."""
+        if self.hysteresis is None:
+            return 0
+        k = self.hysteresis + 1
+        while k < len(self.chain) and isinstance(self.chain[k], WrappingBlock):
+            k += 1
+        return k
+
+    @property
+    def step(self) -> float:
+        """Shortest sampling interval, in seconds."""
+        return min(record.dt for record in self.records)
+
+    @property
+    def span(self) -> float:
+        """Longest record, in seconds."""
+        return max(record.dt * len(record) for record in self.records)
+
+    def largest(self, place: int) -> float:
+        """Largest size of the signal before a block."""
+        return float(max(np.abs(z).max() for z in self.before[place]))
+
+    @cached_property
+    def fastest(self) -> float:
+        """Largest rate of the input, in its unit a second."""
+        return float(
+            max(np.abs(np.diff(record.u)).max() / record.dt for record in self.records)
+        )
+
+
+def joined(blocks: Sequence[Block]) -> list[Block | Wrapped]:
+    """Join hysteresis and what wraps it to one step."""
+    steps: list[Block | Wrapped] = []
+    for block in blocks:
+        if isinstance(block, WrappingBlock):
+            steps[-1] = Wrapped(steps[-1], block)
+        else:
+            steps.append(block)
+    return steps

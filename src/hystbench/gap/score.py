@@ -1,0 +1,163 @@
+"""One number for how much of a gap is left, and the amplitudes that make it least.
+
+The residual of a candidate is split, by an orthonormal basis of what a wrong shape of
+the hysteresis could do, into ``a`` (inside, ``d`` directions) and ``c`` (the rest). With
+``s_i`` the mean square of ``c`` in record ``i``, ``f`` the noise floor's mean square and
+``p`` the number of fitted parameters the score is
+
+    sum_i W log(max(s_i, f)) + d log(max(|a|^2 / d, f)) + P p
+
+``W`` is some fifty: a record counts as that many independent samples. So reshaping the
+hysteresis is allowed and is charged, and both terms saturate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.gap.sample import Sample
+from hystbench.record import FloatArray
+
+RECORD_WEIGHT = 50.0
+"""Independent samples that a record counts as."""
+LEAST_WEIGHT = 300.0
+"""Of all records together, where there are few."""
+PARAMETER = 4.0
+"""Charge for a fitted parameter."""
+ROUNDS = 4
+"""Of reweighting: amplitudes change little after."""
+
+
+class Amplitudes(NamedTuple):
+    """Amplitudes of linear terms, and the score with them."""
+
+    values: FloatArray  # shape (k,)
+    score: float
+
+
+@dataclass(frozen=True)
+class Score:
+    """What is held fixed while candidates are scored.
+
+    Parameters
+    ----------
+    sample : Sample
+    directions : ndarray, shape (scored samples, d)
+        Orthonormal: what a wrong shape of the hysteresis could do.
+    floor : float
+        Mean square of what no model explains, in squared output units.
+    """
+
+    sample: Sample
+    directions: FloatArray
+    floor: float
+
+    @property
+    def weight(self) -> float:
+        """Independent samples that each record counts as."""
+        return max(RECORD_WEIGHT, LEAST_WEIGHT / len(self.sample.positions))
+
+    def split(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Split signals into the rest and the amplitudes of the directions.
+
+        Parameters
+        ----------
+        values : ndarray, shape (scored samples,) or (scored samples, k)
+
+        Returns
+        -------
+        rest : ndarray, of the same shape
+        inside : ndarray, shape (d,) or (d, k)
+        """
+        inside = self.directions.T @ values
+        return values - self.directions @ inside, inside
+
+    def of(self, residual: FloatArray, freedom: float = 0.0) -> float:
+        """Score a residual, shape (scored samples,), of that many parameters."""
+        rest, inside = self.split(residual)
+        squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
+        return self._value(np.array(squares), float(inside @ inside), freedom)
+
+    def free(self, residual: FloatArray, freedom: float = 0.0) -> float:
+        """Score a residual when its part inside the directions is fitted away."""
+        rest, _ = self.split(residual)
+        squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
+        return self._value(np.array(squares), 0.0, freedom)
+
+    def amplitudes(
+        self,
+        residual: FloatArray,
+        columns: FloatArray,
+        freedom: float = 0.0,
+        stiffness: FloatArray | None = None,
+        positive: Sequence[int] = (),
+    ) -> Amplitudes:
+        """Find amplitudes of columns whose sum, taken off the residual, scores least.
+
+        Reweighted least squares: the score is a sum of logarithms of squares, so each
+        record counts by the inverse of its mean square.
+
+        Parameters
+        ----------
+        residual : ndarray, shape (scored samples,)
+        columns : ndarray, shape (scored samples, k)
+        freedom : float
+            Fitted parameters to be charged.
+        stiffness : ndarray, shape (k,), optional
+            Charge for the square of each amplitude (a tolerance's inverse square).
+        positive : sequence of int
+            Columns whose amplitude may not be negative.
+        """
+        k = columns.shape[1]
+        if k == 0:
+            return Amplitudes(np.zeros(0), self.of(residual, freedom))
+        scale = np.sqrt(np.mean(columns**2, axis=0))
+        scale[scale == 0] = 1.0
+        rest, inside = self.split(np.column_stack([residual, columns / scale]))
+        parts = [rest[part].T @ rest[part] for part in self.sample.slices]
+        counts = np.array([part.stop - part.start for part in self.sample.slices])
+        within = inside.T @ inside
+        charge = np.zeros(k) if stiffness is None else stiffness / scale**2
+        grams = np.array(parts)
+        beta = np.zeros(k)
+        best = (np.inf, beta)
+        for _ in range(ROUNDS + 1):
+            full = np.concatenate([[1.0], -beta])
+            squares = np.maximum(full @ grams @ full, 0.0) / counts
+            power = max(float(full @ within @ full), 0.0)
+            value = self._value(squares, power, freedom) + float(charge @ beta**2)
+            if value < best[0]:
+                best = (value, beta)
+            weights = self.weight / (counts * np.maximum(squares, self.floor))
+            d = max(self.directions.shape[1], 1)
+            inner = d / max(power, d * self.floor)
+            normal = np.tensordot(weights, grams, 1) + inner * within
+            matrix = normal[1:, 1:] + np.diag(charge + 1e-12 * np.diag(normal)[1:])
+            beta = _solve(matrix, normal[1:, 0], positive)
+        return Amplitudes(best[1] / scale, best[0])
+
+    def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
+        d = self.directions.shape[1]
+        outside = self.weight * float(np.sum(np.log(np.maximum(squares, self.floor))))
+        inside = d * np.log(max(power / d, self.floor)) if d else 0.0
+        return outside + float(inside) + PARAMETER * freedom
+
+
+def _solve(matrix: FloatArray, vector: FloatArray, positive: Sequence[int]) -> FloatArray:
+    """Solve normal equations; amplitudes that must not be negative are set to zero."""
+    active = np.ones(len(vector), dtype=bool)
+    for _ in range(len(vector) + 1):
+        beta = np.zeros(len(vector))
+        keep = np.flatnonzero(active)
+        beta[keep] = np.linalg.lstsq(
+            matrix[np.ix_(keep, keep)], vector[keep], rcond=1e-13
+        )[0]
+        negative = [k for k in positive if active[k] and beta[k] < 0]
+        if not negative:
+            return beta
+        active[min(negative, key=lambda k: beta[k])] = False
+    return beta

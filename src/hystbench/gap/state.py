@@ -1,0 +1,222 @@
+"""A model as far as it has come: its chain, what may be re-tuned, what lies beside."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.gap.effects.base import Beside, Values, Variant
+from hystbench.gap.sample import Sample
+from hystbench.gap.scene import Scene, Signals
+from hystbench.record import FloatArray, Record
+
+
+class Free(NamedTuple):
+    """A number that a refit may change."""
+
+    block: int
+    parameter: str
+    element: int | None = None
+    tolerance: float | None = None
+    """Expected size of the change; None where nothing is known."""
+
+
+class Added(NamedTuple):
+    """An effect that was added."""
+
+    effect: str
+    place: str
+    form: str
+    block: int | None
+    """Place of its block in the chain; None for a signal beside it."""
+    values: dict[str, float]
+    charge: float
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A chain, the effects added to it, and what a refit may change.
+
+    Parameters
+    ----------
+    chain : tuple of Block
+    records : tuple of Record
+    sample : Sample
+    free : tuple of Free
+    added : tuple of Added
+    beside : tuple of (Beside, values)
+        Signals that the input does not explain.
+    """
+
+    chain: tuple[Block, ...]
+    records: tuple[Record, ...]
+    sample: Sample
+    free: tuple[Free, ...] = ()
+    added: tuple[Added, ...] = ()
+    beside: tuple[tuple[Beside, Values], ...] = field(default=())
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The chain on the records."""
+        return Scene(self.chain, self.records)
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """Scored samples of measured minus simulated, without what lies beside."""
+        return self.measured - self.sample.take(self.scene.output)
+
+    @cached_property
+    def measured(self) -> FloatArray:
+        """Scored samples of the measured output."""
+        return self.sample.take([record.y for record in self.records])
+
+    @property
+    def freedom(self) -> float:
+        """Parameters that are charged."""
+        return sum(item.charge for item in self.added)
+
+    @cached_property
+    def tangents(self) -> FloatArray:
+        """How the output changes with each free number, shape (scored samples, k)."""
+        columns = [
+            (self.sample.take(scene_of(self, {k: step})) - self._simulated) / step
+            for k, step in enumerate(self.steps)
+        ]
+        return _stack(columns, len(self.sample))
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Charge for the square of a change of each free number."""
+        return np.array(
+            [0.0 if f.tolerance is None else f.tolerance**-2.0 for f in self.free]
+        )
+
+    @cached_property
+    def beside_columns(self) -> FloatArray:
+        """Scored samples of the shapes beside, of every record on its own."""
+        return _stack(
+            [beside_columns(self, *item) for item in self.beside], len(self.sample)
+        )
+
+    @cached_property
+    def steps(self) -> tuple[float, ...]:
+        """A small change of each free number, inside its bounds."""
+        return tuple(self._step(free) for free in self.free)
+
+    def value(self, free: Free) -> float:
+        """Give a free number."""
+        value = getattr(self.chain[free.block], free.parameter)
+        return float(value if free.element is None else value[free.element])
+
+    def moved(self, changes: dict[int, float]) -> tuple[Block, ...]:
+        """Give the chain with some free numbers changed by so much, inside bounds."""
+        chain = list(self.chain)
+        for k, change in changes.items():
+            free = self.free[k]
+            block = chain[free.block]
+            about = block.parameters()[free.parameter]
+            value = float(np.clip(self.value(free) + change, about.low, about.high))
+            new: float | tuple[float, ...] = value
+            if free.element is not None:
+                own = list(getattr(block, free.parameter))
+                own[free.element] = value
+                new = tuple(own)
+            chain[free.block] = replace(block, **{free.parameter: new})  # type: ignore[arg-type]
+        return tuple(chain)
+
+    def with_chain(self, chain: tuple[Block, ...]) -> State:
+        """Give the state with other values in its chain."""
+        return replace(self, chain=chain)
+
+    @cached_property
+    def _simulated(self) -> FloatArray:
+        return self.measured - self.residual
+
+    def _step(self, free: Free) -> float:
+        value = self.value(free)
+        about = self.chain[free.block].parameters()[free.parameter]
+        size = 1e-3 * abs(value)
+        if size == 0:
+            size = 1e-6
+        return -size if value + size > about.high else size
+
+
+def scene_of(state: State, changes: dict[int, float]) -> Signals:
+    """Simulate the chain with some free numbers changed."""
+    start = min(state.free[k].block for k in changes)
+    while start and hasattr(state.chain[start], "wrap"):
+        start -= 1
+    return state.scene.tail(start, state.moved(changes)[start:])
+
+
+def beside_columns(state: State, beside: Beside, values: Values) -> FloatArray:
+    """Scored samples of the shapes beside, one block of columns a record."""
+    sample = state.sample
+    parts = []
+    for record, where, positions in zip(
+        state.records, sample.slices, sample.positions, strict=True
+    ):
+        own = beside.columns(record, values, beside.order)[positions]
+        full = np.zeros((len(sample), own.shape[1]))
+        full[where] = own
+        parts.append(full)
+    return np.hstack(parts)
+
+
+def numbers_of(block: Block, position: int, names: Sequence[str]) -> Iterator[Free]:
+    """Give the numbers of a block's parameters as free ones."""
+    for name in names:
+        value = getattr(block, name)
+        if isinstance(value, tuple):
+            for element in range(len(value)):
+                yield Free(position, name, element)
+        else:
+            yield Free(position, name)
+
+
+def with_effect(state: State, variant: Variant, values: Values) -> State:
+    """Add an effect to the chain, or beside it."""
+    note = dict(values)
+    own = (variant.effect, variant.place, variant.form)
+    if variant.beside is not None:
+        added = Added(*own, None, note, variant.freedom)
+        return replace(
+            state,
+            added=(*state.added, added),
+            beside=(*state.beside, (variant.beside, note)),
+        )
+    tail = variant.build(values)
+    chain = (*state.chain[: variant.start], *tail)
+    position = variant.start + variant.position
+    longer = len(chain) - len(state.chain)
+
+    def shifted(block: int) -> int:
+        return block + longer if block >= position else block
+
+    kept = [
+        free._replace(block=shifted(free.block))
+        for free in state.free
+        if longer or free.block != position
+    ]
+    added = Added(*own, position, note, variant.freedom)
+    return replace(
+        state,
+        chain=chain,
+        free=(*kept, *numbers_of(chain[position], position, variant.free)),
+        added=(
+            *(
+                item if item.block is None else item._replace(block=shifted(item.block))
+                for item in state.added
+            ),
+            added,
+        ),
+    )
+
+
+def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:
+    return np.column_stack(columns) if columns else np.zeros((rows, 0))
