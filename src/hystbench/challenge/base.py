@@ -1,0 +1,94 @@
+"""The base model that a solver gets: the plant's own loop, or the best GPI there is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.blocks.resonance import Resonance
+from hystbench.challenge.excitation import Excitation
+from hystbench.challenge.plant.actuator import Mode
+from hystbench.challenge.plant.hysteresis import GeneralizedPlays, Hysteresis
+from hystbench.identification import identify
+from hystbench.model import Model
+from hystbench.record import Channel, FloatArray
+
+INPUT, OUTPUT = Channel("current", "A"), Channel("displacement", "um")
+#: Order of an identified base, and what its search may cost.
+ORDER, ITERATIONS, STARTS = 20, 60, 2
+#: Records that a quasi-static GPI is identified from, in either campaign.
+QUASI_STATIC = ("slow-loop", "minor-loops", "triangle", "ringing", "biased-tones")
+
+
+def base_model(
+    loop: Hysteresis,
+    mode: Mode | None,
+    records: tuple[Excitation, ...],
+    linear: bool,
+) -> Model:
+    """Make the model that is handed over.
+
+    Parameters
+    ----------
+    loop : Hysteresis
+        The plant's hysteresis. Plays are handed over as they are; of another family
+        the best quasi-static GPI is identified from its slow loop and minor loops.
+    mode : Mode, optional
+        The mode that the base knows.
+    records : tuple of Excitation
+    linear : bool
+        Whether the base has a gain in the place of hysteresis.
+    """
+    u = quasi_static(records)
+    block: Block
+    if linear:
+        value = slope(loop, u)
+        block = Gain(value=value, offset=0.0)
+    elif isinstance(loop, GeneralizedPlays):
+        block = GeneralizedPrandtlIshlinskii(
+            envelope=loop.envelope,
+            thresholds=tuple(map(float, loop.thresholds)),
+            weights=tuple(map(float, loop.weights)),
+        )
+    else:
+        block = _identified(u, loop.respond(u))
+    chain = [block]
+    if mode is not None:
+        chain.append(Resonance(hold="band-limited", **mode.parameters()))
+    return Model("base", INPUT, OUTPUT, tuple(chain))
+
+
+def quasi_static(records: tuple[Excitation, ...]) -> FloatArray:
+    """Commands of the slow records, one after the other.
+
+    A loop does not depend on the rate, so the way from the last sample of one to the
+    first of the next needs no samples between.
+    """
+    chosen = [item.sampled() for item in records if item.name in QUASI_STATIC]
+    return np.concatenate(chosen)
+
+
+def slope(loop: Hysteresis, u: FloatArray) -> float:
+    """Gain of the straight line nearest to a loop, in um/A."""
+    y = loop.respond(u)
+    return float(u @ y / (u @ u))
+
+
+def _identified(u: FloatArray, y: FloatArray) -> GeneralizedPrandtlIshlinskii:
+    found = identify(
+        u,
+        y,
+        ORDER,
+        offset=False,
+        nonnegative=True,
+        start="rest",
+        starts=STARTS,
+        max_iterations=ITERATIONS,
+    )
+    return GeneralizedPrandtlIshlinskii(
+        envelope=tuple(found.envelope.to_dict().values()),
+        thresholds=tuple(map(float, found.thresholds)),
+        weights=tuple(map(float, found.weights)),
+    )

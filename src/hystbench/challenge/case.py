@@ -1,0 +1,343 @@
+"""One case: a plant, its records, the model that is handed over, and the truth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hystbench.challenge.base import INPUT, OUTPUT, base_model, quasi_static, slope
+from hystbench.challenge.excitation import CAMPAIGNS, Excitation
+from hystbench.challenge.plant.actuator import Actuator, Mode
+from hystbench.challenge.plant.effects import KINDS
+from hystbench.challenge.plant.hysteresis import Hysteresis, draw
+from hystbench.challenge.plant.kind import Effect
+from hystbench.challenge.plant.kind import draw as draw_effect
+from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.where import where
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+
+#: An effect's difference is to be within these shares of the output's rms on the fit
+#: records; outside, its size is changed, within what physics allows.
+SMALLEST_EFFECT, LARGEST_EFFECT = 0.012, 0.12
+RESIZINGS = 6
+#: Smallest step of what is written down, in um: a 16-bit converter over 65 um.
+RESOLUTION = 0.001
+#: Where nothing is hidden the noise is drawn from this interval, in um.
+PLAIN_NOISE = (0.01, 0.1)
+#: Streams of random numbers.
+PLANT, EFFECTS, EXCITATION, NOISE = 1, 2, 3, 4
+#: Effects that take the hysteresis itself away from the base.
+LOOPS = ("hysteresis", "hysteresis-shape")
+
+
+@dataclass(frozen=True)
+class Case:
+    """What a solver gets, and beside it what only the judge may see.
+
+    Parameters
+    ----------
+    records : tuple of Record
+    period_samples : mapping of str to int
+        Of the periodic records, by name.
+    model : Model
+        The base model.
+    truth : mapping
+        As docs/challenge.md tells.
+    """
+
+    records: tuple[Record, ...]
+    period_samples: dict[str, int]
+    model: Model
+    truth: dict[str, Any] = field(repr=False)
+
+
+@dataclass(frozen=True)
+class Plant:
+    """All that the seed draws of a plant before any effect."""
+
+    loop: Hysteresis
+    hidden_loop: Hysteresis
+    gain: float
+    mode: Mode | None
+    seed: int
+
+    def actuator(self, effects: tuple[Effect, ...]) -> Actuator:
+        """Build it with some of its effects."""
+        names = [effect.kind.name for effect in effects]
+        loop: Hysteresis | float = self.loop
+        if self.gain:
+            loop = self.loop if "hysteresis" in names else self.gain
+        elif "hysteresis-shape" in names:
+            loop = self.hidden_loop
+        return Actuator(loop, self.mode, effects, self.seed)
+
+
+def make_case(spec: CaseSpec) -> Case:
+    """Make a case; the same spec gives the same numbers.
+
+    Parameters
+    ----------
+    spec : CaseSpec
+
+    Returns
+    -------
+    Case
+    """
+    excitations = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
+    fit = tuple(item for item in excitations if item.use == "fit")
+    plant, effects = _draw(spec, excitations)
+    bare = Readings(plant.actuator(()), excitations)
+    size = _rms(bare.of(fit))
+    effects, resized = _resized(plant, effects, bare, fit, size)
+    full = Readings(plant.actuator(effects), excitations)
+    without = [
+        bare
+        if len(effects) == 1
+        else Readings(plant.actuator((*effects[:k], *effects[k + 1 :])), excitations)
+        for k in range(len(effects))
+    ]
+    sizes = [_rms(full.minus(item, fit)) for item in without]
+    random = spec.random(NOISE)
+    noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
+    if effects:
+        noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
+    records = tuple(
+        _record(full, number, noise, random) for number in range(len(excitations))
+    )
+    linear = "hysteresis" in spec.effects
+    model = base_model(plant.loop, plant.mode, excitations, linear)
+    truth = _told(spec, plant, noise, size)
+    fit_records = [record for record in records if record.use == "fit"]
+    for k, effect in enumerate(effects):
+        difference = full.minus(without[k], fit)
+        truth["effects"].append(
+            _effect_told(effect)
+            | {
+                "resized": resized[k],
+                "rms_um": sizes[k],
+                "ratio_db": _decibel(sizes[k], noise),
+                "ratio_retuned_db": _decibel(
+                    _retuned(difference, without[k].of(fit)), noise
+                ),
+                "where": where(
+                    effect.kind, fit_records, difference, without[k].of(fit)
+                ),
+            }
+        )
+    gap = full.minus(bare, fit)
+    truth["ratio_all_db"] = _decibel(_rms(gap), noise) if effects else None
+    truth["ratio_all_retuned_db"] = _decibel(_retuned(gap, bare.of(fit)), noise)
+    truth["hold_out"] = _hold_out(full, bare, excitations, model)
+    truth["base_error_fit_rms_um"] = _base_error(bare, fit, model)
+    periods = {
+        item.name: item.period_samples
+        for item in excitations
+        if item.period_samples is not None
+    }
+    return Case(records, periods, model, truth)
+
+
+class Readings:
+    """Noise-free readings of a plant on all records.
+
+    Parameters
+    ----------
+    actuator : Actuator
+    excitations : tuple of Excitation
+        All records; a record's number is its place here.
+    """
+
+    def __init__(self, actuator: Actuator, excitations: tuple[Excitation, ...]):
+        self.actuator, self.excitations = actuator, excitations
+        self._read: dict[str, FloatArray] = {}
+
+    def raw(self, item: Excitation) -> FloatArray:
+        """Reading before the converter, computed once."""
+        if item.name not in self._read:
+            number = self.excitations.index(item)
+            self._read[item.name] = self.actuator.read(
+                item, item.dt, item.samples, number
+            )
+        return self._read[item.name]
+
+    def of(self, chosen: tuple[Excitation, ...]) -> list[FloatArray]:
+        """Readings as they are written down, but for noise."""
+        return [
+            self.actuator.convert(self.raw(item), item.dt, self.excitations.index(item))
+            for item in chosen
+        ]
+
+    def minus(
+        self, less: Readings, chosen: tuple[Excitation, ...]
+    ) -> list[FloatArray]:
+        """Difference to another plant's readings."""
+        pairs = zip(self.of(chosen), less.of(chosen), strict=True)
+        return [mine - other for mine, other in pairs]
+
+
+def _draw(
+    spec: CaseSpec, excitations: tuple[Excitation, ...]
+) -> tuple[Plant, tuple[Effect, ...]]:
+    random = spec.random(PLANT)
+    loop = draw(spec.family, random)
+    # both are drawn in any case, so that the mode does not hang on the effects
+    known = random.uniform() < 0.5
+    mode = Mode(
+        frequency_hz=float(np.exp(random.uniform(*np.log([70.0, 320.0])))),
+        damping_ratio=float(np.exp(random.uniform(*np.log([0.015, 0.06])))),
+        participation=float(random.uniform(0.05, 0.3)),
+    )
+    has_mode = known or "stiffness-hardening" in spec.effects
+    random = spec.random(EFFECTS)
+    effects = []
+    hidden: Hysteresis = loop
+    gain = 0.0
+    for name in spec.effects:
+        kind = KINDS[name]
+        effect = draw_effect(kind, random, spec.spread, _forms(name, spec.family))
+        if name == "stiffness-hardening":
+            values = {**effect.parameters, **mode.parameters()}
+            effect = Effect(kind, effect.form, values)
+        if name == "hysteresis-shape":
+            hidden = _other_loop(effect.form, loop, excitations, random)
+        if name == "hysteresis":
+            gain = slope(loop, quasi_static(excitations))
+        effects.append(effect)
+    plant = Plant(loop, hidden, gain, mode if has_mode else None, spec.seed)
+    return plant, tuple(effects)
+
+
+def _forms(name: str, family: str) -> tuple[str, ...]:
+    """Forms of an effect that the plant's family can have."""
+    if name == "rate-dependent-hysteresis":
+        return ("growing-thresholds",) if family == "gpi" else ("excess-field",)
+    return tuple(KINDS[name].forms)
+
+
+def _other_loop(
+    form: str,
+    loop: Hysteresis,
+    excitations: tuple[Excitation, ...],
+    random: np.random.Generator,
+) -> Hysteresis:
+    """Draw a loop of another shape and of the same mean gain."""
+    other = draw("gpi" if form == "other-gpi" else form, random)
+    u = quasi_static(excitations)
+    mine, others = loop.respond(u), other.respond(u)
+    return other.scaled(float(mine @ others / (others @ others)))
+
+
+def _resized(
+    plant: Plant,
+    effects: tuple[Effect, ...],
+    bare: Readings,
+    fit: tuple[Excitation, ...],
+    size: float,
+) -> tuple[tuple[Effect, ...], list[bool]]:
+    """Change the size of effects that drown, or drown the rest."""
+    out, changed = [], []
+    for effect in effects:
+        kept, was_changed = effect, False
+        for _ in range(RESIZINGS):
+            readings = Readings(plant.actuator((kept,)), bare.excitations)
+            share = _rms(readings.minus(bare, fit)) / size
+            wanted = float(np.clip(share, 1.1 * SMALLEST_EFFECT, 0.9 * LARGEST_EFFECT))
+            if SMALLEST_EFFECT <= share <= LARGEST_EFFECT:
+                break
+            # nothing at all: one step of a power of two, whatever the law
+            factor = float(np.clip(wanted / max(share, 1e-12), 1.0 / 16.0, 16.0))
+            other = kept.scaled(factor)
+            if dict(other.parameters) == dict(kept.parameters):
+                break
+            kept, was_changed = other, True
+        out.append(kept)
+        changed.append(was_changed)
+    return tuple(out), changed
+
+
+def _record(
+    full: Readings, number: int, noise: float, random: np.random.Generator
+) -> Record:
+    """Add noise, convert and round as a laboratory's computer would."""
+    item = full.excitations[number]
+    noisy = full.raw(item) + noise * random.standard_normal(item.samples)
+    y = full.actuator.convert(noisy, item.dt, number)
+    u = np.round(item.sampled(), 8)
+    rounded = np.round(y / RESOLUTION) * RESOLUTION
+    return Record(
+        item.name, item.dt, u, rounded, INPUT, OUTPUT, "twin", item.use
+    )
+
+
+def _told(spec: CaseSpec, plant: Plant, noise: float, size: float) -> dict[str, Any]:
+    return {
+        "seed": spec.seed,
+        "kind": spec.kind,
+        "family": spec.family,
+        "spread": spec.spread,
+        "campaign": spec.campaign,
+        "noise_rms_um": float(np.hypot(noise, RESOLUTION / np.sqrt(12.0))),
+        "noise_set_by": "the effect that shows least" if spec.effects else "drawn",
+        "ratio_db": spec.ratio_db if spec.effects else None,
+        "output_rms_um": size,
+        "mode": None if plant.mode is None else plant.mode.parameters(),
+        "effects": [],
+    }
+
+
+def _effect_told(effect: Effect) -> dict[str, Any]:
+    form = effect.kind.forms[effect.form]
+    return {
+        "name": effect.kind.name,
+        "form": effect.form,
+        "place": effect.kind.place,
+        "use": effect.kind.use,
+        "parameters": form.told(effect.parameters),
+        "units": {name: item.unit for name, item in form.ranges.items()},
+        "views": list(effect.kind.views),
+    }
+
+
+def _hold_out(
+    full: Readings,
+    bare: Readings,
+    excitations: tuple[Excitation, ...],
+    model: Model,
+) -> dict[str, float]:
+    """Gap on the hold-out records: all of it, and what the effects explain."""
+    chosen = tuple(item for item in excitations if item.use == "hold-out")
+    simulated = [model.simulate(item.sampled(), item.dt) for item in chosen]
+    pairs = zip(full.of(chosen), simulated, strict=True)
+    return {
+        "gap_rms_um": _rms([y - base for y, base in pairs]),
+        "explainable_rms_um": _rms(full.minus(bare, chosen)),
+        "base_error_rms_um": _base_error(bare, chosen, model),
+    }
+
+
+def _base_error(
+    bare: Readings, chosen: tuple[Excitation, ...], model: Model
+) -> float:
+    """Error of the base model on the plant without its effects."""
+    pairs = zip(bare.of(chosen), chosen, strict=True)
+    return _rms([y - model.simulate(item.sampled(), item.dt) for y, item in pairs])
+
+
+def _retuned(difference: list[FloatArray], output: list[FloatArray]) -> float:
+    """What is left of a difference after the best gain and offset of the base."""
+    d, y = np.concatenate(difference), np.concatenate(output)
+    design = np.stack([y, np.ones_like(y)], axis=1)
+    return float(np.sqrt(np.mean((d - design @ np.linalg.lstsq(design, d)[0]) ** 2)))
+
+
+def _rms(parts: list[FloatArray]) -> float:
+    pooled = np.concatenate(parts)
+    return float(np.sqrt(np.mean(pooled**2)))
+
+
+def _decibel(size: float, noise: float) -> float | None:
+    """Ratio in dB; None for nothing at all."""
+    return float(20.0 * np.log10(size / noise)) if size > 1e-9 * noise else None

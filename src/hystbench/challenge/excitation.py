@@ -1,0 +1,340 @@
+"""The records that a laboratory would take, as functions of continuous time.
+
+Every command starts at zero and without a jump, and holds nothing near half the
+sampling rate: what the plant saw between two samples is the band-limited curve through
+them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hystbench.record import FloatArray, Use
+
+Function = Callable[[FloatArray], FloatArray]
+
+#: Sampling rate of the fast records in Hz and the largest current in A.
+RATE, LARGEST = 2000.0, 0.6
+#: Points of a period's table for each sample of the record.
+TABLE = 32
+#: Length of a switch-on and of the edge of a step: at least so long, in seconds and
+#: in samples.
+EDGE_SECONDS, EDGE_SAMPLES = 0.02, 12
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """One record's command.
+
+    Parameters
+    ----------
+    name : str
+    use : {"fit", "hold-out"}
+    rate_hz : float
+        Sampling rate.
+    samples : int
+    function : callable
+        Command in A at any times in s.
+    period_samples : int, optional
+        Period of what follows the switch-on.
+    """
+
+    name: str
+    use: Use
+    rate_hz: float
+    samples: int
+    function: Function
+    period_samples: int | None = None
+
+    @property
+    def dt(self) -> float:
+        """Sampling interval in seconds."""
+        return 1.0 / self.rate_hz
+
+    def __call__(self, time: FloatArray) -> FloatArray:
+        """Compute the command; zero before the start, and switched on smoothly."""
+        fade = max(EDGE_SECONDS, EDGE_SAMPLES * self.dt)
+        switch = 0.5 - 0.5 * np.cos(np.pi * np.clip(time / fade, 0.0, 1.0))
+        return np.asarray(switch * self.function(np.maximum(time, 0.0)))
+
+    def sampled(self) -> FloatArray:
+        """Command at the record's samples."""
+        return self(np.arange(self.samples) * self.dt)
+
+
+def sine(frequency: float, amplitude: float, bias: float = 0.0) -> Function:
+    """Sine about a bias."""
+    return lambda t: bias + amplitude * np.sin(2.0 * np.pi * frequency * t)
+
+
+def chirp(low: float, high: float, amplitude: float, seconds: float) -> Function:
+    """Sine whose frequency rises evenly in its logarithm."""
+    rate = np.log(high / low) / seconds
+    return lambda t: (
+        amplitude * np.sin(2.0 * np.pi * low * np.expm1(rate * t) / rate)
+    )
+
+
+def multisine(
+    random: np.random.Generator,
+    low: int,
+    high: int,
+    peak: float,
+    colour: float = 0.0,
+    odd: bool = False,
+) -> Function:
+    """Random-phase multisine of period one second with a line at each whole hertz.
+
+    Parameters
+    ----------
+    low, high : int
+        First and last line in Hz.
+    peak : float
+        Largest magnitude in A; of 20 draws of the phases the flattest is taken.
+    colour : float
+        Amplitudes go with frequency to the power of minus this.
+    odd : bool
+        Only odd lines: even distortion then falls between them.
+    """
+    points = int(RATE) * TABLE
+    lines = np.arange(low | 1 if odd else low, high + 1, 2 if odd else 1)
+    best, flattest = np.zeros(points), np.inf
+    for _ in range(20):
+        spectrum = np.zeros(int(RATE) * 2 + 1, dtype=complex)
+        phases = random.uniform(0.0, 2.0 * np.pi, len(lines))
+        spectrum[lines] = lines ** (-colour) * np.exp(1j * phases)
+        crest = _crest(np.fft.irfft(spectrum))
+        if crest < flattest:
+            flattest, kept = crest, spectrum[: lines[-1] + 1].copy()
+    spectrum = np.zeros(points // 2 + 1, dtype=complex)
+    spectrum[: len(kept)] = kept
+    best = np.fft.irfft(spectrum)
+    best *= peak / np.abs(best).max()
+    return lambda t: _periodic(best, t)
+
+
+def _crest(values: FloatArray) -> float:
+    return float(np.abs(values).max() / np.sqrt(np.mean(values**2)))
+
+
+def _periodic(table: FloatArray, time: FloatArray) -> FloatArray:
+    """Read a table of one second between its points by the cubic through four."""
+    place = (time % 1.0) * len(table)
+    k = np.floor(place + 1e-7).astype(int)
+    p = place - k
+    wide = np.concatenate([table[-1:], table, table[:3]])
+    before, here, after, second = (wide[k + i] for i in range(4))
+    return np.asarray(
+        here
+        + 0.5 * p * (after - before)
+        + p**2 * (before - 2.5 * here + 2.0 * after - 0.5 * second)
+        + 0.5 * p**3 * (second - before + 3.0 * (here - after))
+    )
+
+
+def staircase(levels: Sequence[float], hold: float, edge: float) -> Function:
+    """Levels held in turn, with edges that are half a cosine."""
+    values = np.asarray(levels, dtype=np.float64)
+
+    def function(t: FloatArray) -> FloatArray:
+        k = np.minimum((t / hold).astype(int), len(values) - 1)
+        share = np.clip((t - k * hold) / edge, 0.0, 1.0)
+        before = np.where(k > 0, values[np.maximum(k - 1, 0)], 0.0)
+        return np.asarray(
+            before + (values[k] - before) * (0.5 - 0.5 * np.cos(np.pi * share))
+        )
+
+    return function
+
+
+def triangle(frequency: float, amplitude: float) -> Function:
+    """Triangle of its first eight odd harmonics: round at the corners."""
+    orders = np.arange(1, 17, 2)
+    weights = (-1.0) ** ((orders - 1) // 2) / orders**2
+    scale = amplitude / np.sum(1.0 / orders**2)
+
+    def function(t: FloatArray) -> FloatArray:
+        total = np.zeros_like(t)
+        for order, weight in zip(orders, weights, strict=True):
+            total += weight * np.sin(2.0 * np.pi * frequency * order * t)
+        return scale * total
+
+    return function
+
+
+def ringing(frequency: float, amplitude: float, decay: float) -> Function:
+    """Sine that dies out: nested loops."""
+    return lambda t: (
+        amplitude * np.exp(-t / decay) * np.sin(2.0 * np.pi * frequency * t)
+    )
+
+
+def add(*functions: Function) -> Function:
+    """Sum of commands."""
+    return lambda t: np.asarray(sum(function(t) for function in functions))
+
+
+def _levels(random: np.random.Generator, count: int, largest: float) -> list[float]:
+    """Levels that differ from their neighbours, high and low by turns."""
+    sizes = random.uniform(0.1, 1.0, count) * largest
+    signs = np.where(random.uniform(size=count) < 0.3, 1.0, (-1.0) ** np.arange(count))
+    return [float(value) for value in sizes * signs]
+
+
+def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
+    """Eight records to fit and four held out, 70,000 samples in all."""
+    low = int(random.choice([8, 10, 16, 20]))
+    high = int(random.choice([80, 100, 125]))
+    ripple = float(random.choice([5.0, 8.0, 10.0]))
+    uniform = random.uniform
+    slow = add(
+        staircase(_levels(random, 8, 0.4), 7.5, 0.3),
+        sine(uniform(0.3, 1.0), uniform(0.05, 0.2)),
+    )
+    return (
+        Excitation("slow-loop", "fit", RATE, 6000, sine(1.0, LARGEST), 2000),
+        Excitation(
+            "sine-low",
+            "fit",
+            RATE,
+            4000,
+            sine(low, uniform(0.45, 0.6)),
+            int(RATE) // low,
+        ),
+        Excitation(
+            "sine-high",
+            "fit",
+            RATE,
+            4000,
+            sine(high, uniform(0.2, 0.35)),
+            int(RATE) // high,
+        ),
+        Excitation(
+            "multisine-wide",
+            "fit",
+            RATE,
+            8000,
+            multisine(random, 1, 500, uniform(0.2, 0.3)),
+            2000,
+        ),
+        Excitation(
+            "multisine-strong",
+            "fit",
+            RATE,
+            8000,
+            multisine(random, 1, 200, uniform(0.45, 0.6), colour=0.3),
+            2000,
+        ),
+        Excitation(
+            "minor-loops",
+            "fit",
+            RATE,
+            8000,
+            add(
+                staircase(_levels(random, 6, 0.4), 0.67, 0.1),
+                sine(ripple, uniform(0.06, 0.18)),
+            ),
+        ),
+        Excitation(
+            "steps", "fit", 500.0, 6000, staircase(_levels(random, 8, 0.6), 1.5, 0.03)
+        ),
+        Excitation("long", "fit", 100.0, 6000, slow),
+        Excitation(
+            "chirp", "hold-out", RATE, 6000, chirp(1.0, 350.0, uniform(0.2, 0.4), 3.0)
+        ),
+        Excitation(
+            "multisine-other",
+            "hold-out",
+            RATE,
+            6000,
+            multisine(random, 1, 350, uniform(0.3, 0.5)),
+            2000,
+        ),
+        Excitation(
+            "two-tones",
+            "hold-out",
+            RATE,
+            4000,
+            add(sine(2.0, uniform(0.2, 0.35)), sine(43.0, uniform(0.08, 0.2))),
+        ),
+        Excitation(
+            "steps-other",
+            "hold-out",
+            200.0,
+            4000,
+            staircase(_levels(random, 9, 0.55), 2.2, 0.08),
+        ),
+    )
+
+
+def other(random: np.random.Generator) -> tuple[Excitation, ...]:
+    """Another laboratory's records, for the transfer score."""
+    uniform = random.uniform
+    return (
+        Excitation("triangle", "fit", RATE, 8000, triangle(0.5, LARGEST), 4000),
+        Excitation("ringing", "fit", RATE, 6000, ringing(4.0, 0.58, 0.8)),
+        Excitation(
+            "sweep", "fit", RATE, 8000, chirp(2.0, 400.0, uniform(0.25, 0.35), 4.0)
+        ),
+        Excitation(
+            "sweep-strong", "fit", RATE, 6000, chirp(0.8, 90.0, uniform(0.5, 0.6), 3.0)
+        ),
+        Excitation(
+            "pink",
+            "fit",
+            RATE,
+            8000,
+            multisine(random, 1, 450, uniform(0.4, 0.6), colour=0.7, odd=True),
+            2000,
+        ),
+        Excitation(
+            "biased-tones",
+            "fit",
+            RATE,
+            6000,
+            add(
+                staircase(_levels(random, 4, 0.35), 0.76, 0.12),
+                sine(27.0, uniform(0.06, 0.15)),
+                sine(6.0, uniform(0.03, 0.08)),
+            ),
+        ),
+        Excitation(
+            "walk",
+            "fit",
+            100.0,
+            6000,
+            add(
+                staircase(_levels(random, 12, 0.5), 5.0, 0.2),
+                sine(uniform(0.3, 0.8), 0.08),
+            ),
+        ),
+        Excitation(
+            "white",
+            "hold-out",
+            RATE,
+            8000,
+            multisine(random, 2, 300, uniform(0.3, 0.5)),
+            2000,
+        ),
+        Excitation(
+            "beats",
+            "hold-out",
+            RATE,
+            6000,
+            add(sine(31.0, uniform(0.1, 0.25)), sine(34.0, uniform(0.1, 0.25))),
+            2000,
+        ),
+        Excitation(
+            "walk-other",
+            "hold-out",
+            250.0,
+            5000,
+            staircase(_levels(random, 14, 0.55), 1.4, 0.06),
+        ),
+    )
+
+
+CAMPAIGNS = {"standard": standard, "other": other}

@@ -1,0 +1,88 @@
+"""The hiding plant's own compiled loops, a library apart from :mod:`hystbench.kernels`.
+
+They share no code with it: what hides an effect and what finds it must not have one
+mistake in common.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+LIBRARY = Path(__file__).with_name("_plant.so")
+
+_SIZE, _REAL, _ARRAY = ctypes.c_ssize_t, ctypes.c_double, ctypes.c_void_p
+_SIGNATURES: dict[str, tuple[Any, str]] = {
+    # i: a size, f: a number, a: an array
+    "hc_diffusion": (_SIZE, "iiiffaa"),
+    "hc_lag": (None, "iffaa"),
+    "hc_oscillator": (None, "iffffaa"),
+    "hc_slew": (None, "ifaa"),
+    "hc_joint": (None, "ifaa"),
+    "hc_stick_slip": (None, "ifffaa"),
+    "hc_generalized_plays": (None, "iiaaaaaaa"),
+    "hc_everett": (_SIZE, "iiifaaaa"),
+    "hc_jiles_atherton": (None, "ifffffaaa"),
+}
+
+
+def load(path: Path = LIBRARY) -> ctypes.CDLL:
+    """Load the shared library and declare its functions.
+
+    Raises
+    ------
+    InputError
+        If it was not built, or was built for another machine.
+    """
+    try:
+        library = ctypes.CDLL(str(path))
+    except OSError as error:
+        raise InputError(
+            f"{path}: the plant's compiled loops do not load ({error}); build them "
+            "with `pip install --no-deps --no-build-isolation -e .`"
+        ) from error
+    kinds = {"i": _SIZE, "f": _REAL, "a": _ARRAY}
+    for name, (result, arguments) in _SIGNATURES.items():
+        function = getattr(library, name)
+        function.restype = result
+        function.argtypes = [kinds[kind] for kind in arguments]
+    return library
+
+
+_library = load()
+
+
+def call(name: str, *arguments: FloatArray | float | int) -> int:
+    """Call a loop; an array must be of float64 in C order.
+
+    Raises
+    ------
+    MemoryError
+        If the loop found no room for its state.
+    """
+    plain: list[float | int] = []
+    for value in arguments:
+        if isinstance(value, np.ndarray):
+            if value.dtype != np.float64 or not value.flags.c_contiguous:
+                raise TypeError(f"{name}: arrays must be float64 in C order")
+            plain.append(value.ctypes.data)
+        else:
+            plain.append(value)
+    result = int(getattr(_library, name)(*plain) or 0)
+    if result < 0:
+        raise MemoryError(name)
+    return result
+
+
+def run(name: str, *arguments: FloatArray | float | int, over: FloatArray) -> FloatArray:
+    """Call a loop that takes a signal last but one and writes its response last."""
+    signal = np.ascontiguousarray(over, dtype=np.float64)
+    out = np.empty_like(signal)
+    call(name, len(signal), *arguments, signal, out)
+    return out

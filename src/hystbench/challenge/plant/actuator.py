@@ -1,0 +1,163 @@
+"""The actuator: command, drive, material, mechanics and sensor, in continuous time."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.challenge.plant import mechanics
+from hystbench.challenge.plant.hysteresis import Hysteresis
+from hystbench.challenge.plant.kind import Effect, Run, Stage
+from hystbench.record import FloatArray
+
+#: Least steps of the fine grid a sample, and least steps a second.
+OVERSAMPLING, LEAST_RATE = 8, 8000.0
+
+Excitation = Callable[[FloatArray], FloatArray]
+Act = Callable[[Stage, FloatArray], FloatArray]
+
+
+class Place(NamedTuple):
+    """A grid of time, the command on it, and the record's number."""
+
+    time: FloatArray
+    u: FloatArray
+    dt: float
+    record: int
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A linear mode that the base model knows.
+
+    Parameters
+    ----------
+    frequency_hz, damping_ratio, participation : float
+    """
+
+    frequency_hz: float
+    damping_ratio: float
+    participation: float
+
+    def parameters(self) -> dict[str, float]:
+        """Give the three values by name."""
+        return {
+            "frequency_hz": self.frequency_hz,
+            "damping_ratio": self.damping_ratio,
+            "participation": self.participation,
+        }
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """A plant with the effects that it hides.
+
+    Parameters
+    ----------
+    loop : Hysteresis or float
+        The hysteresis, or the gain of a material without any in um/A.
+    mode : Mode, optional
+        The known mode.
+    effects : tuple of Effect
+    seed : int
+        Seed of what is new in every record.
+    """
+
+    loop: Hysteresis | float
+    mode: Mode | None
+    effects: tuple[Effect, ...]
+    seed: int
+
+    def with_effects(self, effects: tuple[Effect, ...]) -> Actuator:
+        """Return the plant with other effects."""
+        return replace(self, effects=effects)
+
+    def read(
+        self, excitation: Excitation, dt: float, samples: int, record: int
+    ) -> FloatArray:
+        """Compute what the sensor gives to its converter, without noise.
+
+        Parameters
+        ----------
+        excitation : callable
+            Command in A at any times in s; zero before the start.
+        dt : float
+            Sampling interval of the record in seconds.
+        samples : int
+        record : int
+            Number of the record, for what is new in each.
+
+        Returns
+        -------
+        ndarray, shape (samples,)
+            In um. The reading is sampled as it is: inputs are smooth, and what lies
+            above half the sampling rate is orders below the noise.
+        """
+        step = max(OVERSAMPLING, int(np.ceil(LEAST_RATE * dt)))
+        # some samples more, so that a clock that is off still finds a reading
+        count = (samples + 8) * step
+        fine = dt / step
+        time = np.arange(count) * fine
+        u = excitation(time)
+
+        def act(stage: Stage, signal: FloatArray) -> FloatArray:
+            return self._act(stage, signal, Place(time, u, fine, record))
+
+        commanded = act("command", time)
+        v = u if commanded is time else excitation(commanded)
+        z = act("material", self._material(act("field", act("drive", v)), act))
+        reading = act("sensor", act("mechanics", self._mode(z, fine, act)))
+        taken = np.arange(samples) * dt
+        asked = act("sampling", taken)
+        if asked is not taken:
+            return _cubic(reading, asked / fine)
+        return np.ascontiguousarray(reading[: samples * step : step])
+
+    def convert(self, reading: FloatArray, dt: float, record: int) -> FloatArray:
+        """Compute what is written down of a reading, with whatever noise it has."""
+        time = np.arange(len(reading)) * dt
+        return self._act("samples", reading, Place(time, reading, dt, record))
+
+    def _act(self, stage: Stage, signal: FloatArray, place: Place) -> FloatArray:
+        for effect in self.effects:
+            if effect.stage == stage:
+                key = zlib.crc32(effect.kind.name.encode())
+                random = np.random.default_rng([self.seed, place.record, key])
+                run = Run(place.time, place.u, place.dt, random)
+                signal = effect.act(signal, run)
+        return signal
+
+    def _material(self, field: FloatArray, act: Act) -> FloatArray:
+        if isinstance(self.loop, float):
+            return self.loop * field
+        stages = {effect.stage for effect in self.effects}
+        growth = act("threshold", field) if "threshold" in stages else None
+        z = self.loop.respond(field, growth)
+        # the sensor is set to zero at rest, also where a bias moved the rest
+        return z - z[0] if field[0] != 0.0 else z
+
+    def _mode(self, z: FloatArray, dt: float, act: Act) -> FloatArray:
+        if any(effect.stage == "mode" for effect in self.effects):
+            return act("mode", z)
+        if self.mode is None:
+            return z
+        p = self.mode
+        x = mechanics.oscillate(z, dt, p.frequency_hz, p.damping_ratio, 0.0)
+        return (1.0 - p.participation) * z + p.participation * x
+
+
+def _cubic(values: FloatArray, place: FloatArray) -> FloatArray:
+    """Read between samples by the cubic through the four around."""
+    k = np.clip(place.astype(int), 1, len(values) - 3)
+    p = place - k
+    before, here, after, second = (values[k + i] for i in (-1, 0, 1, 2))
+    return (
+        here
+        + 0.5 * p * (after - before)
+        + p**2 * (before - 2.5 * here + 2.0 * after - 0.5 * second)
+        + 0.5 * p**3 * (second - before + 3.0 * (here - after))
+    )

@@ -1,0 +1,263 @@
+"""Hysteresis of three families, each from its own definition.
+
+Fields are currents in A, outputs are displacements in um that are zero at the start.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from hystbench.challenge import kernels
+from hystbench.record import FloatArray
+
+#: Largest current of any excitation; loops are scaled over it.
+LARGEST_CURRENT = 0.6
+
+#: Envelope functions printed in Zhang and Ma, Sensors 16(2), 205, 2016, section 4.
+PUBLISHED = (1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248)
+
+
+class Hysteresis(Protocol):
+    """A quasi-static loop."""
+
+    @property
+    def family(self) -> str:
+        """Name of the family."""
+
+    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+        """Compute the displacement in um for a current that starts at rest."""
+
+    def scaled(self, factor: float) -> Hysteresis:
+        """Multiply the displacement."""
+
+
+@dataclass(frozen=True)
+class GeneralizedPlays:
+    """Weighted generalized plays, each kept between two moved envelopes.
+
+    References
+    ----------
+    .. [1] M. Al Janaideh, S. Rakheja, C.-Y. Su, IEEE/ASME Trans. Mechatronics 16
+       (2011) 734-744.
+    """
+
+    envelope: tuple[float, ...]
+    thresholds: FloatArray
+    weights: FloatArray
+    family: str = "gpi"
+
+    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+        """Sum the plays; ``growth`` multiplies the thresholds sample by sample."""
+        v = np.ascontiguousarray(v)
+        a = self.envelope
+        left = a[0] * np.tanh(a[1] * v + a[2]) + a[3]
+        right = a[4] * np.tanh(a[5] * v + a[6]) + a[7]
+        factor = np.ones_like(v) if growth is None else growth
+        state, y = np.zeros(len(self.thresholds)), np.empty_like(v)
+        kernels.call(
+            "hc_generalized_plays",
+            len(v),
+            len(state),
+            left,
+            right,
+            np.ascontiguousarray(factor),
+            self.thresholds,
+            self.weights,
+            state,
+            y,
+        )
+        return y
+
+    def scaled(self, factor: float) -> GeneralizedPlays:
+        """Multiply the weights."""
+        return replace(self, weights=self.weights * factor)
+
+
+@dataclass(frozen=True)
+class Everett:
+    """Preisach's operator by Everett's function and its memory of turning points.
+
+    The density of relays is normal in their interaction field and lognormal in their
+    coercive field; beside it stands a reversible part. It starts demagnetized, after
+    turning points that alternate and shrink.
+
+    References
+    ----------
+    .. [1] D. H. Everett, Trans. Faraday Soc. 51 (1955) 1551-1557.
+    .. [2] I. D. Mayergoyz, Mathematical Models of Hysteresis, Springer, 1991.
+    """
+
+    interaction: float  # standard deviation of the interaction field, A
+    centre: float  # its mean, A
+    coercive: float  # median of the coercive field, A
+    coercive_spread: float  # standard deviation of its logarithm
+    irreversible: float  # um over the whole plane
+    reversible: float  # um
+    knee: float  # A
+    limit: float = 1.0
+    points: int = 601
+    family: str = "preisach"
+
+    def table(self) -> FloatArray:
+        """Everett's function E(a, b), a the rows and b the columns, in um.
+
+        Swing of the output when the input goes from b up to a.
+        """
+        step = 2.0 * self.limit / (self.points - 1)
+        middle = -self.limit + step * (np.arange(self.points - 1) + 0.5)
+        half = 0.5 * (middle[:, None] - middle[None, :])
+        centre = 0.5 * (middle[:, None] + middle[None, :]) - self.centre
+        inside = np.where(half > 0, half, 1.0)
+        density = np.exp(
+            -0.5 * (centre / self.interaction) ** 2
+            - 0.5 * (np.log(inside / self.coercive) / self.coercive_spread) ** 2
+        ) / inside
+        density[half <= 0] = 0.0
+        mass = density * (self.irreversible / density.sum())
+        out = np.zeros((self.points, self.points))
+        out[1:, :-1] = np.cumsum(np.cumsum(mass, axis=0)[:, ::-1], axis=1)[:, ::-1]
+        return out
+
+    def history(self) -> FloatArray:
+        """Turning points that demagnetize: alternating, shrinking."""
+        sizes = self.limit * np.linspace(1.0, 0.0, 400)
+        sizes[1::2] *= -1.0
+        return sizes
+
+    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+        """Follow the input by the turning points that are not wiped out."""
+        del growth  # plays alone have thresholds
+        v = np.ascontiguousarray(v)
+        past, start = self.history(), np.zeros(1)
+        table, y = self.table(), np.empty_like(v)
+        begin = np.empty(1)
+        common = (self.points, self.limit, table, past)
+        kernels.call("hc_everett", 1, len(past), *common, start, begin)
+        kernels.call("hc_everett", len(v), len(past), *common, v, y)
+        return y - begin[0] + self.reversible * np.tanh(v / self.knee)
+
+    def scaled(self, factor: float) -> Everett:
+        """Multiply both parts."""
+        return replace(
+            self,
+            irreversible=self.irreversible * factor,
+            reversible=self.reversible * factor,
+        )
+
+
+@dataclass(frozen=True)
+class JilesAtherton:
+    """Equation of Jiles and Atherton about a bias, strain as magnetization squared.
+
+    It starts on the bias, demagnetized there by cycles that shrink.
+
+    References
+    ----------
+    .. [1] D. C. Jiles, D. L. Atherton, J. Magn. Magn. Mater. 61 (1986) 48-60.
+    .. [2] D. C. Jiles, J. Phys. D 28 (1995) 1537-1546, for the strain.
+    """
+
+    bias: float  # A
+    shape: float  # A
+    coupling: float  # A
+    pinning: float  # A
+    reversible: float
+    strain: float  # um at saturation
+    family: str = "jiles-atherton"
+
+    def respond(self, v: FloatArray, growth: FloatArray | None = None) -> FloatArray:
+        """Integrate the magnetization over the field, by Runge-Kutta."""
+        del growth  # plays alone have thresholds
+        piece = 0.01 * self.shape
+        constants = (self.shape, self.coupling, self.pinning, self.reversible, piece)
+        cycles = LARGEST_CURRENT * np.linspace(1.2, 0.0, 60)
+        cycles[1::2] *= -1.0
+        warm_up = self.bias + cycles
+        state = np.zeros(2)
+        out = np.empty_like(warm_up)
+        kernels.call("hc_jiles_atherton", len(warm_up), *constants, warm_up, state, out)
+        start = state[1]
+        field = np.ascontiguousarray(self.bias + v)
+        m = np.empty_like(field)
+        kernels.call("hc_jiles_atherton", len(field), *constants, field, state, m)
+        return self.strain * (m**2 - start**2)
+
+    def scaled(self, factor: float) -> JilesAtherton:
+        """Multiply the strain."""
+        return replace(self, strain=self.strain * factor)
+
+
+def draw_plays(random: np.random.Generator) -> GeneralizedPlays:
+    """Draw generalized plays: by a coin of the published envelopes, or of others.
+
+    Both envelopes are moved by one constant so that the output is zero at rest.
+    """
+    published = random.uniform() < 0.5
+    while True:
+        factors = np.exp(random.uniform(-0.2, 0.2, 8))
+        a = np.array(PUBLISHED) * (1.0 if published else factors)
+        v = np.linspace(-0.8, 0.8, 201)
+        left = a[0] * np.tanh(a[1] * v + a[2]) + a[3]
+        right = a[4] * np.tanh(a[5] * v + a[6]) + a[7]
+        middle = 0.5 * (left[100] + right[100])
+        ordered = left[100] > right[100] and np.mean(left - right > 0) > 0.5
+        if published or ordered:
+            break
+    a[[3, 7]] -= middle
+    count = int(random.integers(12, 31))
+    reach = float(max(left[-1], right[-1]) - middle)
+    thresholds = np.arange(count) / count * reach
+    weights = np.exp(random.uniform(-1.0, 2.0) * np.arange(count) / count)
+    weights *= random.uniform(0.6, 1.6) / weights.sum()
+    weights[0] += 1.0
+    return GeneralizedPlays(tuple(map(float, a)), thresholds, weights)
+
+
+def draw_everett(random: np.random.Generator) -> Everett:
+    """Draw a Preisach plane."""
+    share = random.uniform(0.25, 0.55)
+    return Everett(
+        interaction=random.uniform(0.2, 0.45),
+        centre=random.uniform(-0.08, 0.08),
+        coercive=random.uniform(0.06, 0.16),
+        coercive_spread=random.uniform(0.35, 0.7),
+        irreversible=share,
+        reversible=1.0 - share,
+        knee=random.uniform(0.5, 1.2),
+    )
+
+
+def draw_jiles_atherton(random: np.random.Generator) -> JilesAtherton:
+    """Draw a biased magnetostrictive rod."""
+    shape = random.uniform(0.4, 0.6)
+    return JilesAtherton(
+        bias=shape * random.uniform(1.6, 2.2),
+        shape=shape,
+        coupling=shape * random.uniform(0.1, 0.8),
+        pinning=random.uniform(0.05, 0.14),
+        reversible=random.uniform(0.15, 0.45),
+        strain=1.0,
+    )
+
+
+DRAWS = {
+    "gpi": draw_plays,
+    "preisach": draw_everett,
+    "jiles-atherton": draw_jiles_atherton,
+}
+
+
+def swing(hysteresis: Hysteresis) -> float:
+    """Peak-to-peak displacement in um over the largest current, once around."""
+    angle = np.linspace(0.0, 4.0 * np.pi, 4001)
+    y = hysteresis.respond(LARGEST_CURRENT * np.sin(angle))
+    return float(np.ptp(y[2000:]))
+
+
+def draw(family: str, random: np.random.Generator) -> Hysteresis:
+    """Draw a loop of a family whose full swing is 30 to 55 um."""
+    loop: Hysteresis = DRAWS[family](random)
+    return loop.scaled(random.uniform(30.0, 55.0) / swing(loop))

@@ -1,0 +1,190 @@
+"""The mechanics: modes, friction, a loose joint, creep and heat. Signals are in um."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hystbench.challenge import kernels
+from hystbench.challenge.plant.kind import Form, Kind, Parameters, Range, Run
+from hystbench.record import FloatArray
+
+
+def oscillate(
+    z: FloatArray, dt: float, frequency_hz: float, damping_ratio: float, alpha: float
+) -> FloatArray:
+    """Move a mass on a spring, ``x'' = wn^2 (z - x - alpha x^3) - 2 zeta wn x'``."""
+    omega = 2.0 * np.pi * frequency_hz
+    return kernels.run("hc_oscillator", dt, omega, damping_ratio, alpha, over=z)
+
+
+def mode(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Add a mode that carries a part of the displacement, of whatever stiffness."""
+    alpha = p.get("coefficient", 0.0)
+    x = oscillate(z, run.dt, p["frequency_hz"], p["damping_ratio"], alpha)
+    share = p["participation"]
+    return (1.0 - share) * z + share * x
+
+
+def coulomb(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Add dry friction, smooth about rest by tanh."""
+    speed = np.gradient(run.u, run.dt) / p["velocity_scale"]
+    return z + p["coulomb"] * np.tanh(speed)
+
+
+def coulomb_algebraic(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Add dry friction, smooth about rest by ``x / sqrt(1 + x^2)``."""
+    speed = np.gradient(run.u, run.dt) / p["velocity_scale"]
+    return z + p["coulomb"] * speed / np.sqrt(1.0 + speed**2)
+
+
+def joint(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Carry the load by a pin in a slot."""
+    return kernels.run("hc_joint", p["half_width"], over=z)
+
+
+def kelvin_voigt(
+    z: FloatArray, dt: float, magnitudes: list[float], times: list[float]
+) -> FloatArray:
+    """Add springs in parallel with dashpots: ``tau_j e_j' = m_j z - e_j``, summed."""
+    total = z.copy()
+    for magnitude, time in zip(magnitudes, times, strict=True):
+        total += magnitude * kernels.run("hc_lag", dt, time, over=z)
+    return total
+
+
+def _elements(p: Parameters) -> dict[str, list[float]]:
+    count = 1 if "ratio" not in p else 3
+    return {
+        "magnitudes": [p["magnitude"] / count] * count,
+        "time_constants_s": [
+            p["time_constant_s"] * p.get("ratio", 1.0) ** k for k in range(count)
+        ],
+    }
+
+
+def creep(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Creep by one Kelvin-Voigt element or by three."""
+    told = _elements(p)
+    return kelvin_voigt(z, run.dt, told["magnitudes"], told["time_constants_s"])
+
+
+def heat(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Warm the rod by the current's square and lose it: ``tau T' = u^2 - T``."""
+    warmth = kernels.run("hc_lag", run.dt, p["time_constant_s"], over=run.u**2)
+    return z + p["coefficient"] * warmth
+
+
+def _creep_told(p: Parameters) -> dict[str, Any]:
+    return dict(_elements(p))
+
+
+_FREQUENCY = Range(60.0, 280.0, "Hz", most=500.0)
+_DAMPING = Range(0.01, 0.06, "-", most=0.15)
+_VELOCITY = Range(0.5, 5.0, "A/s")
+_COULOMB = Range(0.15, 1.0, "um", most=4.0)
+_MAGNITUDE = Range(0.02, 0.12, "-", shifts=False, most=0.4)
+
+KINDS = (
+    Kind(
+        "resonance",
+        "mechanics",
+        "mechanics",
+        ("frequency",),
+        {
+            "mode": Form(
+                mode,
+                {
+                    "frequency_hz": _FREQUENCY,
+                    "damping_ratio": _DAMPING,
+                    "participation": Range(0.03, 0.25, "-", shifts=False, most=0.6),
+                },
+                "participation",
+            )
+        },
+    ),
+    Kind(
+        "stiffness-hardening",
+        "mechanics",
+        "mode",
+        ("frequency", "amplitude"),
+        {
+            "duffing": Form(
+                mode,
+                {"coefficient": Range(1e-4, 2e-3, "1/um^2", most=6e-3)},
+                "coefficient",
+            )
+        },
+    ),
+    Kind(
+        "friction",
+        "mechanics",
+        "mechanics",
+        ("branch", "rate"),
+        {
+            "tanh": Form(
+                coulomb, {"coulomb": _COULOMB, "velocity_scale": _VELOCITY}, "coulomb"
+            ),
+            "algebraic": Form(
+                coulomb_algebraic,
+                {"coulomb": _COULOMB, "velocity_scale": _VELOCITY},
+                "coulomb",
+            ),
+        },
+    ),
+    Kind(
+        "backlash",
+        "mechanics",
+        "mechanics",
+        ("branch",),
+        {
+            "pin-in-slot": Form(
+                joint, {"half_width": Range(0.1, 1.0, "um", most=3.0)}, "half_width"
+            )
+        },
+    ),
+    Kind(
+        "creep",
+        "mechanics",
+        "mechanics",
+        ("slow-time", "frequency"),
+        {
+            "one-element": Form(
+                creep,
+                {
+                    "magnitude": _MAGNITUDE,
+                    "time_constant_s": Range(0.4, 6.0, "s"),
+                },
+                "magnitude",
+                told=_creep_told,
+            ),
+            "three-elements": Form(
+                creep,
+                {
+                    "magnitude": _MAGNITUDE,
+                    "time_constant_s": Range(0.15, 0.6, "s"),
+                    "ratio": Range(3.0, 7.0, "-", shifts=False),
+                },
+                "magnitude",
+                told=_creep_told,
+            ),
+        },
+    ),
+    Kind(
+        "thermal-drift",
+        "mechanics",
+        "mechanics",
+        ("slow-time",),
+        {
+            "joule": Form(
+                heat,
+                {
+                    "coefficient": Range(4.0, 30.0, "um/A^2", most=150.0),
+                    "time_constant_s": Range(1.0, 12.0, "s"),
+                },
+                "coefficient",
+            )
+        },
+    ),
+)

@@ -1,0 +1,276 @@
+"""Physics that the vocabulary has no word for: the right answer is "unnamed".
+
+Half of the sorts may be used while a solver is mended (``development``), half only for
+the transfer score (``transfer``).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hystbench.challenge import kernels
+from hystbench.challenge.plant.kind import Form, Kind, Parameters, Range, Run, View
+from hystbench.challenge.plant.mechanics import kelvin_voigt
+from hystbench.record import FloatArray
+
+
+def capacitive(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Pick up the drive's slope through stray capacitance: ``c du/dt``."""
+    return z + p["coupling"] * np.gradient(run.u, run.dt)
+
+
+def warm_gain(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Lose gain as Joule heat warms the material."""
+    warmth = kernels.run("hc_lag", run.dt, p["time_constant_s"], over=run.u**2)
+    return z * (1.0 - p["coefficient"] * warmth)
+
+
+def telegraph(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Jump between two readings at random: a bad contact."""
+    flips = run.random.uniform(size=len(z)) < run.dt * p["rate"]
+    return z + p["height"] * (np.cumsum(flips) % 2)
+
+
+def multiplicative(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Read through a gain that flickers (first-order random process)."""
+    steps = run.random.standard_normal(len(z))
+    # unit variance after a first-order low-pass of this time constant
+    steps *= np.sqrt(2.0 * p["time_constant_s"] / run.dt)
+    flicker = kernels.run("hc_lag", run.dt, p["time_constant_s"], over=steps)
+    return z * (1.0 + p["coefficient"] * flicker)
+
+
+def held(y: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Hold the last sample now and then: a bus that drops words."""
+    begins = run.random.uniform(size=len(y)) < p["probability"]
+    lost = np.convolve(begins, np.ones(round(p["samples"])))[: len(y)] > 0
+    lost[0] = False
+    place = np.where(lost, 0, np.arange(len(y)))
+    return y[np.maximum.accumulate(place)]
+
+
+def hum_gain(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Modulate the gain by the mains: ripple of the amplifier's supply."""
+    start = run.random.uniform(0.0, 2.0 * np.pi)
+    angle = 2.0 * np.pi * p["frequency_hz"] * run.time + start
+    return z * (1.0 + p["depth"] * np.sin(angle))
+
+
+def stick_slip(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Stick until the spring pulls hard enough, then slip most of the way."""
+    hold = p["hold"]
+    rate = 1.0 - np.exp(-run.dt / 5e-4)
+    return kernels.run("hc_stick_slip", hold, p["release"] * hold, rate, over=z)
+
+
+def clock(time: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Take samples by a clock that runs off and trembles."""
+    tremble = run.random.standard_normal(len(time)) * p["tremble_s"]
+    # a clock of another rate: the file's times are what the clock said
+    return np.abs(time * (1.0 + p["rate_error"]) + tremble)
+
+
+def lazy_delay(time: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Delay that grows with the command's magnitude: a busy converter."""
+    return time - p["delay_s"] * np.abs(run.u) / 0.6
+
+
+def hysteretic_sensor(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Strain gauge whose glue slips: rate-independent stops beside the reading."""
+    out = z.copy()
+    for share in (0.3, 0.6, 1.0):
+        carried = kernels.run("hc_joint", share * p["half_width"], over=z**2 / 20.0)
+        out += p["weight"] / 3.0 * carried
+    return out
+
+
+def fractional(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Relax over six decades at once, as ``s^-order`` does (Oustaloup's spread)."""
+    times = np.logspace(-4.0, 2.0, 13)
+    shares = times ** (p["order"] - 0.5)
+    magnitudes = p["magnitude"] * shares / shares.sum()
+    return kelvin_voigt(z, run.dt, list(magnitudes), list(times))
+
+
+def coarse(y: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Round to a converter of few bits."""
+    return np.round(y / p["step"]) * p["step"]
+
+
+def _kind(
+    name: str,
+    place: str,
+    stage: str,
+    views: tuple[View, ...],
+    form: Form,
+    use: str,
+) -> Kind:
+    return Kind(name, place, stage, views, {"only": form}, use)  # type: ignore[arg-type]
+
+
+KINDS = (
+    _kind(
+        "capacitive-pickup",
+        "sensor",
+        "sensor",
+        ("rate", "frequency"),
+        Form(
+            capacitive,
+            {"coupling": Range(3e-3, 3e-2, "um s/A", most=0.3)},
+            "coupling",
+        ),
+        "development",
+    ),
+    _kind(
+        "thermal-gain",
+        "mechanics",
+        "mechanics",
+        ("slow-time",),
+        Form(
+            warm_gain,
+            {
+                "coefficient": Range(0.3, 2.0, "1/A^2", most=5.0),
+                "time_constant_s": Range(1.0, 10.0, "s"),
+            },
+            "coefficient",
+        ),
+        "development",
+    ),
+    _kind(
+        "random-telegraph",
+        "sensor",
+        "sensor",
+        ("unexplained",),
+        Form(
+            telegraph,
+            {
+                "height": Range(0.3, 2.0, "um", sign=True, most=8.0),
+                "rate": Range(1.0, 15.0, "1/s"),
+            },
+            "height",
+        ),
+        "development",
+    ),
+    _kind(
+        "multiplicative-noise",
+        "sensor",
+        "sensor",
+        ("unexplained", "amplitude"),
+        Form(
+            multiplicative,
+            {
+                "coefficient": Range(0.01, 0.08, "-", most=0.3),
+                "time_constant_s": Range(1e-3, 2e-2, "s"),
+            },
+            "coefficient",
+        ),
+        "development",
+    ),
+    _kind(
+        "dropouts",
+        "sensor",
+        "samples",
+        ("unexplained", "rate"),
+        Form(
+            held,
+            {
+                "probability": Range(0.02, 0.2, "-", shifts=False, most=0.6),
+                "samples": Range(1.5, 5.5, "samples", shifts=False),
+            },
+            "probability",
+            power=0.5,
+        ),
+        "development",
+    ),
+    _kind(
+        "mains-gain",
+        "drive",
+        "sensor",
+        ("unexplained", "amplitude"),
+        Form(
+            hum_gain,
+            {
+                "depth": Range(0.01, 0.08, "-", most=0.3),
+                "frequency_hz": Range(49.9, 50.1, "Hz", shifts=False),
+            },
+            "depth",
+        ),
+        "development",
+    ),
+    _kind(
+        "stick-slip",
+        "mechanics",
+        "mechanics",
+        ("branch",),
+        Form(
+            stick_slip,
+            {
+                "hold": Range(0.3, 2.0, "um", most=5.0),
+                "release": Range(0.05, 0.4, "-", shifts=False),
+            },
+            "hold",
+        ),
+        "transfer",
+    ),
+    _kind(
+        "clock-error",
+        "sensor",
+        "sampling",
+        ("unexplained", "rate"),
+        Form(
+            clock,
+            {
+                "tremble_s": Range(3e-5, 2e-4, "s", most=6e-4),
+                "rate_error": Range(2e-5, 2e-4, "-"),
+            },
+            "tremble_s",
+        ),
+        "transfer",
+    ),
+    _kind(
+        "amplitude-dependent-delay",
+        "drive",
+        "command",
+        ("delay", "amplitude"),
+        Form(lazy_delay, {"delay_s": Range(4e-4, 3e-3, "s", most=0.02)}, "delay_s"),
+        "transfer",
+    ),
+    _kind(
+        "hysteretic-sensor",
+        "sensor",
+        "sensor",
+        ("branch", "amplitude"),
+        Form(
+            hysteretic_sensor,
+            {
+                "weight": Range(0.05, 0.4, "-", sign=True, most=1.0),
+                "half_width": Range(0.5, 4.0, "um", shifts=False),
+            },
+            "weight",
+        ),
+        "transfer",
+    ),
+    _kind(
+        "fractional-relaxation",
+        "mechanics",
+        "mechanics",
+        ("frequency", "slow-time"),
+        Form(
+            fractional,
+            {
+                "magnitude": Range(0.05, 0.3, "-", shifts=False, most=0.9),
+                "order": Range(0.3, 0.7, "-", shifts=False),
+            },
+            "magnitude",
+        ),
+        "transfer",
+    ),
+    _kind(
+        "coarse-quantiser",
+        "sensor",
+        "samples",
+        ("unexplained",),
+        Form(coarse, {"step": Range(0.3, 2.0, "um", most=6.0)}, "step"),
+        "transfer",
+    ),
+)

@@ -1,0 +1,152 @@
+"""What a case is to be: its effects, its family, its noise; drawn from a seed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from hystbench.challenge.excitation import CAMPAIGNS
+from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY, may_meet
+from hystbench.challenge.plant.hysteresis import DRAWS
+from hystbench.errors import InputError, nearest
+
+CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
+CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
+COUNTS = {"single": 1, "pair": 2, "triple": 3, "none": 0, "unlisted": 1}
+FAMILIES = tuple(DRAWS)
+#: Known to the plant of plays alone: beside another family the base's loop is wrong
+#: in any case.
+GPI_ONLY = ("hysteresis-shape",)
+RATIO_LIMITS = (-20.0, 60.0)
+
+
+@dataclass(frozen=True)
+class CaseSpec:
+    """A case to be made; the same spec gives the same bytes.
+
+    Parameters
+    ----------
+    seed : int
+        Draws plant, forms, parameters, excitation and noise.
+    kind : {"single", "pair", "triple", "none", "unlisted"}
+    effects : tuple of str
+        Names, in no order.
+    family : {"gpi", "preisach", "jiles-atherton"}
+        Hysteresis of the plant.
+    ratio_db : float
+        20 log10 of rms(output with the effect minus without) over the noise's rms on
+        the fit records; of several effects, for the one that shows least. With
+        nothing hidden it is not used.
+    spread : float
+        Multiplies the ranges of time constants, frequencies and sizes.
+    campaign : {"standard", "other"}
+        Which laboratory took the records.
+
+    Raises
+    ------
+    InputError
+        If a name or number is none that can be.
+    """
+
+    seed: int
+    kind: str
+    effects: tuple[str, ...]
+    family: str
+    ratio_db: float
+    spread: float = 1.0
+    campaign: str = "standard"
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be made."""
+        if self.kind not in CASE_KINDS:
+            raise InputError(f"kind: {self.kind!r}; {nearest(self.kind, CASE_KINDS)}")
+        if self.family not in FAMILIES:
+            raise InputError(f"family: {self.family!r}; {nearest(self.family, FAMILIES)}")
+        if self.campaign not in CAMPAIGNS:
+            raise InputError(
+                f"campaign: {self.campaign!r}; {nearest(self.campaign, CAMPAIGNS)}"
+            )
+        known = UNLISTED if self.kind == "unlisted" else VOCABULARY
+        for name in self.effects:
+            if name not in known:
+                raise InputError(f"effect: {name!r} unknown; {nearest(name, known)}")
+        if len(self.effects) != COUNTS[self.kind]:
+            raise InputError(
+                f"effect: {len(self.effects)} given, expected {COUNTS[self.kind]} for "
+                f"the kind {self.kind!r}"
+            )
+        if not may_meet(self.effects):
+            raise InputError(
+                f"effect: {' and '.join(self.effects)} cannot be hidden together; "
+                "expected effects that differ and can be told apart"
+            )
+        for name in self.effects:
+            if name in GPI_ONLY and self.family != "gpi":
+                raise InputError(
+                    f"effect: {name!r} beside the family {self.family!r}; expected "
+                    "the family 'gpi', as the base's loop is wrong beside any other"
+                )
+        low, high = RATIO_LIMITS
+        if not low <= self.ratio_db <= high:
+            raise InputError(
+                f"ratio_db: {self.ratio_db:g}; expected {low:g} to {high:g}"
+            )
+        if not 0.1 <= self.spread <= 10.0:
+            raise InputError(f"spread: {self.spread:g}; expected 0.1 to 10")
+        if self.seed < 0:
+            raise InputError(f"seed: {self.seed}; expected 0 or more")
+
+    def random(self, stream: int) -> np.random.Generator:
+        """Source of random numbers for one purpose; purposes do not disturb others."""
+        return np.random.default_rng([self.seed, stream])
+
+
+def kind_of(effects: tuple[str, ...]) -> str:
+    """Tell the kind of case from the effects' names."""
+    if any(name in UNLISTED for name in effects):
+        return "unlisted"
+    kinds = {count: kind for kind, count in COUNTS.items() if kind != "unlisted"}
+    if len(effects) not in kinds:
+        raise InputError(f"effect: {len(effects)} given, expected at most 3")
+    return kinds[len(effects)]
+
+
+def draw_spec(
+    seed: int,
+    kind: str,
+    family: str,
+    ratio_db: float,
+    *,
+    spread: float = 1.0,
+    campaign: str = "standard",
+    unlisted: Literal["development", "transfer"] | None = None,
+) -> CaseSpec:
+    """Draw which effects a case hides, each as likely as any other.
+
+    Parameters
+    ----------
+    seed, kind, family, ratio_db, spread, campaign
+        As in :class:`CaseSpec`.
+    unlisted : {"development", "transfer"}, optional
+        Half of the sorts outside the vocabulary; by default all.
+
+    Raises
+    ------
+    InputError
+        As :class:`CaseSpec`.
+    """
+    if kind not in CASE_KINDS:
+        raise InputError(f"kind: {kind!r}; {nearest(kind, CASE_KINDS)}")
+    if kind == "unlisted":
+        names = [name for name in UNLISTED if unlisted in (None, KINDS[name].use)]
+    else:
+        names = [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
+    random = np.random.default_rng([seed, 0])
+    while True:
+        chosen = random.choice(len(names), size=COUNTS[kind], replace=False)
+        effects = tuple(names[int(place)] for place in chosen)
+        if may_meet(effects):
+            break
+    return CaseSpec(seed, kind, effects, family, ratio_db, spread, campaign)

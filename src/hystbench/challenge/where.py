@@ -1,0 +1,168 @@
+"""Where an effect shows: its power over each view's axis, from its true difference."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hystbench.challenge.plant.kind import Kind
+from hystbench.record import FloatArray, Record
+
+#: Edges of the bins: frequencies in Hz (six an octave), current in A, its rate in A/s
+#: (eight a decade), seconds from a record's start.
+FREQUENCIES = np.concatenate([[0.0], 0.01 * 2.0 ** (np.arange(103) / 6.0)])
+CURRENTS = np.linspace(-0.6, 0.6, 25)
+RATES = np.concatenate([[0.0], 0.001 * 10.0 ** (np.arange(57) / 8.0)])
+SECONDS = np.linspace(0.0, 60.0, 61)
+
+#: What holds half of the power is the place.
+HALF = 0.5
+
+
+def where(
+    kind: Kind,
+    records: list[Record],
+    differences: list[FloatArray],
+    outputs: list[FloatArray],
+) -> list[dict[str, Any]]:
+    """Tell for each view which range holds the effect's power.
+
+    Power is the difference's square, summed over the samples of the fit records.
+
+    Parameters
+    ----------
+    kind : Kind
+        The effect; it says which views are right.
+    records : list of Record
+        The fit records.
+    differences : list of ndarray
+        Output with the effect minus without, noise-free, of each record.
+    outputs : list of ndarray
+        Output without the effect.
+
+    Returns
+    -------
+    list of dict
+        ``view``, ``right``, ``axis``, ``unit``, ``from``, ``to`` (shortest range that
+        holds half of the power), ``share`` (what it holds), ``edges`` and ``shares``
+        of the bins. Branches and records have ``names`` in the place of edges.
+    """
+    power = [difference**2 for difference in differences]
+    speeds = [np.gradient(record.u, record.dt) for record in records]
+    pooled = np.concatenate(power)
+    total = float(pooled.sum())
+    if total == 0.0:
+        return []
+
+    def over(values: list[FloatArray], edges: FloatArray) -> FloatArray:
+        inside = np.clip(np.concatenate(values), edges[0], edges[-1])
+        counts, _ = np.histogram(inside, edges, weights=pooled)
+        return np.asarray(counts / total)
+
+    spectrum = np.zeros(len(FREQUENCIES) - 1)
+    for record, difference in zip(records, differences, strict=True):
+        spectrum += _spectrum(difference, record.dt)
+    spectrum /= total
+    rising = np.concatenate(speeds) > 0
+    shares = {
+        "rising": float(pooled[rising].sum() / total),
+        "falling": float(pooled[~rising].sum() / total),
+    }
+    by_record = {
+        record.name: float(part.sum() / total)
+        for record, part in zip(records, power, strict=True)
+    }
+    times = [record.time for record in records]
+    ranges = [
+        _range("frequency", "frequency", "Hz", FREQUENCIES, spectrum),
+        _range("amplitude", "u", "A", CURRENTS, over([r.u for r in records], CURRENTS)),
+        _range(
+            "rate", "abs(du/dt)", "A/s", RATES, over([abs(s) for s in speeds], RATES)
+        ),
+        _range("slow-time", "time", "s", SECONDS, over(times, SECONDS)),
+        _range("unexplained", "frequency", "Hz", FREQUENCIES, spectrum),
+        _names("branch", shares),
+        _names("record", by_record),
+        _delay(records, differences, outputs, total),
+    ]
+    for item in ranges:
+        item["right"] = item["view"] in kind.views
+    return ranges
+
+
+def _spectrum(difference: FloatArray, dt: float) -> FloatArray:
+    """Power in the bins of frequency, by Parseval's sum."""
+    n = len(difference)
+    lines = np.abs(np.fft.rfft(difference)) ** 2 / n
+    lines[1 : (n + 1) // 2] *= 2.0
+    counts, _ = np.histogram(np.fft.rfftfreq(n, dt), FREQUENCIES, weights=lines)
+    return np.asarray(counts)
+
+
+def _range(
+    view: str, axis: str, unit: str, edges: FloatArray, shares: FloatArray
+) -> dict[str, Any]:
+    low, high = shortest(shares)
+    return {
+        "view": view,
+        "axis": axis,
+        "unit": unit,
+        "from": float(edges[low]),
+        "to": float(edges[high]),
+        "share": float(shares[low:high].sum()),
+        "edges": [float(f"{edge:.5g}") for edge in edges],
+        "shares": [float(f"{share:.5g}") for share in shares],
+    }
+
+
+def shortest(shares: FloatArray) -> tuple[int, int]:
+    """Find the fewest neighbouring bins that hold half; of equals, the fullest."""
+    sums = np.concatenate([[0.0], np.cumsum(shares)])
+    for count in range(1, len(shares) + 1):
+        held = sums[count:] - sums[:-count]
+        best = int(np.argmax(held))
+        if held[best] >= HALF * sums[-1]:
+            return best, best + count
+    return 0, len(shares)
+
+
+def _names(view: str, shares: dict[str, float]) -> dict[str, Any]:
+    """Fewest names that hold half of the power, the fullest first."""
+    order = sorted(shares, key=lambda name: -shares[name])
+    chosen: list[str] = []
+    while sum(shares[name] for name in chosen) < HALF and len(chosen) < len(order):
+        chosen.append(order[len(chosen)])
+    return {
+        "view": view,
+        "axis": view,
+        "unit": "",
+        "names": chosen,
+        "share": sum(shares[name] for name in chosen),
+        "shares": shares,
+    }
+
+
+def _delay(
+    records: list[Record],
+    differences: list[FloatArray],
+    outputs: list[FloatArray],
+    total: float,
+) -> dict[str, Any]:
+    """Delay that explains most of the difference, ``d = -delay * dy/dt``."""
+    across, square = 0.0, 0.0
+    for record, difference, y in zip(records, differences, outputs, strict=True):
+        slope = np.gradient(y, record.dt)
+        across -= float(difference @ slope)
+        square += float(slope @ slope)
+    delay = across / square
+    ends = sorted((0.5 * delay, 2.0 * delay))
+    return {
+        "view": "delay",
+        "axis": "delay",
+        "unit": "s",
+        "from": ends[0],
+        "to": ends[1],
+        "value": delay,
+        "share": across**2 / square / total,
+    }

@@ -1,0 +1,72 @@
+"""A case as files: the solver's folder, and the truth anywhere but in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.challenge.case import Case
+from hystbench.errors import InputError
+from hystbench.files import write_json, write_text
+from hystbench.record import Record
+
+HEADER = "time_s,current_A,displacement_um\n"
+ROW = "%.6f,%.8f,%.3f\n"
+
+
+def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
+    """Write ``dataset/`` and ``model.yaml`` into a folder, and the truth elsewhere.
+
+    Parameters
+    ----------
+    case : Case
+    folder : str or Path
+        New or empty.
+    truth_file : str or Path
+        JSON, outside the folder.
+
+    Raises
+    ------
+    InputError
+        If the truth would lie in the folder, or the folder holds something.
+    """
+    folder, truth_file = Path(folder), Path(truth_file)
+    if truth_file.resolve().is_relative_to(folder.resolve()):
+        raise InputError(
+            f"{truth_file}: truth inside {folder}; expected a file outside the folder "
+            "that the solver gets"
+        )
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(f"{folder}: expected a new or an empty folder")
+    for record in case.records:
+        write_text(folder / "dataset" / f"{record.name}.csv", _csv(record))
+    write_text(folder / "model.yaml", case.model.to_yaml())
+    write_text(folder / "dataset" / "dataset.yaml", _dataset(case))
+    write_json(truth_file, case.truth)
+
+
+def _csv(record: Record) -> str:
+    table = np.stack([record.time, record.u, record.y], axis=1)
+    return HEADER + (ROW * len(table)) % tuple(table.ravel().tolist())
+
+
+def _dataset(case: Case) -> str:
+    import yaml  # late: not needed for cases in memory
+
+    entries = []
+    for record in case.records:
+        entry = {"file": f"{record.name}.csv", "use": record.use}
+        if record.name in case.period_samples:
+            entry["period_samples"] = case.period_samples[record.name]
+        entries.append(entry)
+    content = {
+        "name": "blind-case",
+        "description": "Made by hystbench hide: a simulation, no measurement.",
+        "time": {"column": "time_s", "unit": "s"},
+        "input": {"column": "current_A", "unit": "A", "hold": "band-limited"},
+        "output": {"column": "displacement_um", "unit": "um"},
+        "records": entries,
+    }
+    text: str = yaml.safe_dump(content, sort_keys=False, default_flow_style=None)
+    return text
