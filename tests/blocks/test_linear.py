@@ -11,7 +11,8 @@ from hystbench.blocks import registry
 from hystbench.blocks.creep import Creep
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.eddy_diffusion import EddyDiffusion
-from hystbench.blocks.linear import LinearBlock, interpolate
+from hystbench.blocks.band_limited import interpolate
+from hystbench.blocks.linear import LinearBlock, respond
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
