@@ -35,6 +35,8 @@ class BuildKernels(build_ext):
 
 HERE = "src/hystbench/kernels"
 SOURCES = [
+    "drive.c",
+    "hardening.c",
     "jiles_atherton.c",
     "lms.c",
     "play.c",

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
+from hystbench.blocks.base import WrappingBlock
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.sensor_noise import SensorNoise
 from hystbench.errors import InputError
@@ -46,6 +47,53 @@ def test_the_chain_is_applied_in_order():
     u = np.array([0.0, 1.0])
     double = Model("m", Channel("u", "A"), Channel("y", "um"), chain)
     np.testing.assert_allclose(double.simulate(u, 1e-3), [3.0, 9.0])
+
+
+def test_hold_is_set_where_the_file_sets_none():
+    text = TEXT.replace("damping_ratio: 0.03,", "damping_ratio: 0.03, hold: linear,")
+    given = Model.from_mapping(yaml.safe_load(text), "small.yaml")
+    assert [block.holding for block in given.chain[1:3]] == ["linear", "linear"]
+    held = given.with_hold("band-limited")
+    assert [block.hold for block in held.chain[1:3]] == ["linear", "band-limited"]
+    assert held.chain[0] == given.chain[0]
+    assert held.provenance == given.provenance
+    with pytest.raises(InputError, match=r"'band' is unknown.*band-limited"):
+        given.with_hold("band")
+
+
+def test_a_staircase_ends_at_the_first_dynamic_block():
+    chain = [
+        {"input-delay": {"delay_s": 0.01}},
+        {"drive-lag": {"time_constant_s": 0.01}},
+        {"gain": {"value": 2.0}},
+        {"sensor-lag": {"time_constant_s": 0.01}},
+    ]
+    staircase = Model.from_mapping(
+        content() | {"chain": chain, "free": [], "provenance": {}}, "m.yaml"
+    ).with_hold("zero-order")
+    holds = [getattr(block, "hold", None) for block in staircase.chain]
+    assert holds == ["zero-order", "zero-order", None, "linear"]
+
+
+@pytest.mark.parametrize(
+    ("before", "expected"),
+    [
+        (
+            [],
+            r"block 1 \(hysteresis-shape\): expected hysteresis just before it "
+            r"\(gpi, .*rdgpi\), got none",
+        ),
+        (["gain"], r"block 2 .*got gain"),
+        (["gpi", "gain"], r"block 3 .*got gain"),
+    ],
+)
+def test_a_block_that_wraps_needs_hysteresis_before_it(before, expected):
+    names = [*before, "hysteresis-shape"]
+    chain = [{name: EXAMPLES[name]} for name in names]
+    with pytest.raises(InputError, match=expected):
+        Model.from_mapping(
+            content() | {"chain": chain, "free": [], "provenance": {}}, "m.yaml"
+        )
 
 
 def test_random_blocks_speak_only_with_a_generator():
@@ -106,12 +154,18 @@ def scaled(value, factor, low, high):
     return value if isinstance(value, int) else min(max(factor * value, low), high)
 
 
+GPI = registry()["gpi"].from_mapping(EXAMPLES["gpi"])
 words = st.text("abcdefghijklmnopqrstuvwxyz -µ:#'\"{}[]0123456789.", min_size=1)
 
 
 @given(st.data())
 def test_a_model_file_round_trips(data):
-    chain = tuple(data.draw(st.lists(blocks(), min_size=1, max_size=5)))
+    drawn = data.draw(st.lists(blocks(), min_size=1, max_size=5))
+    chain = tuple(
+        item
+        for block in drawn
+        for item in ([GPI, block] if isinstance(block, WrappingBlock) else [block])
+    )
     bare = Model("m", Channel("u", "A"), Channel("y", "um"), chain)
     names = bare.parameter_names()
     free = data.draw(st.lists(st.sampled_from(names), unique=True))

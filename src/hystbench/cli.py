@@ -18,6 +18,7 @@ from hystbench.errors import InputError, nearest
 COMMANDS = {
     "signal": "Make an excitation signal.",
     "measure": "Simulate a model on a signal and record it.",
+    "simulate": "Run a model on one record.",
     "load": "Read and check one record of a measured dataset.",
     "identify": "Identify the envelope functions (Algorithm 1).",
     "filter": "Run one LMS filter on one record.",

@@ -8,13 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, get_args
 
 import numpy as np
 
 from hystbench.blocks import registry
-from hystbench.blocks.base import Block, RandomBlock
+from hystbench.blocks.base import (
+    Block,
+    HystereticBlock,
+    RandomBlock,
+    Wrapped,
+    WrappingBlock,
+)
+from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_text
@@ -78,9 +86,10 @@ class Model:
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Refuse an empty chain and names of parameters that the chain lacks."""
+        """Refuse a chain that does not fit together and names that it lacks."""
         if not self.chain:
             raise InputError("chain: expected at least one block, got none")
+        _ = self.steps
         for key, names in (("free", self.free), ("provenance", self.provenance)):
             for name in names:
                 try:
@@ -110,11 +119,61 @@ class Model:
         """
         u = np.ascontiguousarray(u, dtype=np.float64)
         y = u
-        for block in self.chain:
-            y = block.simulate(y, u, dt)
-            if rng is not None and isinstance(block, RandomBlock):
-                y = y + block.draw(len(y), dt, rng)
+        for step in self.steps:
+            y = step.simulate(y, u, dt)
+            if rng is not None and isinstance(step, RandomBlock):
+                y = y + step.draw(len(y), dt, rng)
         return y
+
+    @cached_property
+    def steps(self) -> tuple[Block | Wrapped, ...]:
+        """What the signal passes: the chain, hysteresis and what wraps it as one."""
+        steps: list[Block | Wrapped] = []
+        for position, block in enumerate(self.chain):
+            if not isinstance(block, WrappingBlock):
+                steps.append(block)
+                continue
+            place = _place(position, block.name)
+            before = steps[-1] if steps else None
+            if not isinstance(before, HystereticBlock | Wrapped):
+                known = (key for key, item in registry().items() if item.hysteretic)
+                raise InputError(
+                    f"{place}expected hysteresis just before it ({', '.join(known)}), "
+                    f"got {self.chain[position - 1].name if position else 'none'}"
+                )
+            try:
+                steps[-1] = Wrapped(before, block)
+            except InputError as error:
+                raise InputError(f"{place}{error}") from None
+        return tuple(steps)
+
+    def with_hold(self, hold: Hold) -> Model:
+        """Return the model with a hold for the blocks that do not set one.
+
+        A staircase is smooth behind the first block that is dynamic: with
+        ``zero-order`` those after it take straight lines.
+
+        Parameters
+        ----------
+        hold : {"zero-order", "linear", "band-limited"}
+            How the model's input moves between two samples.
+
+        Raises
+        ------
+        InputError
+            If there is no such hold.
+        """
+        if hold not in HOLDS:
+            raise InputError(f"hold: {hold!r} is unknown; {nearest(hold, HOLDS)}")
+        chain = []
+        for block in self.chain:
+            if isinstance(block, HeldBlock):
+                if block.hold == "default":
+                    block = replace(block, hold=hold)
+                if block.smooths and hold == "zero-order":
+                    hold = "linear"
+            chain.append(block)
+        return replace(self, chain=tuple(chain))
 
     def parameter_names(self) -> tuple[str, ...]:
         """Return the names of all parameters in the chain's order."""

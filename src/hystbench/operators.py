@@ -143,6 +143,73 @@ def generalized_prandtl_ishlinskii(
     return y, end[: len(r)].copy()
 
 
+def growing_play(v: FloatArray, thresholds: ArrayLike, growth: ArrayLike) -> FloatArray:
+    """Play operators from rest whose thresholds grow from sample to sample.
+
+    Parameters
+    ----------
+    v : ndarray, shape (n,)
+        Input.
+    thresholds : array_like, shape (m,)
+        Thresholds at a growth of one, none negative.
+    growth : array_like, shape (n,)
+        Factor on all thresholds at each sample, none negative.
+
+    Returns
+    -------
+    ndarray, shape (n, m)
+        Output of each operator at each sample.
+
+    Raises
+    ------
+    InputError
+        If shapes differ, or a threshold or growth is negative.
+    """
+    v, r = _signal("v", v), _thresholds(thresholds)
+    factor = _growth(growth, len(v))
+    state, outputs = np.zeros(len(r)), np.empty((len(v), len(r)))
+    kernels.call("hb_growing_play", len(v), len(r), v, r, factor, state, outputs)
+    return outputs
+
+
+def growing_prandtl_ishlinskii(
+    left: FloatArray,
+    right: FloatArray,
+    thresholds: ArrayLike,
+    weights: ArrayLike,
+    growth: ArrayLike,
+) -> FloatArray:
+    """Eq. 9 from rest with thresholds that grow from sample to sample.
+
+    Parameters
+    ----------
+    left, right, thresholds, weights
+        As for :func:`generalized_prandtl_ishlinskii`.
+    growth : array_like, shape (n,)
+        Factor on all thresholds at each sample, none negative.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Output of the model.
+
+    Raises
+    ------
+    InputError
+        As for :func:`generalized_prandtl_ishlinskii`, or if a growth is negative.
+    """
+    left, right = _envelopes(left, right, "eq4", None, None)
+    r, w = _thresholds(thresholds), _array(weights)
+    if w.shape != r.shape:
+        raise InputError(f"weights: {w.shape} given, {len(r)} expected")
+    factor, y = _growth(growth, len(left)), np.empty(len(left))
+    spaced, weighted = kernels.pad(r), kernels.pad(w)
+    vectors = len(spaced) // kernels.WIDTH
+    arrays = (left, right, spaced, weighted, factor, y)
+    kernels.call("hb_growing_prandtl_ishlinskii", len(left), vectors, *arrays)
+    return y
+
+
 def rate_dependent_prandtl_ishlinskii(
     left: ArrayLike,
     right: ArrayLike,
@@ -262,6 +329,35 @@ def state_space(
     return y, x[:size].copy()
 
 
+def modes(
+    factors: FloatArray,
+    b: FloatArray,
+    c: FloatArray,
+    d: float,
+    u: ArrayLike,
+    x0: FloatArray,
+) -> FloatArray:
+    """Output of :func:`state_space` where A is diagonal, in a faster loop.
+
+    Parameters
+    ----------
+    factors : ndarray, shape (s,)
+        Diagonal of A.
+    b, c, d, u, x0
+        As for :func:`state_space`.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    u = _signal("u", u)
+    y = np.empty(len(u))
+    padded = [kernels.pad(values) for values in (factors, b, c)]
+    vectors = len(padded[0]) // kernels.WIDTH
+    kernels.call("hb_modes", len(u), vectors, *padded, float(d), u, kernels.pad(x0), y)
+    return y
+
+
 def follow_direction(v: FloatArray, left: FloatArray, right: FloatArray) -> None:
     """Rewrite envelopes in place so that Eq. 4 on them is Eq. 12.
 
@@ -288,6 +384,15 @@ def _thresholds(values: ArrayLike) -> FloatArray:
     if not (r >= 0).all():
         raise InputError("thresholds: a negative or missing value")
     return r
+
+
+def _growth(values: ArrayLike, count: int) -> FloatArray:
+    growth = _signal("growth", values)
+    if growth.shape != (count,):
+        raise InputError(f"growth: {growth.shape} given, ({count},) expected")
+    if not (growth >= 0).all():
+        raise InputError("growth: a negative or missing value")
+    return growth
 
 
 def _state(values: ArrayLike | None, count: int) -> FloatArray:

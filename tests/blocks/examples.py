@@ -5,16 +5,33 @@ A new block needs a line here; the contract test says so.
 
 EXAMPLES = {
     "asymmetry": {"coefficient": 0.02},
+    "backlash": {"half_width": 0.1},
     "calibration-error": {"gain": 1.05, "offset": 0.1},
     "creep": {"magnitudes": [0.05, 0.03], "time_constants_s": [0.2, 2.0]},
+    "dead-zone": {"half_width": 0.05},
+    "drift": {"slope": 0.5, "path": [0.1, -0.2, 0.05]},
     "drive-lag": {"time_constant_s": 0.002},
+    "drive-saturation": {"limit": 0.5},
     "eddy-diffusion": {"time_constant_s": 0.003},
+    "friction": {"coulomb": 2.0, "velocity_scale": 5.0},
     "gain": {"value": 12.0, "offset": 0.5},
     "gpi": {
         "envelope": [1.2878, 0.36, 0.6025, -0.6671, 0.3223, 1.2233, 0.1104, -0.0248],
         "thresholds": [0.0, 0.05, 0.1],
         "weights": [1.0, 0.5, 0.25],
     },
+    "hysteresis": {
+        "envelope": [1.0, 0.9, 0.2, 0.0, 0.9, 1.0, 0.1, -0.1],
+        "thresholds": [0.0, 0.1],
+        "weights": [2.0, -0.5],
+    },
+    "hysteresis-shape": {
+        "thresholds": [0.05, 0.2],
+        "weights": [0.3, -0.1],
+        "square_weights": [0.02, 0.05],
+        "powers": [0.1, 0.0, -0.05],
+    },
+    "input-delay": {"delay_s": 0.00123},
     "jiles-atherton": {
         "saturation": 40.0,
         "shape": 0.5,
@@ -22,6 +39,11 @@ EXAMPLES = {
         "pinning": 0.1,
         "reversibility": 0.3,
         "bias": 0.2,
+    },
+    "mains-pickup": {
+        "frequency_hz": 50.0,
+        "amplitudes": [0.1, 0.02],
+        "phases": [0.5, -1.0],
     },
     "preisach": {
         "limit": 0.8,
@@ -32,6 +54,7 @@ EXAMPLES = {
         "half_widths": [0.0, 0.2],
         "half_width_spreads": [0.1, 0.1],
     },
+    "rate-dependent-hysteresis": {"coefficient": 0.02, "exponent": 0.7},
     "rdgpi": {
         "alpha1": 8.0,
         "beta1": 1.002,
@@ -46,8 +69,18 @@ EXAMPLES = {
         "envelope_offset": -0.13,
     },
     "resonance": {"frequency_hz": 65.0, "damping_ratio": 0.03, "participation": 0.1},
+    "saturation": {"level": 1.5},
+    "sensor-lag": {"time_constant_s": 0.001},
     "sensor-noise": {"rms": 0.05},
     "sensor-nonlinearity": {"quadratic": -0.01, "cubic": 0.002},
+    "slew-limit": {"rate": 100.0},
+    "stiffness-hardening": {
+        "coefficient": 0.3,
+        "frequency_hz": 65.0,
+        "damping_ratio": 0.03,
+        "participation": 0.4,
+    },
+    "thermal-drift": {"coefficient": 0.3, "time_constant_s": 2.0},
     "transfer-function": {
         "numerator": [1.0e3, 4.0e5],
         "denominator": [1.0, 1.2e3, 4.0e5],

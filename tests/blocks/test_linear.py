@@ -8,11 +8,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
+from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.creep import Creep
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.eddy_diffusion import EddyDiffusion
-from hystbench.blocks.linear import LinearBlock, interpolate
+from hystbench.blocks.linear import (
+    LinearBlock,
+    StateSpace,
+    discretise,
+    discretise_modes,
+    respond,
+)
 from hystbench.blocks.resonance import Resonance
+from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 
@@ -20,6 +28,7 @@ DT = 1e-4
 WN = 2 * np.pi * 65.0
 CASES = {
     "drive-lag": (DriveLag(time_constant_s=0.002), [1.0], [0.002, 1.0]),
+    "sensor-lag": (SensorLag(time_constant_s=0.0007), [1.0], [0.0007, 1.0]),
     # (1 - p) + p wn^2 / (...) on one denominator, by hand.
     "resonance": (
         Resonance(frequency_hz=65.0, damping_ratio=0.03, participation=-0.2),
@@ -120,6 +129,48 @@ def test_steady_state_of_a_fast_sine(name, hold, error):
     assert np.abs(y - expected)[middle].max() < error * scale
     if hold == "linear" and name == "drive-lag":
         assert np.abs(y - expected)[middle].max() > 0.1 * scale
+
+
+@pytest.mark.parametrize("name", [*CASES, "eddy-diffusion"])
+@pytest.mark.parametrize("n", [3, 98, 1212])  # all but the first are continued
+def test_band_limited_is_the_limit_of_straight_lines(name, n):
+    # Straight lines on a finer grid converge as its step squared, start and end too.
+    diffusion = EddyDiffusion(time_constant_s=0.003)
+    system = (CASES[name][0] if name in CASES else diffusion).continuous()
+    v = np.random.default_rng(4).normal(size=n) + 2.0
+    exact = respond(system, v, DT, "band-limited")
+    errors = []
+    for fine in (8, 32):
+        lines = respond(system, interpolate(v, fine), DT / fine, "linear")[::fine]
+        errors.append(np.abs(lines - exact).max())
+    scale = np.abs(exact).max()
+    assert errors[1] < 3e-4 * scale
+    assert errors[1] < errors[0] / 12 + 1e-11 * scale
+
+
+def test_repeated_poles_are_no_trouble():
+    # (s + 300)^4 has one eigenvector: a modal form would not exist.
+    denominator = np.poly([-300.0] * 4)
+    block = TransferFunction(numerator=[denominator[-1]], denominator=[*denominator])
+    frequency = np.array([0.0, 10.0, 50.0, 500.0])
+    expected = (300.0 / (300.0 + 2j * np.pi * frequency)) ** 4
+    np.testing.assert_allclose(block.frequency_response(frequency), expected, rtol=1e-9)
+
+
+@given(st.lists(st.floats(1e-6, 1e8), min_size=1, max_size=5, unique=True))
+def test_modes_are_discretised_as_any_other_system(rates):
+    # A time step from 1e-10 to 1e4 time constants.
+    m = len(rates)
+    system = StateSpace(-np.diag(rates), np.array(rates), np.ones(m), 0.0)
+    for hold in ("zero-order", "linear"):
+        phi, now, following = discretise_modes(system, DT, hold)
+        for i, rate in enumerate(rates):
+            # one mode at a time: side by side, expm drowns the slow in the fast
+            single = StateSpace(-np.array([[rate]]), np.array([rate]), np.ones(1), 0.0)
+            a, b, c = discretise(single, DT, hold)
+            np.testing.assert_allclose(phi[i], a[0, 0], rtol=1e-9, atol=1e-13)
+            np.testing.assert_allclose(now[i], b[0], rtol=1e-9, atol=1e-13)
+            np.testing.assert_allclose(following[i], c[0], rtol=1e-9, atol=1e-13)
 
 
 @given(st.lists(st.floats(-1, 1), min_size=3, max_size=40), st.integers(2, 16))

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
-from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.linear import LinearBlock, StateSpace, lag
 from hystbench.blocks.parameter import number
 
 
@@ -29,5 +27,4 @@ class DriveLag(LinearBlock):
 
     def continuous(self) -> StateSpace:
         """Return the lag with its output as the state."""
-        rate = 1.0 / self.time_constant_s
-        return StateSpace(np.array([[-rate]]), np.array([rate]), np.array([1.0]), 0.0)
+        return lag(self.time_constant_s)

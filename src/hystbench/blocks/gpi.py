@@ -5,16 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hystbench.blocks.base import Block
+from hystbench.blocks.base import HystereticBlock
 from hystbench.blocks.parameter import numbers
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
-from hystbench.operators import generalized_prandtl_ishlinskii
+from hystbench.operators import (
+    generalized_prandtl_ishlinskii,
+    growing_prandtl_ishlinskii,
+)
 from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
-class GeneralizedPrandtlIshlinskii(Block):
+class GeneralizedPrandtlIshlinskii(HystereticBlock):
     """Weighted sum of generalized play operators (paper, Eqs. 3-6 and 9).
 
     ``y(t) = sum_i w_i F_{r_i}[z](t)`` with the envelope functions
@@ -58,8 +61,22 @@ class GeneralizedPrandtlIshlinskii(Block):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute Eq. 9 for every sample."""
+        return self.grow(z, u, dt, None)
+
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Compute Eq. 9 with all thresholds times ``growth``."""
         envelope = Envelope(*self.envelope)
-        y, _ = generalized_prandtl_ishlinskii(
-            envelope.left(z), envelope.right(z), self.thresholds, self.weights
+        left, right = envelope.left(v), envelope.right(v)
+        if growth is None:
+            y, _ = generalized_prandtl_ishlinskii(
+                left, right, self.thresholds, self.weights
+            )
+            return y
+        return growing_prandtl_ishlinskii(
+            left, right, self.thresholds, self.weights, growth
         )
-        return y
+
+    def check_growth(self) -> None:
+        """Accept: the thresholds of play operators can grow."""

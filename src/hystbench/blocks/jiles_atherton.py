@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.base import Block
+from hystbench.blocks.base import HystereticBlock
 from hystbench.blocks.parameter import number
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -21,7 +21,7 @@ LARGEST_COUPLING = 2.9
 
 
 @dataclass(frozen=True)
-class JilesAtherton(Block):
+class JilesAtherton(HystereticBlock):
     """Jiles-Atherton hysteresis of a biased transducer [1]_.
 
     With the field ``h = bias + z`` and the effective field ``e = h + coupling m``,

@@ -32,6 +32,8 @@ class Parameter:
         Names of the numbers of a sequence; a model file then holds them by name.
     options : tuple of str
         Words that a choice may take.
+    may_be_empty : bool
+        Whether a sequence may have no numbers at all.
     """
 
     kind: Kind
@@ -41,6 +43,7 @@ class Parameter:
     high: float = math.inf
     names: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
+    may_be_empty: bool = False
 
     def check(self, name: str, value: object) -> Value:
         """Return the value as float, tuple of float or word.
@@ -66,7 +69,7 @@ class Parameter:
             raise InputError(
                 f"{name}: expected {len(self.names)} numbers, got {len(value)}"
             )
-        if not value:
+        if not value and not self.may_be_empty:
             raise InputError(f"{name}: expected at least one number, got none")
         return tuple(self._number(f"{name}[{i}]", item) for i, item in enumerate(value))
 
@@ -119,9 +122,11 @@ def numbers(
     low: float = -math.inf,
     high: float = math.inf,
     names: tuple[str, ...] = (),
+    optional: bool = False,
 ) -> Any:
-    """Declare a parameter that is a sequence of numbers."""
-    return _declare(Parameter("numbers", unit, meaning, low, high, names), MISSING)
+    """Declare a parameter that is a sequence of numbers; an optional one may be ()."""
+    about = Parameter("numbers", unit, meaning, low, high, names, may_be_empty=optional)
+    return _declare(about, () if optional else MISSING)
 
 
 def choice(meaning: str, options: tuple[str, ...], default: str) -> Any:

@@ -9,14 +9,14 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.base import Block
+from hystbench.blocks.base import HystereticBlock
 from hystbench.blocks.parameter import number, numbers
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
-class Preisach(Block):
+class Preisach(HystereticBlock):
     """Scalar Preisach model beside a reversible part [1]_.
 
     ``y = reversible z + integral of mu(a, b) R_ab[z] over b <= a``. The relay

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
-from hystbench.blocks.base import Block
+from hystbench.blocks.base import HystereticBlock
 from hystbench.blocks.parameter import choice, number
 from hystbench.errors import InputError
 from hystbench.rdgpi.model import STARTS, RateDependentGPI
@@ -13,7 +13,7 @@ from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
-class RateDependentPrandtlIshlinskii(Block):
+class RateDependentPrandtlIshlinskii(HystereticBlock):
     """The paper's baseline of Table 4, as :mod:`hystbench.rdgpi` reads it.
 
     The rate is a central difference, so the output follows its input one sample

@@ -98,3 +98,48 @@ EXPORT index_t hb_rate_dependent(index_t n, index_t wide, const double *number,
     FOR_SIZES(wide, CALL)
 #undef CALL
 }
+
+/* Outputs (n, m) of m play operators whose thresholds are r times growth at each
+ * sample. */
+EXPORT void hb_growing_play(index_t n, index_t m, const double *v,
+                            const double *restrict r, const double *growth,
+                            double *restrict state, double *restrict out)
+{
+    for (index_t k = 0; k < n; k++)
+        for (index_t i = 0; i < m; i++) {
+            double low = v[k] - r[i] * growth[k], high = v[k] + r[i] * growth[k];
+            double lower = high < state[i] ? high : state[i];
+            out[k * m + i] = state[i] = low > lower ? low : lower;
+        }
+}
+
+INLINE index_t growing(index_t n, const double *left, const double *right,
+                       const double *thresholds, const double *weights,
+                       const double *growth, double *y, index_t vectors)
+{
+    const index_t size = vectors * LANES;
+    double w[size] ALIGNED, r[size] ALIGNED;
+    for (index_t i = 0; i < size; i++) w[i] = 0;
+    for (index_t k = 0; k < n; k++) {
+        lanes total = {0};
+        for (index_t i = 0; i < size; i++) r[i] = thresholds[i] * growth[k];
+        play_step(size, left + k, right + k, 0, r, w);
+        UNROLL
+        for (index_t j = 0; j < size; j += LANES)
+            total += load(w + j) * load(weights + j);
+        y[k] = sum(total);
+    }
+    return n;
+}
+
+/* Eq. 9 from rest, with thresholds that are r times growth at each sample; padding
+ * has weight 0. */
+EXPORT index_t hb_growing_prandtl_ishlinskii(index_t n, index_t wide,
+                                             const double *left, const double *right,
+                                             const double *r, const double *weights,
+                                             const double *growth, double *y)
+{
+#define CALL(size) growing(n, left, right, r, weights, growth, y, size)
+    FOR_SIZES(wide, CALL)
+#undef CALL
+}

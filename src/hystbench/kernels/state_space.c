@@ -43,3 +43,34 @@ EXPORT void hb_state_space(index_t n, index_t wide, const double *a, const doubl
     else
         simulate(n, a, b, c, d, u, state, y, wide * WIDTH / LANES);
 }
+
+INLINE index_t modes(index_t n, const double *factors, const double *b,
+                     const double *c, double d, const double *u, double *state,
+                     double *y, index_t vectors)
+{
+    const index_t size = vectors * LANES;
+    double x[size] ALIGNED;
+    copy(size, state, x);
+    for (index_t k = 0; k < n; k++) {
+        lanes output = {0};
+        UNROLL
+        for (index_t j = 0; j < size; j += LANES) {
+            const lanes now = load(x + j);
+            output += load(c + j) * now;
+            store(x + j, load(factors + j) * now + load(b + j) * u[k]);
+        }
+        y[k] = sum(output) + d * u[k];
+    }
+    copy(size, x, state);
+    return n;
+}
+
+/* The same where A is diagonal: factors holds its diagonal. */
+EXPORT index_t hb_modes(index_t n, index_t wide, const double *factors,
+                        const double *b, const double *c, double d, const double *u,
+                        double *state, double *y)
+{
+#define CALL(size) modes(n, factors, b, c, d, u, state, y, size)
+    FOR_SIZES(wide, CALL)
+#undef CALL
+}

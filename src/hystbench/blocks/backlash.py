@@ -1,0 +1,35 @@
+"""Block ``backlash``: play at the output joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number
+from hystbench.operators import play
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class Backlash(Block):
+    """Play operator of the output: it moves when the gap is used up (Eqs. 1 and 2).
+
+    The joint starts in the middle of its gap.
+
+    References
+    ----------
+    .. [1] M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis, Springer,
+       1989.
+    """
+
+    name: ClassVar = "backlash"
+    place: ClassVar = "mechanics"
+    reference: ClassVar = "Krasnosel'skii, Pokrovskii, Systems with Hysteresis, 1989"
+
+    half_width: float = number("Y", "half of the gap", 0.0, 1e9)
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Follow the input at the edges of the gap."""
+        y, _ = play(z, [self.half_width], z[:1])
+        return y[:, 0]

@@ -1,0 +1,33 @@
+"""Block ``drive-saturation``: the amplifier runs out of current."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class DriveSaturation(Block):
+    """Hard limit of the drive: ``v = clip(z, -limit, limit)``.
+
+    References
+    ----------
+    .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton University
+       Press, 2021: saturation, rate limits and dead zones of actuators.
+    """
+
+    name: ClassVar = "drive-saturation"
+    place: ClassVar = "drive"
+    reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
+
+    limit: float = number("U", "largest current either way", 1e-9, 1e9)
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Clip the current."""
+        return np.clip(z, -self.limit, self.limit)

@@ -1,0 +1,43 @@
+"""Block ``friction``: a force against the motion that the input is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class Friction(Block):
+    """Coulomb friction, smoothed: ``y = z + coulomb tanh((du/dt) / velocity_scale)``.
+
+    For models with motion in and force out. The velocity is a central difference of
+    the model's input, one-sided at the ends.
+
+    References
+    ----------
+    .. [1] B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "A survey of models,
+       analysis tools and compensation methods for the control of machines with
+       friction", Automatica 30 (1994) 1083-1138.
+    """
+
+    name: ClassVar = "friction"
+    place: ClassVar = "mechanics"
+    reference: ClassVar = (
+        "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994)"
+    )
+
+    coulomb: float = number("Y", "force at high velocity", -1e9, 1e9)
+    velocity_scale: float = number(
+        "U/s", "velocity at which 76 % of it are there", 1e-12, 1e12
+    )
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Add the friction."""
+        velocity = np.gradient(u, dt)
+        return z + self.coulomb * np.tanh(velocity / self.velocity_scale)

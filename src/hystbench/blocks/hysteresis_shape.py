@@ -1,0 +1,75 @@
+"""Block ``hysteresis-shape``: what a hysteresis of the wrong shape lacks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import Hysteresis, WrappingBlock
+from hystbench.blocks.parameter import numbers
+from hystbench.errors import InputError
+from hystbench.operators import growing_play, play
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class HysteresisShape(WrappingBlock):
+    """Rate-independent correction beside the hysteresis that it wraps.
+
+    ``y = inner[v] + sum_k c_k v^k + sum_i (w_i P_i + s_i P_i^2)`` with v what enters
+    the hysteresis and P_i the play operator of threshold r_i on v (paper, Eqs. 1
+    and 2, w(0) = 0). It is linear in ``powers`` c, ``weights`` w and
+    ``square_weights`` s. The plays are symmetric, their squares are not: together
+    they reshape minor loops, corners and the difference of both halves.
+
+    References
+    ----------
+    .. [1] K. Kuhnen, "Modeling, identification and compensation of complex hysteretic
+       nonlinearities: a modified Prandtl-Ishlinskii approach", European Journal of
+       Control 9 (2003) 407-418.
+    """
+
+    name: ClassVar = "hysteresis-shape"
+    place: ClassVar = "material"
+    reference: ClassVar = "Kuhnen, European Journal of Control 9 (2003) 407-418"
+
+    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, 1e9)
+    weights: tuple[float, ...] = numbers("Y/U", "w_i, one a threshold", -1e9, 1e9)
+    square_weights: tuple[float, ...] = numbers(
+        "Y/U^2", "s_i, one a threshold or none", -1e9, 1e9, optional=True
+    )
+    powers: tuple[float, ...] = numbers(
+        "Y/U^k", "c_k, from k = 1 on", -1e9, 1e9, optional=True
+    )
+
+    def check(self) -> None:
+        """Refuse as many weights as there are no thresholds for."""
+        for key in ("weights", "square_weights"):
+            given = len(getattr(self, key))
+            if given != len(self.thresholds) and (given or key == "weights"):
+                raise InputError(
+                    f"{key}: expected {len(self.thresholds)} numbers, one a "
+                    f"threshold, got {given}"
+                )
+
+    def wrap(
+        self,
+        inner: Hysteresis,
+        v: FloatArray,
+        u: FloatArray,
+        dt: float,
+        growth: FloatArray | None = None,
+    ) -> FloatArray:
+        """Add the correction, whose thresholds grow with those inside."""
+        if growth is None:
+            plays, _ = play(v, self.thresholds)
+        else:
+            plays = growing_play(v, self.thresholds, growth)
+        y = inner.grow(v, u, dt, growth) + plays @ np.array(self.weights)
+        if self.square_weights:
+            y += (plays * plays) @ np.array(self.square_weights)
+        if self.powers:
+            y += v * np.polyval(self.powers[::-1], v)
+        return y

@@ -1,0 +1,50 @@
+"""Block ``mains-pickup``: a tone that the input does not explain."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number, numbers
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class MainsPickup(Block):
+    """Hum of the mains: ``y = z + sum_h amplitude_h sin(2 pi h f t + phase_h)``.
+
+    h counts from 1, the fundamental; t is 0 at the first sample of each record.
+
+    References
+    ----------
+    .. [1] H. W. Ott, Electromagnetic Compatibility Engineering, Wiley, 2009.
+    """
+
+    name: ClassVar = "mains-pickup"
+    place: ClassVar = "sensor"
+    reference: ClassVar = "Ott, Electromagnetic Compatibility Engineering, 2009"
+
+    frequency_hz: float = number("Hz", "f, of the fundamental", 1e-3, 1e6)
+    amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic", -1e9, 1e9)
+    phases: tuple[float, ...] = numbers("rad", "one a harmonic", -1e3, 1e3)
+
+    def check(self) -> None:
+        """Refuse amplitudes without phases."""
+        if len(self.phases) != len(self.amplitudes):
+            raise InputError(
+                f"phases: expected {len(self.amplitudes)} numbers, one an amplitude, "
+                f"got {len(self.phases)}"
+            )
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Add the hum."""
+        angle = 2 * np.pi * self.frequency_hz * dt * np.arange(len(z))
+        y = z.copy()
+        both = zip(self.amplitudes, self.phases, strict=True)
+        for harmonic, (amplitude, phase) in enumerate(both, start=1):
+            y += amplitude * np.sin(harmonic * angle + phase)
+        return y

@@ -1,0 +1,41 @@
+"""Block ``slew-limit``: the drive changes no faster than its rate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench import kernels
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class SlewLimit(Block):
+    """Output that follows its input with ``|dv/dt| <= rate``.
+
+    It starts at the input's first sample. Exact for an input that moves straight
+    between samples: where the output catches up within an interval, it follows from
+    there on.
+
+    References
+    ----------
+    .. [1] K. J. Astrom, R. M. Murray, Feedback Systems, 2nd ed., Princeton University
+       Press, 2021: saturation, rate limits and dead zones of actuators.
+    """
+
+    name: ClassVar = "slew-limit"
+    place: ClassVar = "drive"
+    reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
+
+    rate: float = number("U/s", "largest rate of the output", 1e-9, 1e12)
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Follow the input at a limited rate."""
+        v = np.empty(len(z))
+        rate = self.rate * dt
+        kernels.call("hb_slew_limit", len(z), rate, np.ascontiguousarray(z), v)
+        return v

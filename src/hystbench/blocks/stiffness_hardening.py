@@ -1,0 +1,64 @@
+"""Block ``stiffness-hardening``: a mode whose spring stiffens with its displacement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench import kernels
+from hystbench.blocks.band_limited import straight_lines
+from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class StiffnessHardening(HeldBlock):
+    """Duffing's oscillator beside a rigid path; it replaces a linear ``resonance``.
+
+    ``y = (1 - p) z + p x`` with ``x'' + 2 zeta wn x' + wn^2 (x + coefficient x^3) =
+    wn^2 z``, from rest. With a coefficient of zero it is ``resonance``. Integrated by
+    the classical Runge-Kutta method in steps of at most 0.1 radian of the stiffened
+    mode. A band-limited input is taken as straight lines on a grid twice as fine.
+
+    A negative coefficient softens the spring. Where such a mode runs away, the output
+    is NaN from there on, as there is none.
+
+    References
+    ----------
+    .. [1] I. Kovacic, M. J. Brennan (eds.), The Duffing Equation: Nonlinear Oscillators
+       and their Behaviour, Wiley, 2011.
+    """
+
+    name: ClassVar = "stiffness-hardening"
+    place: ClassVar = "mechanics"
+    reference: ClassVar = "Kovacic, Brennan, The Duffing Equation, 2011"
+
+    coefficient: float = number("1/Y^2", "weight of the cube", -1e9, 1e9)
+    frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)
+    damping_ratio: float = number("-", "zeta, share of critical damping", 1e-5, 10.0)
+    participation: float = number(
+        "-",
+        "p, static share; negative: out of phase with the rest",
+        -10.0,
+        10.0,
+    )
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Integrate the mode."""
+        fine = 2 if self.holding == "band-limited" and len(z) > 2 else 1
+        v = straight_lines(z, fine) if fine > 1 else np.ascontiguousarray(z)
+        x = np.empty(len(v))
+        kernels.call(
+            "hb_hardening",
+            len(v),
+            2 * np.pi * self.frequency_hz * dt / fine,
+            self.damping_ratio,
+            self.coefficient,
+            float(self.holding != "zero-order"),
+            v,
+            x,
+        )
+        return (1 - self.participation) * z + self.participation * x[::fine]

@@ -1,0 +1,37 @@
+"""Block ``thermal-drift``: Joule heat expands the rod."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.linear import lag, respond
+from hystbench.blocks.parameter import number
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class ThermalDrift(Block):
+    """Expansion by the heat of the input: ``y = z + coefficient LP[u^2]``.
+
+    LP is a first-order low-pass that starts cold. ``u^2`` moves straight between
+    samples.
+
+    References
+    ----------
+    .. [1] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
+       Press, 2000: losses and the heating of rod and coil.
+    """
+
+    name: ClassVar = "thermal-drift"
+    place: ClassVar = "mechanics"
+    reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
+
+    coefficient: float = number("Y/U^2", "expansion at a steady input", -1e9, 1e9)
+    time_constant_s: float = number("s", "tau of the warming", 1e-6, 1e6)
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Add the expansion."""
+        heat = respond(lag(self.time_constant_s), u * u, dt, "linear")
+        return z + self.coefficient * heat

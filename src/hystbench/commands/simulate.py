@@ -1,0 +1,144 @@
+"""``hystbench simulate``: run a model on one record."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+from typing import NamedTuple, cast
+
+import click
+import numpy as np
+
+from hystbench import options
+from hystbench.blocks.held import HOLDS, Hold
+from hystbench.dataset import load_dataset
+from hystbench.errors import InputError, nearest
+from hystbench.files import write_csv
+from hystbench.model import load_model
+from hystbench.record import Channel, FloatArray, load_record
+from hystbench.signals import load_signal
+
+
+class Run(NamedTuple):
+    """What is to be simulated, and what was measured if anything was."""
+
+    dt: float
+    u: FloatArray
+    input: Channel
+    y: FloatArray | None
+    output: Channel | None
+    hold: Hold | None
+
+
+@click.command()
+@click.argument("model", type=options.FILE)
+@click.argument("record", type=options.FILE)
+@click.option(
+    "--dataset",
+    type=click.Path(exists=True, path_type=Path),
+    help="The dataset.yaml of a CSV record; by default the one beside it.",
+)
+@click.option(
+    "--hold",
+    type=click.Choice(HOLDS),
+    help="How the input moves between samples where MODEL does not say.",
+)
+@options.out
+def simulate(
+    model: Path, record: Path, dataset: Path | None, hold: Hold | None, out: Path
+) -> None:
+    """Run MODEL on RECORD and write time, input, measured and simulated output.
+
+    RECORD is a CSV file of a dataset, or an archive (.npz) of a record or a signal.
+    """
+    system = load_model(model)
+    run = _read(record, dataset)
+    pairs = [("input", system.input, run.input), ("output", system.output, run.output)]
+    for side, ours, theirs in pairs:
+        if theirs is not None:
+            _check_unit(f"{model}: {side}", ours, str(record), theirs)
+    taken = hold or run.hold
+    if taken is not None:
+        system = system.with_hold(taken)
+    y = system.simulate(run.u, run.dt)
+    lost = np.flatnonzero(~np.isfinite(y))
+    if len(lost):
+        raise InputError(
+            f"{model}: the output is not finite from {lost[0] * run.dt:g} s of "
+            f"{record} on; expected a model that stays bounded"
+        )
+    time = np.arange(len(y)) * run.dt
+    columns = {"time_s": time, _column(run.input.name, run.input.unit): run.u}
+    if run.y is not None and run.output is not None:
+        columns[_column("measured", run.output.unit)] = run.y
+    columns[_column("simulated", system.output.unit)] = y
+    cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
+    write_csv(out, list(columns), zip(*cells, strict=True))
+    click.echo(
+        f"{out}: {len(y)} samples; hold where the model sets none: "
+        f"{taken or 'each block its default'}"
+    )
+
+
+def _read(record: Path, dataset: Path | None) -> Run:
+    if record.suffix != ".npz":
+        return _read_csv(record, dataset)
+    if dataset is not None:
+        raise InputError(f"{record}: an archive; expected no --dataset with it")
+    if _holds(record, "unit"):
+        signal = load_signal(record)
+        given = Channel("input", signal.unit)
+        return Run(signal.dt, signal.u, given, None, None, None)
+    found = load_record(record)
+    return Run(found.dt, found.u, found.input, found.y, found.output, None)
+
+
+def _read_csv(record: Path, dataset: Path | None) -> Run:
+    beside = record.parent / "dataset.yaml"
+    if dataset is None and not beside.is_file():
+        raise InputError(
+            f"{record}: no dataset.yaml beside it; expected one, or --dataset"
+        )
+    about = load_dataset(dataset or beside)
+    for name, file in about.record_files.items():
+        if file.resolve() == record.resolve():
+            found = about.read(name)
+            hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
+            return Run(found.dt, found.u, found.input, found.y, found.output, hold)
+    files = [file.name for file in about.record_files.values()]
+    raise InputError(
+        f"{about.path}: records: {record} is none of them; "
+        f"{nearest(record.name, files)}"
+    )
+
+
+def _holds(archive: Path, key: str) -> bool:
+    """Tell whether a NumPy archive holds an array of a name."""
+    try:
+        with zipfile.ZipFile(archive) as content:
+            return f"{key}.npy" in content.namelist()
+    except (OSError, zipfile.BadZipFile) as error:
+        raise InputError(f"{archive}: not an archive of NumPy ({error})") from error
+
+
+def _check_unit(place: str, ours: Channel, record: str, theirs: Channel) -> None:
+    """Refuse a unit of the record that is not the model's."""
+    if ours.unit == theirs.unit:
+        return
+    import pint  # late: a fifth of a second, and rarely needed
+
+    where = f"{place}: unit {ours.unit!r}, but {record} has {theirs.unit!r}"
+    try:
+        factor = float(pint.Quantity(1, theirs.unit).to(ours.unit).magnitude)
+    except (pint.UndefinedUnitError, pint.DimensionalityError) as error:
+        raise InputError(f"{where}: {error}; expected the same unit") from None
+    if abs(factor - 1) > 1e-12:
+        raise InputError(
+            f"{where}; nothing is converted silently: multiply the record's column "
+            f"by {factor:g} and say {ours.unit!r} in its dataset.yaml"
+        )
+
+
+def _column(name: str, unit: str) -> str:
+    """Name of a column with its unit, as files of datasets have it."""
+    return f"{name}_{unit}".replace("/", "_per_").replace(" ", "_")

@@ -1,0 +1,108 @@
+"""Blocks of the drive against plain references and closed forms."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.blocks.dead_zone import DeadZone
+from hystbench.blocks.drive_saturation import DriveSaturation
+from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.slew_limit import SlewLimit
+
+DT = 1e-3
+Z = np.array([-2.0, -0.3, 0.0, 0.3, 1.0, 3.0])
+inputs = st.lists(st.floats(-1, 1), min_size=1, max_size=50).map(np.array)
+
+
+def test_saturation_and_dead_zone_worked_out_by_hand():
+    np.testing.assert_array_equal(
+        DriveSaturation(limit=1.0).simulate(Z, Z, DT), [-1.0, -0.3, 0.0, 0.3, 1.0, 1.0]
+    )
+    np.testing.assert_array_equal(
+        DeadZone(half_width=0.5).simulate(Z, Z, DT), [-1.5, 0.0, 0.0, 0.0, 0.5, 2.5]
+    )
+
+
+def follow(z, step, parts=500):
+    """Follow straight lines in many small steps, each of them limited."""
+    now, out = z[0], [z[0]]
+    for before, after in itertools.pairwise(z):
+        for part in range(1, parts + 1):
+            wanted = before + (after - before) * part / parts
+            now += np.clip(wanted - now, -step / parts, step / parts)
+        out.append(now)
+    return np.array(out)
+
+
+@given(inputs.map(lambda z: z[:12]), st.floats(0.01, 1.5))
+def test_slew_limit_is_the_limit_of_small_steps(z, step):
+    v = SlewLimit(rate=step / DT).simulate(z, z, DT)
+    # A small step looks at its end alone: an error of its size, 2 / 500.
+    np.testing.assert_allclose(v, follow(z, step), rtol=0, atol=5e-3)
+
+
+@given(inputs, st.floats(0.01, 3.0))
+def test_slew_limit_never_exceeds_its_rate(z, step):
+    v = SlewLimit(rate=step / DT).simulate(z, z, DT)
+    assert v[0] == z[0]
+    assert (np.abs(np.diff(v)) <= step * (1 + 1e-12)).all()
+    assert v.min() >= z.min() - 1e-12
+    assert v.max() <= z.max() + 1e-12
+
+
+@given(inputs)
+def test_a_drive_that_is_fast_enough_follows(z):
+    fast = SlewLimit(rate=2.01 / DT)
+    np.testing.assert_array_equal(fast.simulate(z, z, DT), z)
+
+
+def test_slew_limit_catches_up_within_an_interval_and_turns():
+    # From (0) towards 1 at 0.5 an interval: at 1 it is half-way. The input then falls
+    # by 2: they meet where 1 - 2t = 0.5 + 0.5t, t = 0.2, at 0.6, and on at -0.5.
+    z = np.array([0.0, 1.0, -1.0])
+    v = SlewLimit(rate=0.5 / DT).simulate(z, z, DT)
+    np.testing.assert_allclose(v, [0.0, 0.5, 0.6 - 0.8 * 0.5], rtol=1e-14)
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.4, 1.0, 7.3, 63.5])
+def test_a_sine_is_a_sine_later(delay):
+    # A burst that starts and ends smoothly: nothing depends on what was before it.
+    k = np.arange(400)
+
+    def burst(at):
+        inside = (at > 20) & (at < 300)
+        window = np.where(inside, np.sin(np.pi * (at - 20) / 280) ** 4, 0.0)
+        return window * np.sin(2 * np.pi * 0.2 * at + 0.3)
+
+    block = InputDelay(delay_s=delay * DT)
+    found = block.simulate(burst(k), burst(k), DT)
+    np.testing.assert_allclose(found, burst(k - delay), rtol=0, atol=1e-5)
+    if delay % 1:  # straight lines lose a good part of a sine of five samples
+        lines = replace(block, hold="linear").simulate(burst(k), burst(k), DT)
+        assert np.abs(lines - burst(k - delay)).max() > 0.1
+
+
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+@given(z=inputs, whole=st.integers(0, 60))
+def test_whole_samples_of_delay_shift_the_samples(hold, z, whole):
+    block = InputDelay(delay_s=whole * DT, hold=hold)
+    expected = np.concatenate([np.full(whole, z[0]), z])[: len(z)]
+    np.testing.assert_allclose(block.simulate(z, z, DT), expected, rtol=0, atol=1e-12)
+
+
+@given(inputs, st.floats(0.0, 0.99))
+def test_straight_lines_by_hand(z, share):
+    block = InputDelay(delay_s=share * DT, hold="linear")
+    expected = (1 - share) * z[1:] + share * z[:-1]
+    found = block.simulate(z, z, DT)[1:]
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
+def test_before_the_record_the_start_value_is_held():
+    z = 1.5 + np.sin(np.arange(100) / 5)
+    v = InputDelay(delay_s=10.5 * DT).simulate(z, z, DT)
+    np.testing.assert_array_equal(v[:11], z[0])

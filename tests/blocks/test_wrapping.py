@@ -1,0 +1,194 @@
+"""Blocks that wrap hysteresis against plain loops; how they compose."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.blocks import registry
+from hystbench.blocks.base import Wrapped
+from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.blocks.hysteresis import MaterialHysteresis
+from hystbench.blocks.hysteresis_shape import HysteresisShape
+from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
+from hystbench.envelope import Envelope
+from hystbench.errors import InputError
+from hystbench.model import Model
+from hystbench.operators import growing_play, growing_prandtl_ishlinskii
+from hystbench.record import Channel
+
+from .examples import EXAMPLES
+
+DT = 1e-3
+GPI = GeneralizedPrandtlIshlinskii.from_mapping(EXAMPLES["gpi"])
+SHAPE = HysteresisShape(
+    thresholds=[0.05, 0.3],
+    weights=[0.4, -0.2],
+    square_weights=[0.1, 0.3],
+    powers=[0.5, -0.1, 0.2],
+)
+GROWING = RateDependentHysteresis(coefficient=0.05, exponent=0.7)
+EXCESS = RateDependentHysteresis(coefficient=0.01, exponent=0.5, form="excess-field")
+inputs = st.lists(st.floats(-2, 2), min_size=2, max_size=60).map(np.array)
+
+
+def rates(v):
+    """Central differences, one-sided at the ends, one by one."""
+    last = len(v) - 1
+    return [
+        (v[min(k + 1, last)] - v[max(k - 1, 0)])
+        / (DT * (min(k + 1, last) - max(k - 1, 0)))
+        for k in range(len(v))
+    ]
+
+
+def plain_play(v, threshold, growth):
+    w, out = 0.0, []
+    for value, factor in zip(v, growth, strict=True):
+        r = threshold * factor
+        w = max(value - r, min(value + r, w))
+        out.append(w)
+    return np.array(out)
+
+
+def plain_gpi(block, v, growth):
+    envelope = Envelope(*block.envelope)
+    total = np.zeros(len(v))
+    for threshold, weight in zip(block.thresholds, block.weights, strict=True):
+        w = 0.0
+        for k, value in enumerate(v):
+            r = threshold * growth[k]
+            low, high = envelope.right(value) - r, envelope.left(value) + r
+            w = max(low, min(high, w))
+            total[k] += weight * w
+    return total
+
+
+def plain_shape(block, v, growth):
+    y = sum(c * v**k for k, c in enumerate(block.powers, start=1))
+    for i, threshold in enumerate(block.thresholds):
+        p = plain_play(v, threshold, growth)
+        y = y + block.weights[i] * p + block.square_weights[i] * p**2
+    return y
+
+
+def plain_growth(block, v):
+    return np.array(
+        [1 + block.coefficient * abs(r) ** block.exponent for r in rates(v)]
+    )
+
+
+def close(found, expected):
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+
+
+def chain(*blocks):
+    return Model("m", Channel("u", "A"), Channel("y", "um"), blocks)
+
+
+def test_hysteresis_is_a_gpi_by_another_name():
+    v = np.sin(np.arange(100) / 7)
+    block = MaterialHysteresis.from_mapping(EXAMPLES["gpi"])
+    close(block.simulate(v, v, DT), plain_gpi(GPI, v, np.ones(100)))
+
+
+@given(inputs)
+def test_growing_thresholds(v):
+    expected = plain_gpi(GPI, v, plain_growth(GROWING, v))
+    close(chain(GPI, GROWING).simulate(v, DT), expected)
+
+
+@given(inputs)
+def test_excess_field(v):
+    effect = [
+        np.sign(r) * EXCESS.coefficient * abs(r) ** EXCESS.exponent for r in rates(v)
+    ]
+    expected = plain_gpi(GPI, v - np.array(effect), np.ones(len(v)))
+    close(chain(GPI, EXCESS).simulate(v, DT), expected)
+
+
+@given(inputs)
+def test_shape(v):
+    still = np.ones(len(v))
+    expected = plain_gpi(GPI, v, still) + plain_shape(SHAPE, v, still)
+    close(chain(GPI, SHAPE).simulate(v, DT), expected)
+
+
+@given(inputs)
+def test_rate_dependence_around_shape_grows_both(v):
+    growth = plain_growth(GROWING, v)
+    expected = plain_gpi(GPI, v, growth) + plain_shape(SHAPE, v, growth)
+    close(chain(GPI, SHAPE, GROWING).simulate(v, DT), expected)
+
+
+@given(inputs)
+def test_shape_around_rate_dependence_does_not_grow(v):
+    growth = plain_growth(GROWING, v)
+    expected = plain_gpi(GPI, v, growth) + plain_shape(SHAPE, v, np.ones(len(v)))
+    close(chain(GPI, GROWING, SHAPE).simulate(v, DT), expected)
+
+
+@given(inputs)
+def test_two_growths_multiply(v):
+    growth = plain_growth(GROWING, v) ** 2
+    close(chain(GPI, GROWING, GROWING).simulate(v, DT), plain_gpi(GPI, v, growth))
+
+
+@pytest.mark.parametrize("block", [GROWING, EXCESS])
+def test_the_loop_widens_with_the_rate(block):
+    def area(frequency):
+        v = np.sin(2 * np.pi * frequency * np.arange(2000) * DT)
+        y = chain(GPI, block).simulate(v, DT)
+        last = slice(-round(1 / (frequency * DT)), None)
+        return abs(np.sum(y[last] * np.gradient(v)[last]))
+
+    assert area(10.0) > 1.05 * area(1.0)
+
+
+@pytest.mark.parametrize("name", ["preisach", "jiles-atherton", "rdgpi"])
+def test_excess_field_drives_any_hysteresis(name):
+    inner = registry()[name].from_mapping(EXAMPLES[name])
+    v = 0.5 * np.sin(np.arange(300) / 9)
+    effect = np.array(
+        [np.sign(r) * EXCESS.coefficient * abs(r) ** EXCESS.exponent for r in rates(v)]
+    )
+    close(chain(inner, EXCESS).simulate(v, DT), inner.simulate(v - effect, v, DT))
+    with pytest.raises(InputError, match=f"block 2 .*'{name}' has no thresholds"):
+        chain(inner, GROWING)
+    # also through another block that wraps
+    with pytest.raises(InputError, match=f"block 3 .*'{name}' has no thresholds"):
+        chain(inner, SHAPE, GROWING)
+
+
+def test_steps_join_hysteresis_and_what_wraps_it():
+    gain = registry()["gain"].from_mapping(EXAMPLES["gain"])
+    steps = chain(gain, GPI, SHAPE, GROWING, gain).steps
+    assert steps == (gain, Wrapped(Wrapped(GPI, SHAPE), GROWING), gain)
+
+
+def test_parameters_of_wrapping_blocks_are_the_models():
+    model = chain(GPI, GROWING)
+    doubled = model.with_values({"rate-dependent-hysteresis.coefficient": 0.1})
+    v = np.sin(np.arange(50))
+    growth = 1 + 2 * (plain_growth(GROWING, v) - 1)
+    close(doubled.simulate(v, DT), plain_gpi(GPI, v, growth))
+
+
+@pytest.mark.parametrize("key", ["weights", "square_weights"])
+def test_shape_needs_one_weight_a_threshold(key):
+    with pytest.raises(InputError, match=f"{key}: expected 2 numbers.* got 1"):
+        HysteresisShape.from_mapping(
+            {"thresholds": [0.1, 0.2], "weights": [1.0, 1.0], key: [1.0]}
+        )
+
+
+@pytest.mark.parametrize(
+    ("growth", "expected"),
+    [([1.0, -1.0], "growth: a negative"), ([1.0], r"growth: \(1,\) given")],
+)
+def test_a_growth_that_is_none_is_refused(growth, expected):
+    v = np.zeros(2)
+    with pytest.raises(InputError, match=expected):
+        growing_play(v, [0.1], growth)
+    with pytest.raises(InputError, match=expected):
+        growing_prandtl_ishlinskii(v, v, [0.1], [1.0], growth)

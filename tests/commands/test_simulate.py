@@ -1,0 +1,141 @@
+"""``hystbench simulate``: a model on a record, units, holds and refusals."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from hystbench.model import load_model
+from hystbench.record import Channel, Record
+from hystbench.signals import Signal
+from tests.conftest import csv_text, run_hystbench
+
+MODEL = """
+name: small
+input: {name: current, unit: A}
+output: {name: displacement, unit: um}
+chain:
+  - gain: {value: 10}
+  - drive-lag: {time_constant_s: 0.02}
+"""
+HEADER = "time_s,current_A,displacement_um"
+TIME = np.arange(50) / 100
+U = np.sin(2 * np.pi * 7 * TIME)
+
+
+@pytest.fixture
+def model(tmp_path):
+    (tmp_path / "model.yaml").write_text(MODEL)
+    return tmp_path / "model.yaml"
+
+
+def table(path):
+    with path.open(newline="") as stream:
+        rows = list(csv.reader(stream))
+    return rows[0], np.array(rows[1:], dtype=float).T
+
+
+def about(extra="", unit="A"):
+    return (
+        "name: bench\ntime: {column: time_s, unit: s}\n"
+        f"input: {{column: current_A, unit: {unit}{extra}}}\n"
+        "output: {column: displacement_um, unit: um}\nrecords: [{file: a.csv}]\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("extra", "option", "hold"),
+    [
+        ("", [], "band-limited"),
+        (", hold: linear", [], "linear"),
+        (", hold: linear", ["--hold", "zero-order"], "zero-order"),
+    ],
+)
+def test_a_record_of_a_dataset(tmp_path, model, write_dataset, extra, option, hold):
+    files = {"a.csv": csv_text(TIME + 3.0, U, 9 * U)}
+    folder = write_dataset(files, about(extra)).parent
+    out = tmp_path / "out.csv"
+    arguments = ["simulate", model, folder / "a.csv", *option, "--out", out]
+    result = run_hystbench(*arguments)
+    assert result.returncode == 0, result.stderr
+    assert f"hold where the model sets none: {hold}" in result.stdout
+    header, columns = table(out)
+    assert header == ["time_s", "current_A", "measured_um", "simulated_um"]
+    held = load_model(model).with_hold(hold)
+    expected = [TIME, U, 9 * U, held.simulate(U, 0.01)]
+    np.testing.assert_allclose(columns, expected, rtol=0, atol=1e-7)
+    # The same by a dataset.yaml that is named.
+    (folder / "dataset.yaml").rename(folder / "other.yaml")
+    missing = run_hystbench(*arguments)
+    assert missing.returncode == 2
+    assert "no dataset.yaml beside it; expected one, or --dataset" in missing.stderr
+    again = run_hystbench(*arguments, "--dataset", folder / "other.yaml")
+    assert again.returncode == 0, again.stderr
+
+
+def test_archives_of_records_and_signals(tmp_path, model):
+    current, displacement = Channel("current", "A"), Channel("displacement", "um")
+    Record("r", 0.01, U, 9 * U, current, displacement, "twin").save(tmp_path / "r.npz")
+    Signal(name="s", dt=0.01, u=U, unit="A").save(tmp_path / "s.npz")
+    expected = load_model(model).simulate(U, 0.01)
+    for name, header in (
+        ("r", ["time_s", "current_A", "measured_um", "simulated_um"]),
+        ("s", ["time_s", "input_A", "simulated_um"]),
+    ):
+        out = tmp_path / f"{name}.csv"
+        archive = tmp_path / f"{name}.npz"
+        result = run_hystbench("simulate", model, archive, "--out", out)
+        assert result.returncode == 0, result.stderr
+        found, columns = table(out)
+        assert found == header
+        np.testing.assert_allclose(columns[-1], expected, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    [
+        ("mA", "multiply the record's column by 0.001 and say 'A'"),
+        ("V", "expected the same unit"),
+        ("furlongz", "expected the same unit"),
+    ],
+)
+def test_units_that_differ_are_refused(tmp_path, model, write_dataset, unit, expected):
+    folder = write_dataset({"a.csv": csv_text(TIME, U, 9 * U)}, about(unit=unit)).parent
+    out = tmp_path / "out.csv"
+    result = run_hystbench("simulate", model, folder / "a.csv", "--out", out)
+    assert result.returncode == 2
+    assert f"input: unit 'A', but {folder / 'a.csv'} has {unit!r}" in result.stderr
+    assert expected in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert not out.exists()
+
+
+def test_one_unit_spelt_in_two_ways_is_one_unit(tmp_path, model, write_dataset):
+    folder = write_dataset(
+        {"a.csv": csv_text(TIME, U, 9 * U)}, about(unit="ampere")
+    ).parent
+    out = tmp_path / "out.csv"
+    result = run_hystbench("simulate", model, folder / "a.csv", "--out", out)
+    assert result.returncode == 0, result.stderr
+
+
+def test_what_cannot_be_run_is_one_line(tmp_path, model, write_dataset):
+    files = {"a.csv": csv_text(TIME, U, 9 * U), "b.csv": csv_text(TIME, U, U)}
+    folder = write_dataset(files, about()).parent
+    (tmp_path / "no.npz").write_text("no archive")
+    away = tmp_path / "away.yaml"
+    away.write_text(
+        MODEL + "  - stiffness-hardening: {coefficient: -1.0, "
+        "frequency_hz: 10, damping_ratio: 0.1, participation: 1.0}\n"
+    )
+    for system, record, expected in (
+        (model, folder / "b.csv", "is none of them; did you mean"),
+        (model, tmp_path / "no.npz", "not an archive"),
+        (away, folder / "a.csv", "the output is not finite from 0.0"),
+    ):
+        out = tmp_path / "out.csv"
+        result = run_hystbench("simulate", system, record, "--out", out)
+        assert result.returncode == 2
+        assert expected in result.stderr, result.stderr
+        assert result.stderr.count("\n") == 1
+        assert not out.exists()
