@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench.blocks.linear import Hold
+from hystbench.blocks.held import Hold
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.errors import InputError
 from hystbench.model import Model

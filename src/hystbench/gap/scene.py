@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from hystbench.blocks.base import Block, Wrapped, WrappingBlock
+from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.held import Hold
 from hystbench.record import FloatArray, Record
 
 Signals = tuple[FloatArray, ...]
@@ -23,10 +25,13 @@ class Scene:
     ----------
     chain : tuple of Block
     records : tuple of Record
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
     """
 
     chain: tuple[Block, ...]
     records: tuple[Record, ...]
+    hold: Hold = "band-limited"
 
     @cached_property
     def before(self) -> tuple[Signals, ...]:
@@ -78,6 +83,15 @@ class Scene:
         while k < len(self.chain) and isinstance(self.chain[k], WrappingBlock):
             k += 1
         return k
+
+    def hold_at(self, place: int) -> Hold:
+        """Tell how the signal before a block moves between samples.
+
+        A staircase is smooth behind the first block that is dynamic.
+        """
+        before = self.chain[:place]
+        smooth = any(isinstance(item, HeldBlock) and item.smooths for item in before)
+        return "linear" if self.hold == "zero-order" and smooth else self.hold
 
     @property
     def step(self) -> float:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.held import Hold
 from hystbench.gap.effects.base import Beside, Values, Variant
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene, Signals
@@ -51,6 +52,8 @@ class State:
     added : tuple of Added
     beside : tuple of (Beside, values)
         Signals that the input does not explain.
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
     """
 
     chain: tuple[Block, ...]
@@ -58,12 +61,13 @@ class State:
     sample: Sample
     free: tuple[Free, ...] = ()
     added: tuple[Added, ...] = ()
-    beside: tuple[tuple[Beside, Values], ...] = field(default=())
+    beside: tuple[tuple[Beside, Values], ...] = ()
+    hold: Hold = "band-limited"
 
     @cached_property
     def scene(self) -> Scene:
         """The chain on the records."""
-        return Scene(self.chain, self.records)
+        return Scene(self.chain, self.records, self.hold)
 
     @cached_property
     def residual(self) -> FloatArray:

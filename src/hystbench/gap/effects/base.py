@@ -17,6 +17,7 @@ import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block, WrappingBlock
+from hystbench.blocks.held import HeldBlock
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray, Record
 
@@ -136,8 +137,13 @@ class Effect(ABC):
             start = scene.hysteresis
         between, rest = scene.chain[start:place], scene.chain[place:]
 
+        hold = scene.hold_at(place) if issubclass(block, HeldBlock) else None
+
         def build(given: Values) -> tuple[Block, ...]:
-            return (*between, block.from_mapping(values(given)), *rest)
+            own = values(given)
+            if hold is not None:
+                own = {"hold": hold, **own}
+            return (*between, block.from_mapping(own), *rest)
 
         return Variant(
             self.name,
