@@ -15,7 +15,7 @@ THRESHOLDS = (0.03, 0.08, 0.15, 0.25, 0.4, 0.55, 0.7, 0.85)
 # Half-widths of a backlash, as shares of the simulated output's largest magnitude.
 BACKLASH = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2)
 # Speeds over which friction turns, as shares of the greatest.
-SOFTNESS = (0.003, 0.01, 0.03, 0.1, 0.25)
+SOFTNESS = (0.0002, 0.0005, 0.001, 0.003, 0.01, 0.03, 0.1, 0.25)
 
 
 def branch_view(samples: Samples) -> View:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import cast
+from collections.abc import Callable
 
 import numpy as np
-from scipy import signal
 
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.branch import plays
@@ -21,8 +20,12 @@ from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
 
 EXPONENTS = (0.25, 0.5, 1.0)
-# Where a slew limit may begin, as shares of the greatest speed.
-LIMITS = (0.15, 0.3, 0.5, 0.7)
+# Limits of the rate, as shares of the greatest; then, of the best of them.
+LIMITS = (0.06, 0.12, 0.2, 0.32, 0.5, 0.75)
+FINER = (0.75, 0.82, 0.9, 1.1, 1.2, 1.3)
+# Samples of a piece and of its run-up, when records are cut to be limited at once.
+PIECE = 512
+RUN_UP = 128
 
 
 def rate_view(samples: Samples) -> View:
@@ -74,27 +77,63 @@ def rate_forms(samples: Samples) -> dict[str, Form]:
         "a loop that widens with the rate and the amplitude": fit_form(
             samples, [power * f for power in powers for f in (1.0 + 0 * size, size)]
         ),
-        "what exceeds a rate and is caught up later": _excess(samples, top),
+        "what a limit of the rate leaves behind": _limited(samples, top),
     }
 
 
-def _excess(samples: Samples, top: float) -> Form:
-    """Fit the speed above a limit, remembered for a while: a slew limit's shape."""
-    fastest = float(np.max(samples.main_frequencies))
-    forms = []
-    for limit in LIMITS:
-        columns = [
-            samples.thin(lambda item, a=limit, b=memory: _remembered(item, a * top, b))
-            for memory in (0.03 / fastest, 0.1 / fastest, 0.3 / fastest)
-        ]
-        forms.append(fit_form(samples, columns, searched=1))
-    return best(forms)
+def _limited(samples: Samples, top: float) -> Form:
+    """Fit what a limit of the rate leaves behind, of the input and of the output."""
+    reach = float(np.max(np.abs(samples.simulated))) / max(samples.reach, 1e-300)
+    found = []
+    for gain, of in ((1.0, _input), (reach, _simulated)):
+        limits = np.array(LIMITS)
+        for _ in range(2):
+            behind = _left_behind(samples, of, gain * top * limits)
+            forms = [fit_form(samples, [one], searched=1) for one in behind]
+            nearest = limits[int(np.argmax([form.saved for form in forms]))]
+            found += forms
+            limits = nearest * np.array(FINER)
+    return best(found)
 
 
-def _remembered(item: Compared, limit: float, memory: float) -> FloatArray:
-    """Integrate the speed above a limit, forgetting it with a time constant."""
-    dt = item.record.dt
-    speed = np.gradient(item.record.u, dt)
-    excess = speed - np.clip(speed, -limit, limit)
-    keep = np.exp(-dt / memory)
-    return cast(FloatArray, signal.lfilter([dt], [1.0, -keep], excess))
+def _input(item: Compared) -> FloatArray:
+    return item.record.u
+
+
+def _simulated(item: Compared) -> FloatArray:
+    return item.simulated
+
+
+def _left_behind(
+    samples: Samples, of: Callable[[Compared], FloatArray], limits: FloatArray
+) -> list[FloatArray]:
+    """Give a slew-limited signal minus the signal, for each limit in units a second.
+
+    The recursion runs over all limits and all pieces of all records at once; a piece
+    begins with a run-up that is thrown away, long against the time a limiter lags.
+    """
+    pieces, owners = [], []
+    for index, item in enumerate(samples.compared):
+        values = of(item)
+        count = -(-len(values) // PIECE)
+        padded = np.pad(values, (RUN_UP, count * PIECE - len(values)), mode="edge")
+        windows = np.lib.stride_tricks.sliding_window_view(padded, RUN_UP + PIECE)
+        pieces.append(windows[::PIECE])
+        owners += [index] * count
+    path = np.ascontiguousarray(np.concatenate(pieces).T)[:, np.newaxis, :]
+    dts = np.array([samples.compared[index].record.dt for index in owners])
+    step = limits[:, np.newaxis] * dts
+    state = np.repeat(path[0], len(limits), axis=0)
+    behind = np.empty((PIECE, *state.shape))
+    for row, target in enumerate(path):
+        gap = target - state
+        moved = np.minimum(np.maximum(gap, -step), step)
+        state = state + moved
+        if row >= RUN_UP:
+            np.subtract(moved, gap, out=behind[row - RUN_UP])
+    thinned = []
+    for index, item in enumerate(samples.compared):
+        own = behind[:, :, np.array(owners) == index]
+        whole = own.transpose(1, 2, 0).reshape(len(limits), -1)
+        thinned.append(whole[:, : len(item.record) : samples.stride])
+    return list(np.ascontiguousarray(np.concatenate(thinned, axis=1)))

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from hystbench.gap.locate.regression import fit_form, fitted_p_value, narrowest_bins
+from hystbench.gap.locate.regression import (
+    fit_by_record,
+    fitted_p_value,
+    narrowest_bins,
+)
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, percent
 from hystbench.record import FloatArray
@@ -20,13 +24,7 @@ def record_view(samples: Samples) -> View:
     first, last = narrowest_bins(shares)
     share = float(np.sum(shares[first : last + 1]))
     names = [item.record.name for item in samples.compared]
-    columns = []
-    for part in samples.slices:
-        for values in (samples.simulated, np.ones_like(samples.simulated)):
-            column = np.zeros_like(values)
-            column[part] = values[part]
-            columns.append(column)
-    form = fit_form(samples, columns)
+    form = fit_by_record(samples, [samples.simulated, np.ones_like(samples.simulated)])
     own = samples.share(form.explained, form.freedom)
     where = names[first] if first == last else f"{names[first]} to {names[last]}"
     return View(

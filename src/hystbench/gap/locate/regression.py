@@ -74,9 +74,26 @@ def fit_form(
     return Form(fitted, explained, freedom, saved(samples, explained, freedom))
 
 
+def fit_by_record(
+    samples: Samples, columns: Sequence[FloatArray], searched: int = 0
+) -> Form:
+    """Fit columns with coefficients of each record's own."""
+    design = np.stack(columns)
+    fitted = np.empty_like(samples.residual)
+    freedom = searched
+    for part in samples.slices:
+        own = design[:, part]
+        weights, rank = _solve(own @ own.T, own @ samples.residual[part])
+        fitted[part] = weights @ own
+        freedom += rank
+    explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
+    return Form(fitted, explained, freedom, saved(samples, explained, freedom))
+
+
 def _solve(gram: FloatArray, moments: FloatArray) -> tuple[FloatArray, int]:
     """Solve normal equations that may be singular; tell their rank."""
-    scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))
+    scale = np.sqrt(np.diag(gram))
+    scale[scale == 0] = np.inf
     values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
     kept = values > 1e-9 * max(float(values[-1]), 1e-300)
     basis = vectors[:, kept]
@@ -147,12 +164,12 @@ def narrowest(
     bins : int
         Bins of as many samples each.
     """
-    edges = np.unique(np.quantile(axis, np.linspace(0, 1, bins + 1)))
-    if len(edges) < 2:
-        return float(edges[0]), float(edges[0])
-    held, _ = np.histogram(axis, edges, weights=weights)
+    order = np.argsort(axis)
+    starts = np.unique(np.linspace(0, len(axis), bins + 1)[:-1].astype(np.int64))
+    held = np.add.reduceat(weights[order], starts)
     first, last = narrowest_bins(held, hold)
-    return float(edges[first]), float(edges[last + 1])
+    end = starts[last + 1] if last + 1 < len(starts) else len(axis) - 1
+    return float(axis[order[starts[first]]]), float(axis[order[end]])
 
 
 def narrowest_bins(held: FloatArray, hold: float = 0.8) -> tuple[int, int]:
@@ -163,8 +180,10 @@ def narrowest_bins(held: FloatArray, hold: float = 0.8) -> tuple[int, int]:
     possible = ends < len(total)
     starts = np.flatnonzero(possible)
     # Among ranges of one width, the one that holds most.
-    cost = ends[starts] - starts - (total[ends[starts]] - total[starts]) / (
-        2 * max(total[-1], 1e-300)
+    cost = (
+        ends[starts]
+        - starts
+        - (total[ends[starts]] - total[starts]) / (2 * max(total[-1], 1e-300))
     )
     best_start = int(starts[np.argmin(cost)])
     return best_start, max(int(ends[best_start]) - 1, best_start)

@@ -57,8 +57,12 @@ def slow_forms(samples: Samples) -> tuple[dict[str, Form], FloatArray]:
     times = np.geomspace(min(0.2 * period, longest), 2 * longest, TIMES)
 
     def passed(of: Callable[[Compared], FloatArray]) -> list[FloatArray]:
+        means = [block_means(of(item), samples.stride) for item in samples.compared]
+        steps = [item.record.dt * samples.stride for item in samples.compared]
         return [
-            samples.thin(lambda item, tau=tau: low_pass(of(item), item.record.dt, tau))
+            np.concatenate(
+                [low_pass(v, dt, tau) for v, dt in zip(means, steps, strict=True)]
+            )
             for tau in times
         ]
 
@@ -82,3 +86,10 @@ def low_pass(values: FloatArray, dt: float, tau: float) -> FloatArray:
     """Low-pass of first order from rest, the input held between samples."""
     keep = np.exp(-dt / tau)
     return cast(FloatArray, signal.lfilter([0.0, 1 - keep], [1.0, -keep], values))
+
+
+def block_means(values: FloatArray, size: int) -> FloatArray:
+    """Average blocks of as many samples each; the last may be shorter."""
+    starts = np.arange(0, len(values), size)
+    counts = np.diff(np.append(starts, len(values)))
+    return cast(FloatArray, np.add.reduceat(values, starts) / counts)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import fft
 
 from hystbench.gap.floor import periodogram
 from hystbench.gap.locate.regression import (
-    Form,
     best,
+    fit_by_record,
     fit_form,
     fitted_p_value,
     narrowest,
@@ -18,6 +19,8 @@ from hystbench.gap.locate.regression import (
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
+
+BoolArray = NDArray[np.bool_]
 
 # Lines sought, at most; a mains line and its first harmonics.
 LINES = 3
@@ -46,15 +49,16 @@ class Lines:
 def unexplained_view(samples: Samples) -> View:
     """Fit lone lines and drift, each record's own.
 
-    A line must stand out in the residual where the input has neither a line nor a
-    harmonic of its strongest one. A drift has fewer half-periods in a record than the
+    A line must stand out in the residual, at one frequency in at least half of the
+    records, where the input has none. For the p-value it must not be a harmonic of
+    the input's strongest line either: distortion lies there. A drift has fewer half-periods in a record than the
     input has. The range is that of the lines in Hz, or of time in s for a drift. The
     p-value is the smaller of the line's (Fisher's test) and the drift's (F test),
     doubled for the choice.
     """
     lines = find_lines(samples)
     drifts = {order: _drift_columns(samples, order) for order in (1, ORDERS)}
-    drift = best([_own(samples, columns) for columns in drifts.values()])
+    drift = best([fit_by_record(samples, columns) for columns in drifts.values()])
     common = [np.ones_like(samples.time), samples.time]
     ramp = fit_form(samples, common)
     forms = {"a drift": best([drift, ramp])}
@@ -62,16 +66,18 @@ def unexplained_view(samples: Samples) -> View:
         waves = [_wave_columns(samples, one) for one in lines.frequencies]
         count = len(waves)
         lined = [
-            _own(samples, [column for wave in waves[:top] for column in wave], top)
+            fit_by_record(
+                samples, [column for wave in waves[:top] for column in wave], top
+            )
             for top in range(1, count + 1)
         ]
         forms["a lone line"] = best(lined)
-        both = [_own(samples, [*waves[0], *drifts[1]], 1)]
+        both = [fit_by_record(samples, [*waves[0], *drifts[1]], 1)]
         forms["a lone line and a drift"] = best(both)
     kind = max(forms, key=lambda name: forms[name].saved)
     form = forms[kind]
     share = samples.share(form.explained, form.freedom)
-    test = _own(samples, drifts[ORDERS])
+    test = fit_by_record(samples, drifts[ORDERS])
     p_value = min(1.0, 2 * min(lines.p_value, fitted_p_value(samples, test)))
     if kind == "a drift":
         start, end = narrowest(samples.time, form.fitted**2)
@@ -100,24 +106,12 @@ def unexplained_view(samples: Samples) -> View:
     )
 
 
-def _own(samples: Samples, columns: list[FloatArray], searched: int = 0) -> Form:
-    """Fit columns with coefficients of each record's own."""
-    parts = []
-    for part in samples.slices:
-        for column in columns:
-            values = column[part]
-            if np.any(values):
-                parts.append((part, values))
-    design = np.zeros((len(parts), len(samples.residual)))
-    for row, (part, values) in zip(design, parts, strict=True):
-        row[part] = values
-    return fit_form(samples, list(design), searched)
-
-
 def _drift_columns(samples: Samples, orders: int) -> list[FloatArray]:
     """Give offset and cosines of half-periods, zero where the input is as slow."""
     duration = samples.durations[samples.record]
-    slowest = np.array([lowest_frequency(samples, i) for i in range(len(samples.compared))])
+    slowest = np.array(
+        [lowest_frequency(samples, i) for i in range(len(samples.compared))]
+    )
     allowed = np.maximum(samples.durations * slowest, 1.0)[samples.record]
     columns = [np.ones_like(duration)]
     for order in range(1, orders + 1):
@@ -149,7 +143,7 @@ def find_lines(samples: Samples) -> Lines:
         return Lines((), 1.0)
     height = np.zeros(cells)
     seen = np.zeros(cells)
-    bins = 0
+    bins, strongest = 0, 0.0
     peaks: list[tuple[FloatArray, FloatArray]] = []
     for item in samples.compared:
         dt = item.record.dt
@@ -157,14 +151,16 @@ def find_lines(samples: Samples) -> Lines:
         cause, _ = periodogram(item.record.u, dt)
         white = power / _level(power)
         cell = np.minimum((frequency / step).astype(np.int64), cells)
-        free = ~_of_the_input(cause, frequency)
+        free = ~_input_lines(cause)
         free[:3] = False
         strength = np.zeros(cells + 1)
         np.maximum.at(strength, cell[free], white[free])
         height += np.log1p(strength[:cells])
         seen += strength[:cells] > 0
-        bins += int(np.sum(free))
         peaks.append((frequency, np.where(free, white, 0.0)))
+        tested = white[free & ~_harmonics(cause)]
+        bins += len(tested)
+        strongest = max(strongest, float(np.max(tested, initial=0.0)))
     count = len(samples.compared)
     mean = np.where(seen >= max(0.5 * count, 1), height / np.maximum(seen, 1), 0.0)
     found: list[float] = []
@@ -174,7 +170,6 @@ def find_lines(samples: Samples) -> Lines:
             found.append(place)
         if len(found) == LINES:
             break
-    strongest = max(float(np.max(white)) for _, white in peaks)
     # A bin of white noise exceeds x times its mean with probability exp(-x).
     p_value = -np.expm1(bins * np.log1p(-np.exp(-max(strongest, 1e-12))))
     return Lines(tuple(found), float(np.clip(p_value, 0.0, 1.0)))
@@ -191,15 +186,17 @@ def _level(power: FloatArray) -> FloatArray:
     return np.maximum(np.repeat(medians, widths), 1e-300)
 
 
-def _of_the_input(cause: FloatArray, frequency: FloatArray) -> np.ndarray:
-    """Tell where the input has a line, or its strongest line has a harmonic."""
+def _input_lines(cause: FloatArray) -> BoolArray:
+    """Tell the bins in which the input has a line."""
     lone = (cause > 1e-5 * np.max(cause)) & (cause > 10 * _level(cause))
-    near = np.convolve(lone, np.ones(5), mode="same") > 0
+    return np.convolve(lone, np.ones(3), mode="same") > 0
+
+
+def _harmonics(cause: FloatArray) -> BoolArray:
+    """Tell the bins of harmonics of the input's strongest line."""
     strongest = int(np.argmax(cause[1:])) + 1
-    if lone[strongest]:
-        order = np.arange(len(cause)) / strongest
-        near |= np.abs(order - np.round(order)) * strongest < 2.5
-    return near
+    order = np.arange(len(cause)) / strongest
+    return np.abs(order - np.round(order)) * strongest < 2.5
 
 
 def _refine(
