@@ -1,0 +1,69 @@
+"""Where the gap is: one module a view, one number by which the views are ranked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hystbench.errors import InputError
+from hystbench.gap.compared import Compared
+from hystbench.gap.floor import Floor
+from hystbench.gap.locate.amplitude import amplitude_view
+from hystbench.gap.locate.branch import branch_view
+from hystbench.gap.locate.delay import delay_view
+from hystbench.gap.locate.frequency import frequency_view
+from hystbench.gap.locate.rate import rate_view
+from hystbench.gap.locate.record import record_view
+from hystbench.gap.locate.samples import take_samples
+from hystbench.gap.locate.slow_time import slow_time_view
+from hystbench.gap.locate.spectra import take_spectra
+from hystbench.gap.locate.unexplained import unexplained_view
+from hystbench.gap.locate.view import View
+
+__all__ = ["View", "locate"]
+
+
+def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
+    """Say where the residual is, in views that an engineer reads.
+
+    Parameters
+    ----------
+    compared : sequence of Compared
+        Records beside their simulations; rates and lengths may differ.
+    floor : Floor
+
+    Returns
+    -------
+    tuple of View
+        One of each kind, the most telling first.
+
+    Raises
+    ------
+    InputError
+        If there is no record.
+
+    Notes
+    -----
+    Any gap lies somewhere on every axis, and a wide enough range or a free enough map
+    holds all of it, so the largest share says little. Each view offers a few forms,
+    from one parameter (a delay) to a map, and the residual is fitted with each. A form
+    saves description length: half of 300 facts times the log of how much smaller the
+    residual's power gets, less half of log 300 for every parameter (the Bayesian
+    information criterion, the facts fixed because a model's error is not white). A view
+    ranks by the best of its forms. So of two views that explain as much, the simpler
+    comes first: a delay before a gain and phase of each band; and no view wins by
+    freedom. Ranges are chosen after that: the narrowest that holds four fifths.
+    """
+    if not compared:
+        raise InputError("locate: expected at least one record, got none")
+    samples = take_samples(compared, floor)
+    views = (
+        delay_view(samples),
+        amplitude_view(samples),
+        branch_view(samples),
+        frequency_view(samples, take_spectra(samples)),
+        slow_time_view(samples),
+        unexplained_view(samples),
+        rate_view(samples),
+        record_view(samples),
+    )
+    return tuple(sorted(views, key=lambda view: -view.saved))

@@ -1,0 +1,148 @@
+"""The frequency view: what is linear in the simulated output, and in which band."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from hystbench.gap.locate.distortion import Distortion, take_distortion
+from hystbench.gap.locate.regression import (
+    Form,
+    f_test,
+    narrowest_bins,
+    saved,
+)
+from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.spectra import HANN_INFLATION, ComplexArray, Spectra
+from hystbench.gap.locate.view import View, number, percent
+from hystbench.record import FloatArray
+
+GROUPS = 12
+DAMPINGS = (0.01, 0.02, 0.05, 0.1, 0.2)
+MODES = 80
+
+
+def frequency_view(samples: Samples, spectra: Spectra) -> View:
+    """Fit linear dynamics to residual against simulated output.
+
+    The forms are a mode, a first-order lag, diffusion and any gain and phase in a few
+    bands. The range is the narrowest band, in the logarithm of frequency, that holds
+    four fifths of what is linear. The p-value is that of a gain and a phase in each
+    of six bands of equal simulated power.
+    """
+    forms = linear_forms(samples, spectra)
+    kind = max(forms, key=lambda name: forms[name].saved)
+    form = forms[kind]
+    power = np.minimum(form.fitted, spectra.residual)
+    first, last = narrowest_bins(power)
+    start, end = float(spectra.low[first]), float(spectra.high[last])
+    share = samples.share(form.explained, form.freedom)
+    inside = share * float(np.sum(power[first : last + 1]) / max(power.sum(), 1e-300))
+    distortion = take_distortion(samples)
+    return View(
+        view="frequency",
+        axis="frequency",
+        start=start,
+        end=end,
+        unit="Hz",
+        share_of_gap_power=share,
+        p_value=_p_value(samples, spectra),
+        sentence=(
+            f"{percent(share)} of the gap is linear in the simulated output and looks "
+            f"like {kind}; {percent(inside)} of the gap lies between {number(start)} "
+            f"and {number(end)} Hz.{_told(distortion)}"
+        ),
+        saved=form.saved,
+    )
+
+
+def linear_forms(samples: Samples, spectra: Spectra) -> dict[str, Form]:
+    """Fit every linear form, by what it is in words.
+
+    ``fitted`` of these forms is the power explained in each bin.
+    """
+    omega = 2 * np.pi * spectra.frequency
+    excited = spectra.simulated > 1e-4 * float(np.max(spectra.simulated))
+    low = float(spectra.frequency[excited][0])
+    high = float(spectra.frequency[excited][-1])
+    times = np.geomspace(0.01 / high, 3 / low, 60)[:, np.newaxis] / (2 * np.pi)
+    lag = 1 / (1 + 1j * omega * times) - 1
+    root = np.sqrt(1j * omega * times)
+    slab = np.tanh(root) / root - 1
+    natural = np.geomspace(low / 1.5, high * 2, MODES)[:, np.newaxis, np.newaxis]
+    ratio = spectra.frequency / natural
+    damping = np.array(DAMPINGS)[np.newaxis, :, np.newaxis]
+    mode = (1 / (1 - ratio**2 + 2j * damping * ratio) - 1).reshape(-1, len(omega))
+    return {
+        "a lag": _shaped(samples, spectra, lag, 2),
+        "diffusion": _shaped(samples, spectra, slab, 2),
+        "a mode": _shaped(samples, spectra, mode, 3),
+        "a gain and phase of each band's own": _banded(samples, spectra),
+    }
+
+
+def _shaped(
+    samples: Samples, spectra: Spectra, shapes: ComplexArray, freedom: int
+) -> Form:
+    """Fit each shape (rows) with one real factor; keep the best."""
+    moment = np.real(np.conj(shapes) @ spectra.cross)
+    energy = np.abs(shapes) ** 2 @ spectra.simulated
+    explained = moment**2 / np.maximum(energy, 1e-300)
+    row = int(np.argmax(explained))
+    factor = moment[row] / max(float(energy[row]), 1e-300)
+    power = np.abs(factor * shapes[row]) ** 2 * spectra.simulated
+    gained = float(explained[row])
+    return Form(power, gained, freedom, saved(samples, gained, freedom))
+
+
+def _banded(samples: Samples, spectra: Spectra) -> Form:
+    """Fit a gain and a phase in bands that hold equal shares of the linear power."""
+    power, explained, bands = _in_bands(spectra, spectra.linear, GROUPS)
+    freedom = 2 * bands
+    return Form(power, explained, freedom, saved(samples, explained, freedom))
+
+
+def _in_bands(
+    spectra: Spectra, weight: FloatArray, count: int
+) -> tuple[FloatArray, float, int]:
+    """Cut the axis at equal shares of a weight; fit a complex gain in each band."""
+    total = np.cumsum(weight)
+    place = (total - 0.5 * weight) / max(float(total[-1]), 1e-300)
+    band = np.minimum((place * count).astype(np.int64), count - 1)
+    _, band = np.unique(band, return_inverse=True)
+    cross = np.bincount(band, spectra.cross.real) + 1j * np.bincount(
+        band, spectra.cross.imag
+    )
+    energy = np.maximum(np.bincount(band, spectra.simulated), 1e-300)
+    power = np.abs(cross / energy)[band] ** 2 * spectra.simulated
+    return power, float(np.sum(np.abs(cross) ** 2 / energy)), len(energy)
+
+
+def _p_value(samples: Samples, spectra: Spectra) -> float:
+    """Test six bands, cut without a look at the residual."""
+    _, explained, bands = _in_bands(spectra, spectra.simulated, 6)
+    share = explained / max(float(np.sum(spectra.residual)), 1e-300)
+    count = _effective_count(samples, spectra) / HANN_INFLATION
+    return f_test(share, 2 * bands, count)
+
+
+def _effective_count(samples: Samples, spectra: Spectra) -> float:
+    """Count independent samples by the colour of what a linear fit leaves.
+
+    ``n (sum S)^2 / sum S^2``, as :func:`effective_count`, over bins of unlike width.
+    """
+    fitted, _, _ = _in_bands(spectra, spectra.linear, GROUPS)
+    left = np.maximum(spectra.residual - fitted, 1e-12 * np.sum(spectra.residual))
+    width = spectra.noise / float(np.sum(spectra.noise))
+    flatness = float(np.sum(left)) ** 2 / float(np.sum(left**2 / width))
+    return len(samples.residual) * flatness
+
+
+def _told(distortion: Distortion | None) -> str:
+    """Tell what lies off the excited lines."""
+    if distortion is None:
+        return ""
+    return (
+        f" Of the residual of periodic records, {percent(distortion.excited)} lies on "
+        f"excited lines, {percent(distortion.odd)} on other odd harmonics and "
+        f"{percent(distortion.even)} on even ones."
+    )

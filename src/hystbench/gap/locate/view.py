@@ -1,0 +1,67 @@
+"""A view: one way in which an engineer reads where the gap is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class View:
+    """Where the gap lies, in one kind of view.
+
+    Parameters
+    ----------
+    view : str
+        Kind: frequency, amplitude, rate, branch, slow-time, delay, unexplained or
+        record.
+    axis : str
+        What ``start`` and ``end`` are values of.
+    start, end : float or str
+        The narrowest range that holds four fifths of what this view explains, in
+        ``unit``; of branches and records, the names of the first and the last.
+    unit : str
+    share_of_gap_power : float
+        Power that this view explains over the power of the gap above the noise, from
+        0 to 1. The shares of several views may add to more than 1.
+    p_value : float
+        How often a residual without this structure, but of the same colour, would
+        look as much like it.
+    sentence : str
+        The same in words.
+    saved : float
+        What the ranking goes by: see :func:`hystbench.gap.locate.locate`.
+    """
+
+    view: str
+    axis: str
+    start: float | str
+    end: float | str
+    unit: str
+    share_of_gap_power: float
+    p_value: float
+    sentence: str
+    saved: float
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Give what gap.json holds under ``where``."""
+        return {
+            "view": self.view,
+            "axis": self.axis,
+            "from": self.start,
+            "to": self.end,
+            "unit": self.unit,
+            "share_of_gap_power": self.share_of_gap_power,
+            "p_value": self.p_value,
+            "sentence": self.sentence,
+        }
+
+
+def percent(share: float) -> str:
+    """Write a share as it stands in a sentence."""
+    return f"{100 * share:.0f} %"
+
+
+def number(value: float) -> str:
+    """Write a number as it stands in a sentence, to three digits."""
+    return f"{value:.3g}"
