@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
-from hystbench.blocks.base import WrappingBlock
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.sensor_noise import SensorNoise
+from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.errors import InputError
 from hystbench.model import Model, Provenance, load_model
 from hystbench.record import Channel

@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from hystbench import operators
 from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, play_thresholds, thresholds
 from hystbench.errors import InputError
 from hystbench.operators import (
@@ -358,3 +359,30 @@ def test_state_space_step_of_a_first_order_lag():
 def test_what_does_not_fit_is_refused(broken, told):
     with pytest.raises(InputError, match=told):
         broken()
+
+
+@pytest.mark.parametrize("size", [1, 7, 8, 9, 24, 50, 70])
+def test_modes_are_a_diagonal_state_space(size):
+    rng = np.random.default_rng(size)
+    factors, b, c, x0 = rng.uniform(-0.99, 0.99, (4, size))
+    u = rng.normal(size=200)
+    expected, _ = operators.state_space(np.diag(factors), b, c, 0.3, u, x0)
+    found = operators.modes(factors, b, c, 0.3, u, x0)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("count", [1, 8, 9, 31, 60])
+def test_growing_thresholds_are_the_plays_of_each_moment(count):
+    # A growth that rests for a while is a model of those thresholds, carried on.
+    rng = np.random.default_rng(count)
+    left, right = rng.normal(1, 1, 300), rng.normal(-1, 1, 300)
+    r, w = rng.uniform(0, 1, count), rng.normal(size=count)
+    growth = np.repeat([1.0, 2.5, 0.0], 100)
+    state, expected = None, []
+    for part in (slice(0, 100), slice(100, 200), slice(200, 300)):
+        y, state = operators.generalized_prandtl_ishlinskii(
+            left[part], right[part], growth[part][0] * r, w, state
+        )
+        expected.append(y)
+    found = operators.growing_prandtl_ishlinskii(left, right, r, w, growth)
+    np.testing.assert_allclose(found, np.concatenate(expected), rtol=0, atol=1e-12)

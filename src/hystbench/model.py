@@ -15,15 +15,10 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from hystbench.blocks import registry
-from hystbench.blocks.base import (
-    Block,
-    HystereticBlock,
-    RandomBlock,
-    Wrapped,
-    WrappingBlock,
-)
+from hystbench.blocks.base import Block, RandomBlock
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
+from hystbench.blocks.wrapping import HystereticBlock, Wrapped, WrappingBlock
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_text
 from hystbench.record import Channel, FloatArray

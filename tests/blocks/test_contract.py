@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from hystbench.blocks import registry
-from hystbench.blocks.base import RandomBlock, Wrapped, WrappingBlock
+from hystbench.blocks.base import RandomBlock
 from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
 
 from .examples import EXAMPLES

@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
-from hystbench.blocks.base import Wrapped
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.hysteresis import MaterialHysteresis
 from hystbench.blocks.hysteresis_shape import HysteresisShape
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
+from hystbench.blocks.wrapping import Wrapped
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
 from hystbench.model import Model

@@ -110,9 +110,15 @@ def test_units_that_differ_are_refused(tmp_path, model, write_dataset, unit, exp
     assert not out.exists()
 
 
-def test_one_unit_spelt_in_two_ways_is_one_unit(tmp_path, model, write_dataset):
+@pytest.mark.parametrize(
+    ("ours", "theirs"), [("A", "ampere"), ("A/cm**2", "A/cm2"), ("A/s", "A*s^-1")]
+)
+def test_one_unit_spelt_in_two_ways_is_one_unit(
+    tmp_path, model, write_dataset, ours, theirs
+):
+    model.write_text(MODEL.replace("unit: A}", f"unit: {ours}}}"))
     folder = write_dataset(
-        {"a.csv": csv_text(TIME, U, 9 * U)}, about(unit="ampere")
+        {"a.csv": csv_text(TIME, U, 9 * U)}, about(unit=theirs)
     ).parent
     out = tmp_path / "out.csv"
     result = run_hystbench("simulate", model, folder / "a.csv", "--out", out)
@@ -123,6 +129,7 @@ def test_what_cannot_be_run_is_one_line(tmp_path, model, write_dataset):
     files = {"a.csv": csv_text(TIME, U, 9 * U), "b.csv": csv_text(TIME, U, U)}
     folder = write_dataset(files, about()).parent
     (tmp_path / "no.npz").write_text("no archive")
+    np.savez(tmp_path / "other.npz", unit="A", values=U)
     away = tmp_path / "away.yaml"
     away.write_text(
         MODEL + "  - stiffness-hardening: {coefficient: -1.0, "
@@ -131,6 +138,7 @@ def test_what_cannot_be_run_is_one_line(tmp_path, model, write_dataset):
     for system, record, expected in (
         (model, folder / "b.csv", "is none of them; did you mean"),
         (model, tmp_path / "no.npz", "not an archive"),
+        (model, tmp_path / "other.npz", "not a record of hystbench"),
         (away, folder / "a.csv", "the output is not finite from 0.0"),
     ):
         out = tmp_path / "out.csv"

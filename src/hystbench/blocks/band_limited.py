@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,25 +26,23 @@ class SineSeries(NamedTuple):
 
     def frequency_hz(self, dt: float) -> FloatArray:
         """Frequency of each sine in Hz, the first being zero."""
-        return cast(FloatArray, np.arange(self.half + 1) / (2 * self.half * dt))
+        return np.arange(self.half + 1) / (2 * self.half * dt)
 
     def amplitudes(self) -> FloatArray:
         """Amplitudes b_k, the first for frequency zero."""
-        return cast(FloatArray, -self.spectrum.imag / self.half)
+        return -self.spectrum.imag / self.half
 
     def line(self, count: int, shift: float = 0.0, factor: int = 1) -> FloatArray:
         """Sample the straight line, ``shift`` samples later, ``factor`` times finer."""
         places = np.arange(count) / factor - shift
-        return cast(FloatArray, self.start + self.slope * places)
+        return self.start + self.slope * places
 
     def sines(
         self, count: int, response: ComplexArray | FloatArray, factor: int = 1
     ) -> FloatArray:
         """Sample the sines after a frequency response, as if they always had been."""
         spectrum = self.spectrum * response
-        return cast(
-            FloatArray, factor * np.fft.irfft(spectrum, 2 * factor * self.half)[:count]
-        )
+        return factor * np.fft.irfft(spectrum, 2 * factor * self.half)[:count]
 
 
 def sine_series(v: FloatArray) -> SineSeries:
@@ -70,25 +68,6 @@ def sine_series(v: FloatArray) -> SineSeries:
     rest = v - (v[0] + slope * np.arange(half + 1))
     odd = np.concatenate([rest[:-1], -rest[:0:-1]])
     return SineSeries(float(v[0]), slope, np.fft.rfft(odd), half)
-
-
-def interpolate(v: FloatArray, factor: int) -> FloatArray:
-    """Interpolate a sampled signal as band-limited.
-
-    Parameters
-    ----------
-    v : ndarray, shape (n,)
-    factor : int
-
-    Returns
-    -------
-    ndarray, shape ((n - 1) * factor + 1,)
-        Equal to ``v`` at every ``factor``-th sample.
-    """
-    series = sine_series(v)
-    count = (len(v) - 1) * factor + 1
-    ones = np.ones(series.half + 1)
-    return series.line(count, factor=factor) + series.sines(count, ones, factor)
 
 
 def straight_lines(v: FloatArray, factor: int) -> FloatArray:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hystbench.blocks.base import HystereticBlock
+from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import numbers
+from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
 from hystbench.operators import (
@@ -34,7 +35,7 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     """
 
     name: ClassVar = "gpi"
-    place: ClassVar = "base"
+    place: ClassVar[Place] = "base"
     reference: ClassVar = (
         "Al Janaideh, Rakheja, Su, IEEE/ASME Trans. Mechatronics 16 (2011) 734-744"
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from hystbench.blocks.base import Place
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 
 
@@ -21,4 +22,4 @@ class MaterialHysteresis(GeneralizedPrandtlIshlinskii):
     """
 
     name: ClassVar = "hysteresis"
-    place: ClassVar = "material"
+    place: ClassVar[Place] = "material"

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.base import Hysteresis, WrappingBlock
 from hystbench.blocks.parameter import numbers
+from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.operators import growing_play, play
 from hystbench.record import FloatArray
@@ -67,7 +67,7 @@ class HysteresisShape(WrappingBlock):
             plays, _ = play(v, self.thresholds)
         else:
             plays = growing_play(v, self.thresholds, growth)
-        y = inner.grow(v, u, dt, growth) + plays @ np.array(self.weights)
+        y: FloatArray = inner.grow(v, u, dt, growth) + plays @ np.array(self.weights)
         if self.square_weights:
             y += (plays * plays) @ np.array(self.square_weights)
         if self.powers:

@@ -44,8 +44,10 @@ class InputDelay(HeldBlock):
         """Compute the delayed input."""
         shift, place = self.delay_s / dt, np.arange(len(z))
         if self.holding != "band-limited" or len(z) < 3:
-            return np.interp(place - shift, place, z)
+            between: FloatArray = np.interp(place - shift, place, z)
+            return between
         series = sine_series(z)
         turn = np.exp(-2j * np.pi * series.frequency_hz(dt) * self.delay_s)
         v = series.line(len(z), shift) + series.sines(len(z), turn)
-        return np.where(place < shift, z[0], v)
+        v[place < shift] = z[0]
+        return v

@@ -145,7 +145,8 @@ def discretise_modes(
 
 def _over(above: FloatArray, below: FloatArray, at_zero: float) -> FloatArray:
     out = np.full(len(below), at_zero)
-    return np.divide(above, below, out=out, where=below != 0)
+    np.divide(above, below, out=out, where=below != 0)
+    return out
 
 
 def _step_by_step(

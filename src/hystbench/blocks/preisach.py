@@ -9,8 +9,8 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.base import HystereticBlock
 from hystbench.blocks.parameter import number, numbers
+from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 

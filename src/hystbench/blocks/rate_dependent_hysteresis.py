@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.base import Hysteresis, WrappingBlock
 from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
 FORMS = ("growing-thresholds", "excess-field")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
-from hystbench.blocks.base import HystereticBlock
 from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.rdgpi.model import STARTS, RateDependentGPI
 from hystbench.record import FloatArray

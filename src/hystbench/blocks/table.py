@@ -31,4 +31,4 @@ def _values(about: Parameter) -> str:
         return bounds
     if about.names:
         return f"`{about.names[0]}` to `{about.names[-1]}` of {bounds}"
-    return f"list of {bounds}"
+    return f"list of {bounds}" + (", or none" if about.may_be_empty else "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import zipfile
 from pathlib import Path
 from typing import NamedTuple, cast
@@ -71,7 +72,8 @@ def simulate(
     columns = {"time_s": time, _column(run.input.name, run.input.unit): run.u}
     if run.y is not None and run.output is not None:
         columns[_column("measured", run.output.unit)] = run.y
-    columns[_column("simulated", system.output.unit)] = y
+    unit = (run.output or system.output).unit  # one unit, in the record's spelling
+    columns[_column("simulated", unit)] = y
     cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
     write_csv(out, list(columns), zip(*cells, strict=True))
     click.echo(
@@ -85,7 +87,7 @@ def _read(record: Path, dataset: Path | None) -> Run:
         return _read_csv(record, dataset)
     if dataset is not None:
         raise InputError(f"{record}: an archive; expected no --dataset with it")
-    if _holds(record, "unit"):
+    if _names(record) >= {"name", "dt", "u", "unit"}:
         signal = load_signal(record)
         given = Channel("input", signal.unit)
         return Run(signal.dt, signal.u, given, None, None, None)
@@ -112,11 +114,11 @@ def _read_csv(record: Path, dataset: Path | None) -> Run:
     )
 
 
-def _holds(archive: Path, key: str) -> bool:
-    """Tell whether a NumPy archive holds an array of a name."""
+def _names(archive: Path) -> set[str]:
+    """Name the arrays of a NumPy archive."""
     try:
         with zipfile.ZipFile(archive) as content:
-            return f"{key}.npy" in content.namelist()
+            return {Path(name).stem for name in content.namelist()}
     except (OSError, zipfile.BadZipFile) as error:
         raise InputError(f"{archive}: not an archive of NumPy ({error})") from error
 
@@ -129,7 +131,12 @@ def _check_unit(place: str, ours: Channel, record: str, theirs: Channel) -> None
 
     where = f"{place}: unit {ours.unit!r}, but {record} has {theirs.unit!r}"
     try:
-        factor = float(pint.Quantity(1, theirs.unit).to(ours.unit).magnitude)
+        # Files write cm2 where pint wants cm**2.
+        given, wanted = (
+            re.sub(r"(?<=[^\W\d_])(?=\d)", "**", unit)
+            for unit in (theirs.unit, ours.unit)
+        )
+        factor = float(pint.Quantity(1, given).to(wanted).magnitude)
     except (pint.UndefinedUnitError, pint.DimensionalityError) as error:
         raise InputError(f"{where}: {error}; expected the same unit") from None
     if abs(factor - 1) > 1e-12:

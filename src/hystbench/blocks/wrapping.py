@@ -1,0 +1,123 @@
+"""Hysteresis, and blocks that change the hysteresis before them instead of a signal."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+from hystbench.blocks.base import Block
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+
+class Hysteresis(Protocol):
+    """Hysteresis that a block can wrap: a block, or one that is wrapped already."""
+
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Compute the output with all thresholds times ``growth``.
+
+        Parameters
+        ----------
+        v : ndarray, shape (n,)
+            What enters the hysteresis.
+        u, dt
+            As for :meth:`Block.simulate`.
+        growth : ndarray, shape (n,), or None
+            Factor on the thresholds at each sample; None for one.
+        """
+
+    def check_growth(self) -> None:
+        """Refuse by InputError if there are no thresholds that can grow."""
+
+
+@dataclass(frozen=True)
+class HystereticBlock(Block):
+    """Hysteresis, which a :class:`WrappingBlock` may follow.
+
+    A subclass made of play operators overrides :meth:`grow` and :meth:`check_growth`.
+    """
+
+    hysteretic: ClassVar[bool] = True
+
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Compute the output; thresholds that grow are refused."""
+        if growth is not None:
+            self.check_growth()
+        return self.simulate(v, u, dt)
+
+    def check_growth(self) -> None:
+        """Refuse: without thresholds none can grow."""
+        raise InputError(
+            f"'{self.name}' has no thresholds that could grow; "
+            "expected 'gpi' or 'hysteresis', or the form 'excess-field'"
+        )
+
+
+@dataclass(frozen=True)
+class WrappingBlock(Block):
+    """A block that changes the hysteresis before it, not a signal.
+
+    In the chain it follows the hysteretic block or another wrapping block; a
+    :class:`~hystbench.model.Model` joins them to one :class:`Wrapped` step.
+    """
+
+    def check_inner(self, inner: Hysteresis) -> None:
+        """Refuse hysteresis that the block cannot wrap; a subclass raises."""
+
+    @abstractmethod
+    def wrap(
+        self,
+        inner: Hysteresis,
+        v: FloatArray,
+        u: FloatArray,
+        dt: float,
+        growth: FloatArray | None = None,
+    ) -> FloatArray:
+        """Compute the output of the hysteresis as the block changes it.
+
+        Parameters
+        ----------
+        inner : Hysteresis
+            What is wrapped.
+        v, u, dt, growth
+            As for :meth:`Hysteresis.grow`; growth comes from a block further out.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Refuse: alone the block has no output."""
+        raise InputError(f"{self.name}: expected a hysteretic block before it")
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """A hysteretic block together with a block that wraps it."""
+
+    inner: Hysteresis
+    by: WrappingBlock
+
+    def __post_init__(self) -> None:
+        """Let the wrapping block look at what it wraps."""
+        self.by.check_inner(self.inner)
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output, as :meth:`Block.simulate` does."""
+        return self.by.wrap(self.inner, z, u, dt)
+
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Compute the output with all thresholds times ``growth``."""
+        return self.by.wrap(self.inner, v, u, dt, growth)
+
+    def check_growth(self) -> None:
+        """Refuse if what is inside has no thresholds that can grow."""
+        self.inner.check_growth()
