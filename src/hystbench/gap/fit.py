@@ -67,7 +67,7 @@ class Attempt:
             own, residual = self._scaled(values)
         else:
             tail = variant.build(values)
-            residual = state.measured - state.sample.take(
+            residual = state.reference - state.sample.take(
                 state.scene.tail(variant.start, tail)
             )
             own = np.zeros((len(residual), 0))
@@ -91,13 +91,16 @@ class Attempt:
         variant, state = self.variant, self.state
         take, tail = state.sample.take, state.scene.tail
         zero = dict.fromkeys(variant.unit, 0.0)
-        now = take(tail(variant.start, variant.build({**values, **zero})))
+        if variant.neutral:
+            now = take(state.scene.output)
+        else:
+            now = take(tail(variant.start, variant.build({**values, **zero})))
         columns = []
         for name, step in variant.unit.items():
             given = {**values, **zero, name: step}
             after = take(tail(variant.start, variant.build(given)))
             columns.append((after - now) / step)
-        return np.column_stack(columns), state.measured - now
+        return np.column_stack(columns), state.reference - now
 
 
 def coarse(attempt: Attempt) -> Trial:
@@ -126,6 +129,8 @@ def fine(attempt: Attempt, start: Trial) -> Trial:
             for sign in (1, -1):
                 here = {key: best.values[key] for key in grids}
                 here[name] *= float(np.exp(sign * step))
+                if not grids[name].min() <= here[name] <= grids[name].max():
+                    continue
                 try:
                     trial = attempt.at(tuple(here.values()))
                 except InputError:
@@ -181,3 +186,11 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
 def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
     """Add an effect as a trial found it and refit everything together."""
     return refit(with_effect(state, trial.variant, trial.values), score)
+
+
+def finished(state: State, score: Score) -> tuple[State, float]:
+    """Simulate a model exactly and refit it to the end."""
+    state = state.settled()
+    state, _ = refit(state, score)
+    state = state.settled()
+    return state, score_of(state, score)

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, Effect
-from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, score_of
+from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished, score_of
 from hystbench.gap.reshape import directions
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
@@ -154,11 +155,15 @@ def rank(
     for number, trial in enumerate(of_effect.values()):
         variant = trial.variant
         own = (variant.effect, variant.place, variant.form)
-        if number < FINALISTS:
-            after, value = added(state, trial, score)
-            candidates.append(Candidate(*own, value, now - value, after))
-        else:
-            candidates.append(Candidate(*own, trial.score, now - trial.score))
+        after = None
+        value = trial.score
+        if number < FINALISTS and now - value > 0:
+            try:
+                after, value = added(state, trial, score)
+            except InputError as error:
+                declined.append(Candidate(*own[:2], declined=f"fits best where {error}"))
+                continue
+        candidates.append(Candidate(*own, value, now - value, after))
     candidates.sort(key=lambda item: (item.state is None, item.score))
     return (*candidates, *declined)
 
@@ -179,5 +184,5 @@ def name(
         if not taken:
             break
         assert first.state is not None  # noqa: S101  (for the type checker)
-        state = first.state
+        state, _ = finished(first.state, score)
     return Named(state, tuple(rounds))

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 
-from hystbench.blocks.base import Block, Wrapped, WrappingBlock
+from hystbench.blocks.base import Block
+from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.held import Hold
 from hystbench.record import FloatArray, Record
@@ -27,11 +28,15 @@ class Scene:
     records : tuple of Record
     hold : {"zero-order", "linear", "band-limited"}
         How the input moves between samples.
+    quick : bool
+        Take straight lines where a block takes a band-limited signal: a tenth of the
+        time, and near enough to compare candidates by.
     """
 
     chain: tuple[Block, ...]
     records: tuple[Record, ...]
     hold: Hold = "band-limited"
+    quick: bool = False
 
     @cached_property
     def before(self) -> tuple[Signals, ...]:
@@ -58,7 +63,7 @@ class Scene:
 
     def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
         """Send signals through blocks, from rest."""
-        steps = joined(blocks)
+        steps = joined([_quick(block) for block in blocks] if self.quick else blocks)
         out = []
         for z, record in zip(signals, self.records, strict=True):
             for step in steps:
@@ -113,6 +118,16 @@ class Scene:
         return float(
             max(np.abs(np.diff(record.u)).max() / record.dt for record in self.records)
         )
+
+
+@lru_cache(maxsize=1024)
+def _quick(block: Block) -> Block:
+    if isinstance(block, HeldBlock) and block.smooths and block.holding == LIMITED:
+        return replace(block, hold="linear")
+    return block
+
+
+LIMITED = "band-limited"
 
 
 def joined(blocks: Sequence[Block]) -> list[Block | Wrapped]:

@@ -25,6 +25,8 @@ class Free(NamedTuple):
     element: int | None = None
     tolerance: float | None = None
     """Expected size of the change; None where nothing is known."""
+    low: float = -np.inf
+    high: float = np.inf
 
 
 class Added(NamedTuple):
@@ -54,6 +56,9 @@ class State:
         Signals that the input does not explain.
     hold : {"zero-order", "linear", "band-limited"}
         How the input moves between samples.
+    correction : ndarray, shape (scored samples,), optional
+        By how much the exact simulation is above the quick one. It changes little
+        from candidate to candidate; :meth:`settled` measures it anew.
     """
 
     chain: tuple[Block, ...]
@@ -63,16 +68,30 @@ class State:
     added: tuple[Added, ...] = ()
     beside: tuple[tuple[Beside, Values], ...] = ()
     hold: Hold = "band-limited"
+    correction: FloatArray | None = None
 
     @cached_property
     def scene(self) -> Scene:
-        """The chain on the records."""
-        return Scene(self.chain, self.records, self.hold)
+        """The chain on the records, simulated quickly."""
+        return Scene(self.chain, self.records, self.hold, quick=True)
+
+    def settled(self) -> State:
+        """Give the state with what the quick simulation lacks made up for."""
+        exact = Scene(self.chain, self.records, self.hold).output
+        lacks = self.sample.take(exact) - self.sample.take(self.scene.output)
+        return replace(self, correction=lacks)
 
     @cached_property
     def residual(self) -> FloatArray:
         """Scored samples of measured minus simulated, without what lies beside."""
-        return self.measured - self.sample.take(self.scene.output)
+        return self.reference - self.sample.take(self.scene.output)
+
+    @cached_property
+    def reference(self) -> FloatArray:
+        """Scored samples that a quick simulation is taken off, to give a residual."""
+        return self.measured if self.correction is None else (
+            self.measured - self.correction
+        )
 
     @cached_property
     def measured(self) -> FloatArray:
@@ -124,7 +143,8 @@ class State:
             free = self.free[k]
             block = chain[free.block]
             about = block.parameters()[free.parameter]
-            value = float(np.clip(self.value(free) + change, about.low, about.high))
+            low, high = max(about.low, free.low), min(about.high, free.high)
+            value = float(np.clip(self.value(free) + change, low, high))
             new: float | tuple[float, ...] = value
             if free.element is not None:
                 own = list(getattr(block, free.parameter))
@@ -139,7 +159,7 @@ class State:
 
     @cached_property
     def _simulated(self) -> FloatArray:
-        return self.measured - self.residual
+        return self.reference - self.residual
 
     def _step(self, free: Free) -> float:
         value = self.value(free)
@@ -147,7 +167,7 @@ class State:
         size = 1e-3 * abs(value)
         if size == 0:
             size = 1e-6
-        return -size if value + size > about.high else size
+        return -size if value + size > min(about.high, free.high) else size
 
 
 def scene_of(state: State, changes: dict[int, float]) -> Signals:
@@ -172,13 +192,16 @@ def beside_columns(state: State, beside: Beside, values: Values) -> FloatArray:
     return np.hstack(parts)
 
 
-def numbers_of(block: Block, position: int, names: Sequence[str]) -> Iterator[Free]:
-    """Give the numbers of a block's parameters as free ones."""
-    for name in names:
+def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
+    """Give the numbers that a variant leaves free, inside the range searched."""
+    for name in variant.free:
         value = getattr(block, name)
         if isinstance(value, tuple):
             for element in range(len(value)):
                 yield Free(position, name, element)
+        elif name in variant.grids:
+            axis = variant.grids[name]
+            yield Free(position, name, None, None, axis.min(), axis.max())
         else:
             yield Free(position, name)
 
@@ -211,7 +234,7 @@ def with_effect(state: State, variant: Variant, values: Values) -> State:
     return replace(
         state,
         chain=chain,
-        free=(*kept, *numbers_of(chain[position], position, variant.free)),
+        free=(*kept, *numbers_of(chain[position], position, variant)),
         added=(
             *(
                 item if item.block is None else item._replace(block=shifted(item.block))

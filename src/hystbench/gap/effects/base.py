@@ -16,8 +16,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hystbench.blocks import registry
-from hystbench.blocks.base import Block, WrappingBlock
+from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray, Record
 
@@ -72,6 +73,8 @@ class Variant:
         Added to the output of the chain, which stays as it is.
     charge : float, optional
         Parameters to be charged, where it is not the number of those searched.
+    neutral : bool
+        Whether the chain is as before where all parameters solved for are zero.
     """
 
     effect: str
@@ -86,6 +89,7 @@ class Variant:
     free: tuple[str, ...] = ()
     beside: Beside | None = None
     charge: float | None = None
+    neutral: bool = True
 
     @property
     def freedom(self) -> float:
@@ -126,6 +130,7 @@ class Effect(ABC):
         unit: dict[str, float] | None = None,
         positive: tuple[str, ...] = (),
         free: tuple[str, ...] = (),
+        neutral: bool = True,
     ) -> Variant:
         """Give the variant that puts the effect's block before the block at a place.
 
@@ -156,6 +161,7 @@ class Effect(ABC):
             unit or {},
             positive,
             free or (*(grids or {}), *(unit or {})),
+            neutral=neutral,
         )
 
     def added(

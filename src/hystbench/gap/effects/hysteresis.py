@@ -12,35 +12,36 @@ from hystbench.gap.effects.base import Declined, Effect, Values, Variant
 from hystbench.gap.scene import Scene
 
 OPERATORS = 8
-LINEAR = 1e-3
-"""Slope of the hyperbolic tangent where the envelope is to be a straight line."""
+BEND = 0.5
+"""Argument of the hyperbolic tangent at the largest input, where the search starts."""
 
 
 class Hysteresis(Effect):
-    """Play operators before everything else, with envelopes that are straight lines.
+    """Generalized play operators before everything else.
 
-    What other envelopes could do is spanned by reshaping, and charged.
+    The search starts from envelopes that are nearly straight and alike; the refit
+    bends them.
     """
 
     name = "hysteresis"
     place = "material"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer play operators over the range of the input."""
+        """Offer operators over the range of the input."""
         if scene.hysteresis is not None:
             raise Declined("the chain has a hysteresis already")
         amplitude = scene.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
-        slope = LINEAR / amplitude
-        straight = dict.fromkeys(Envelope.__dataclass_fields__, 0.0)
-        straight |= {"a0": 1 / slope, "a1": slope, "a4": 1 / slope, "a5": slope}
+        slope = BEND / amplitude
+        envelope = dict.fromkeys(Envelope.__dataclass_fields__, 0.0)
+        envelope |= {"a0": 1 / slope, "a1": slope, "a4": 1 / slope, "a5": slope}
         names = [f"weight {k}" for k in range(1, OPERATORS)]
 
         def values(given: Values) -> dict[str, Any]:
             weights = [given[name] for name in names]
             # The first operator gives what the others leave of a gain of one.
             return {
-                "envelope": straight,
+                "envelope": envelope,
                 "thresholds": thresholds,
                 "weights": [max(1.0 - sum(weights), 0.0), *weights],
             }
@@ -51,5 +52,6 @@ class Hysteresis(Effect):
             values,
             unit=dict.fromkeys(names, 1e-3),
             positive=tuple(names),
-            free=("weights",),
+            free=("weights", "envelope"),
+            neutral=False,
         )

@@ -21,6 +21,8 @@ class HysteresisShape(Effect):
         """Offer the correction of the chain's hysteresis."""
         if scene.hysteresis is None:
             raise Declined("the chain has no hysteresis whose shape could be wrong")
+        if scene.chain[scene.hysteresis].name == "hysteresis":
+            raise Declined("the shape of an added hysteresis is fitted with it")
         amplitude = scene.largest(scene.hysteresis)
         thresholds = [amplitude * k / OPERATORS for k in range(1, OPERATORS)]
         weights = [f"weight {k}" for k in range(1, OPERATORS)]

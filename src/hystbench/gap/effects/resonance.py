@@ -27,8 +27,8 @@ class Resonance(Effect):
             scene,
             scene.behind_hysteresis,
             grids={
-                "frequency_hz": logarithmic(low, high, 8),
-                "damping_ratio": np.array([0.02, 0.1, 0.3]),
+                "frequency_hz": logarithmic(low, high, 6),
+                "damping_ratio": np.array([0.02, 0.3]),
             },
             unit={"participation": 0.01},
         )

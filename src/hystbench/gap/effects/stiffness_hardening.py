@@ -43,6 +43,7 @@ class StiffnessHardening(Effect):
                 0,
                 unit={"coefficient": small},
                 free=("coefficient",),
+                neutral=False,
             )
 
 
