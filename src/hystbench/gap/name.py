@@ -13,7 +13,7 @@ from hystbench.gap.effects.base import Declined, Effect
 from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished, score_of
 from hystbench.gap.reshape import directions
 from hystbench.gap.score import Score
-from hystbench.gap.state import State
+from hystbench.gap.state import State, without_effect
 
 PAYS = 40.0
 """By how much an effect must lower the score to be named."""
@@ -102,7 +102,7 @@ class Named:
 
 def make_score(state: State, floor_rms: float) -> Score:
     """Give the score for a model: what its hysteresis could do is spanned anew."""
-    return Score(state.sample, directions(state.scene, state.sample), floor_rms**2)
+    return Score(state.sample, directions(state.scene, state.sample, state.other_forms), floor_rms**2)
 
 
 def try_effect(
@@ -168,21 +168,90 @@ def rank(
     return (*candidates, *declined)
 
 
-def name(
-    state: State, floor_rms: float, say: Say = lambda line: None
-) -> Named:
-    """Add effects to a model for as long as one pays."""
-    rounds = []
+def in_order(
+    ranking: tuple[Candidate, ...], before: State, floor: float
+) -> tuple[Candidate, ...]:
+    """Let a wrong shape of the hysteresis go first where it is most of the gap.
+
+    The score charges reshaping; where that is what is missing, an effect that takes
+    less than half as much of the gap away must not go before it.
+    """
+    shape = next((item for item in ranking if item.effect == SHAPE and item.state), None)
+    first = ranking[0]
+    if shape is None or first.state is None or shape.gain < PAYS or first is shape:
+        return ranking
+    gap = before.power(floor)
+    assert shape.state is not None  # noqa: S101  (for the type checker)
+    if first.state.share(before, floor, gap) > shape.state.share(before, floor, gap) / 2:
+        return ranking
+    return (shape, *(item for item in ranking if item is not shape))
+
+
+SHAPE = "hysteresis-shape"
+
+
+def name(state: State, floor_rms: float, say: Say = lambda line: None) -> Named:
+    """Add effects to a model for as long as one pays and matters."""
+    floor = floor_rms**2
+    gap = max(state.power(floor), floor * 1e-6)
+    rounds: list[Round] = []
     while len(state.added) < MOST:
         score = make_score(state, floor_rms)
-        ranking = rank(state, score)
+        ranking = in_order(rank(state, score), state, floor)
         first = ranking[0]
-        taken = first.gain > PAYS and first.state is not None
-        rounds.append(Round(state, first.score + first.gain, ranking, taken))
         for item in ranking[:4]:
             say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
+        taken = (
+            first.state is not None
+            and first.gain > PAYS
+            and first.state.share(state, floor, gap) > MATTERS
+        )
+        rounds.append(Round(state, first.score + first.gain, ranking, taken))
         if not taken:
             break
         assert first.state is not None  # noqa: S101  (for the type checker)
         state, _ = finished(first.state, score)
+        if len(state.added) > 1:
+            state = reconsidered(state, rounds, floor_rms, say)
     return Named(state, tuple(rounds))
+
+
+def reconsidered(
+    state: State, rounds: Sequence[Round], floor_rms: float, say: Say
+) -> State:
+    """Try the rivals of each effect in its place, now that others are there.
+
+    The first effect was named while the others were missing: one like it may have
+    looked better for that.
+    """
+    for number, item in enumerate(state.added):
+        score = make_score(state, floor_rms)
+        now = score_of(state, score)
+        short = without_effect(state, number)
+        have = {other.effect for other in short.added}
+        names = _rivals(item.effect, rounds) - have
+        ranking = rank(short, score, [effects()[name] for name in sorted(names)])
+        best = ranking[0]
+        if best.state is not None and best.effect != item.effect:
+            after, value = finished(best.state, score)
+            if value < now - SWAP:
+                say(f"{item.effect} gives way to {best.effect}: {now - value:.1f}")
+                return after
+    return state
+
+
+SWAP = 3.0
+MATTERS = 0.01
+"""Share of the gap's power that an effect must take away."""
+CLOSE = 0.6
+"""Rivals are those with this share of the gain of the best of a round."""
+
+
+def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:
+    found = {effect}
+    for one in rounds:
+        best = one.ranking[0].gain
+        near = {x.effect for x in one.ranking if x.gain > CLOSE * best}
+        if effect in near:
+            found |= near
+    return found

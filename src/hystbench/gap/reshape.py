@@ -28,13 +28,15 @@ SMALLEST = 1e-3
 """Directions weaker than this share of the strongest are left out."""
 
 
-def directions(scene: Scene, sample: Sample) -> FloatArray:
+def directions(scene: Scene, sample: Sample, more: FloatArray) -> FloatArray:
     """Give an orthonormal basis of what reshaping the hysteresis could do.
 
     Parameters
     ----------
     scene : Scene
     sample : Sample
+    more : ndarray, shape (scored samples, k)
+        What else could be wrong in shape.
 
     Returns
     -------
@@ -49,13 +51,14 @@ def directions(scene: Scene, sample: Sample) -> FloatArray:
         columns = [
             sample.take(_sent(scene, behind, signals)) for signals in _ways(scene)
         ]
-    return orthonormal(np.column_stack(columns))
+    return orthonormal(np.column_stack([*columns, more]))
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:
     """Give an orthonormal basis of columns, each scaled to one first."""
     size = np.linalg.norm(columns, axis=0)
-    columns = columns[:, size > 0] / size[size > 0]
+    usable = np.isfinite(size) & (size > 0)
+    columns = columns[:, usable] / size[usable]
     # By the small Gram matrix: a full decomposition of the columns is ten times dearer.
     values, vectors = np.linalg.eigh(columns.T @ columns)
     keep = values > (SMALLEST**2) * values[-1]

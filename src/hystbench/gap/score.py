@@ -123,6 +123,8 @@ class Score:
         within = inside.T @ inside
         charge = np.zeros(k) if stiffness is None else stiffness / scale**2
         grams = np.array(parts)
+        if not (np.isfinite(grams).all() and np.isfinite(within).all()):
+            return Amplitudes(np.zeros(k), np.inf)  # a model that runs away
         beta = np.zeros(k)
         best = (np.inf, beta)
         for _ in range(ROUNDS + 1):

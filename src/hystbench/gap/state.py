@@ -11,6 +11,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
+from hystbench.errors import InputError
 from hystbench.gap.effects.base import Beside, Values, Variant
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene, Signals
@@ -39,6 +40,14 @@ class Added(NamedTuple):
     """Place of its block in the chain; None for a signal beside it."""
     values: dict[str, float]
     charge: float
+    replaced: Block | None = None
+    """The chain's own block that it stands for."""
+
+
+FORMS = (0.5, 0.75, 1.3, 2.0)
+"""Factors on a number of an added effect: what other forms of it could do."""
+MANY = 4
+"""An effect of more numbers has no other forms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,6 +122,27 @@ class State:
         return _stack(columns, len(self.sample))
 
     @cached_property
+    def other_forms(self) -> FloatArray:
+        """What other forms of the added effects could do, roughly.
+
+        The output with a number of an effect far from its value, less the output as it
+        is: how a law of another sharpness or of another order differs.
+        """
+        columns = []
+        for item in self.added:
+            own = [k for k, free in enumerate(self.free) if free.block == item.block]
+            for k in own if len(own) <= MANY else ():
+                value = self.value(self.free[k])
+                for factor in FORMS:
+                    change = (factor - 1) * value
+                    try:
+                        after = scene_of(self, {k: change})
+                    except InputError:
+                        continue  # outside what the block accepts: no form of it
+                    columns.append(self.sample.take(after) - self._simulated)
+        return _stack(columns, len(self.sample))
+
+    @cached_property
     def stiffness(self) -> FloatArray:
         """Charge for the square of a change of each free number."""
         return np.array(
@@ -125,6 +155,28 @@ class State:
         return _stack(
             [beside_columns(self, *item) for item in self.beside], len(self.sample)
         )
+
+    def share(self, other: State, floor: float, gap: float) -> float:
+        """Tell which share of a gap is gone here and is there in another state.
+
+        Parameters
+        ----------
+        other : State
+        floor : float
+            Mean square of the noise.
+        gap : float
+            Mean square of the gap above the floor.
+        """
+        return (other.power(floor) - self.power(floor)) / gap
+
+    def power(self, floor: float) -> float:
+        """Mean square of the residual above the floor, of the records alike."""
+        rest = self.residual
+        if self.beside:
+            columns = self.beside_columns
+            rest = rest - columns @ np.linalg.lstsq(columns, rest, rcond=None)[0]
+        squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
+        return float(np.mean(squares)) - floor
 
     @cached_property
     def steps(self) -> tuple[float, ...]:
@@ -230,7 +282,8 @@ def with_effect(state: State, variant: Variant, values: Values) -> State:
         for free in state.free
         if longer or free.block != position
     ]
-    added = Added(*own, position, note, variant.freedom)
+    old = None if longer else state.chain[position]
+    added = Added(*own, position, note, variant.freedom, old)
     return replace(
         state,
         chain=chain,
@@ -241,6 +294,37 @@ def with_effect(state: State, variant: Variant, values: Values) -> State:
                 for item in state.added
             ),
             added,
+        ),
+    )
+
+
+def without_effect(state: State, number: int) -> State:
+    """Take an added effect out again."""
+    gone = state.added[number]
+    rest = tuple(item for k, item in enumerate(state.added) if k != number)
+    if gone.block is None:
+        order = [item.block for item in state.added[:number]].count(None)
+        beside = tuple(x for k, x in enumerate(state.beside) if k != order)
+        return replace(state, added=rest, beside=beside)
+    place = gone.block
+    own = () if gone.replaced is None else (gone.replaced,)
+    chain = (*state.chain[:place], *own, *state.chain[place + 1 :])
+    shorter = 1 - len(own)
+
+    def shifted(block: int) -> int:
+        return block - shorter if block > place else block
+
+    return replace(
+        state,
+        chain=chain,
+        free=tuple(
+            free._replace(block=shifted(free.block))
+            for free in state.free
+            if free.block != place
+        ),
+        added=tuple(
+            item if item.block is None else item._replace(block=shifted(item.block))
+            for item in rest
         ),
     )
 

@@ -26,6 +26,7 @@ class SensorNonlinearity(Effect):
                 lambda given: {"quadratic": 0.0, "cubic": 0.0, **given},
                 form=form,
                 unit={name: unit[name] for name in used},
+                free=used,
             )
 
 
