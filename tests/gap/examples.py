@@ -44,7 +44,7 @@ def straight(u):
 
 
 def inputs(samples=4000, seed=0):
-    """What a laboratory would take: (name, u, period) of sines, a multisine, a chirp."""
+    """What a laboratory would take, as (name, u, period)."""
     rng = np.random.default_rng(seed)
     t = np.arange(samples) * DT
     found = []

@@ -9,6 +9,7 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
 from hystbench.gap.locate.amplitude import amplitude_view
 from hystbench.gap.locate.branch import branch_view
+from hystbench.gap.locate.curves import curves
 from hystbench.gap.locate.delay import delay_view
 from hystbench.gap.locate.frequency import frequency_view
 from hystbench.gap.locate.rate import rate_view
@@ -19,7 +20,7 @@ from hystbench.gap.locate.spectra import take_spectra
 from hystbench.gap.locate.unexplained import unexplained_view
 from hystbench.gap.locate.view import View
 
-__all__ = ["View", "locate"]
+__all__ = ["View", "curves", "locate"]
 
 
 def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:

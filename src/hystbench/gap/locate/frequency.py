@@ -7,6 +7,7 @@ import numpy as np
 from hystbench.gap.locate.distortion import Distortion, take_distortion
 from hystbench.gap.locate.regression import (
     Form,
+    colour_count,
     f_test,
     narrowest_bins,
     saved,
@@ -119,22 +120,15 @@ def _in_bands(
 
 def _p_value(samples: Samples, spectra: Spectra) -> float:
     """Test six bands, cut without a look at the residual."""
-    _, explained, bands = _in_bands(spectra, spectra.simulated, 6)
+    fitted, explained, bands = _in_bands(spectra, spectra.simulated, 6)
     share = explained / max(float(np.sum(spectra.residual)), 1e-300)
-    count = _effective_count(samples, spectra) / HANN_INFLATION
-    return f_test(share, 2 * bands, count)
-
-
-def _effective_count(samples: Samples, spectra: Spectra) -> float:
-    """Count independent samples by the colour of what a linear fit leaves.
-
-    ``n (sum S)^2 / sum S^2``, as :func:`effective_count`, over bins of unlike width.
-    """
-    fitted, _, _ = _in_bands(spectra, spectra.linear, GROUPS)
-    left = np.maximum(spectra.residual - fitted, 1e-12 * np.sum(spectra.residual))
-    width = spectra.noise / float(np.sum(spectra.noise))
-    flatness = float(np.sum(left)) ** 2 / float(np.sum(left**2 / width))
-    return len(samples.residual) * flatness
+    n = sum(len(item.record) for item in samples.compared)
+    # What any linear system leaves tells the colour; bins of the axis are unlike wide.
+    width = spectra.noise
+    freest, _, _ = _in_bands(spectra, spectra.linear, GROUPS)
+    left = np.maximum(spectra.residual - freest, 0.0)
+    count = colour_count(n, left / width, fitted / width, width)
+    return f_test(share, 2 * bands, count / HANN_INFLATION)
 
 
 def _told(distortion: Distortion | None) -> str:

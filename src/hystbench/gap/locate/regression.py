@@ -14,6 +14,8 @@ from hystbench.record import FloatArray
 # The residual counts as this many independent facts in all, however finely sampled:
 # an error of a model is not white (docs/gap.md, "A score that saturates").
 FACTS = 300
+# Bins over which the spectrum of what is left is smoothed.
+SMOOTH = 17
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,7 @@ def best(forms: Sequence[Form]) -> Form:
 def fitted_p_value(samples: Samples, form: Form) -> float:
     """Give the F test's p-value of a form without searched parameters."""
     rest = samples.residual - form.fitted
-    count = effective_count(samples, rest)
+    count = effective_count(samples, rest, form.fitted)
     share = form.explained / max(samples.power, 1e-300)
     return f_test(share, form.freedom, count)
 
@@ -128,21 +130,32 @@ def f_test(share: float, freedom: float, count: float) -> float:
     return float(special.betainc(left / 2, freedom / 2, 1.0 - share))
 
 
-def effective_count(samples: Samples, values: FloatArray) -> float:
+def effective_count(samples: Samples, rest: FloatArray, fitted: FloatArray) -> float:
     """Count the independent samples among autocorrelated ones.
 
-    Two signals of autocorrelation rho are correlated by chance as n / (1 + 2 sum
-    rho_k^2) independent samples are (Bartlett 1946); in the spectrum S this is
-    (sum S)^2 / sum S^2. For periodogram bins of two degrees of freedom, mean S^2 is
-    twice the square of the mean.
+    A fit picks up the rest where both have power. With the spectra S of the rest,
+    smoothed over its neighbours, and F of what was fitted, the count is
+    ``n mean(S) mean(F) / mean(S F)``: n for a white rest, few for a slow fit to a slow
+    rest (Bartlett 1946, in the frequency domain). It is never more than n.
     """
-    first, second = 0.0, 0.0
+    rests, fits = [], []
     for part in samples.slices:
-        power = np.abs(fft.rfft(values[part])) ** 2
-        first += float(np.sum(power))
-        second += float(np.sum(power**2))
-    count = 4 * first**2 / max(second, 1e-300)
-    return float(min(count, len(values)))
+        power = np.abs(fft.rfft(rest[part])) ** 2
+        window = np.ones(min(SMOOTH, len(power)))
+        covered = np.convolve(np.ones_like(power), window, mode="same")
+        rests.append(np.convolve(power, window, mode="same") / covered)
+        fits.append(np.abs(fft.rfft(fitted[part])) ** 2)
+    s, f = np.concatenate(rests), np.concatenate(fits)
+    return colour_count(len(rest), s, f, np.ones_like(s))
+
+
+def colour_count(
+    n: int, rest: FloatArray, fitted: FloatArray, width: FloatArray
+) -> float:
+    """Give ``n mean(S) mean(F) / mean(S F)`` over bins of a width, n at most."""
+    means = float(np.sum(rest * width)) * float(np.sum(fitted * width))
+    shared = float(np.sum(rest * fitted * width)) * float(np.sum(width))
+    return n * min(1.0, means / shared) if shared > 0 else float(n)
 
 
 def hats(values: FloatArray, knots: FloatArray) -> list[FloatArray]:
