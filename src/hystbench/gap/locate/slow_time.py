@@ -1,4 +1,4 @@
-"""The slow-time view: what follows the input with a long memory, as creep and heat do."""
+"""The slow-time view: what follows the input with a long memory: creep, heat."""
 
 from __future__ import annotations
 
