@@ -40,7 +40,7 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     Raises
     ------
     InputError
-        If there is no record.
+        If there is no record, or one is too short.
 
     Notes
     -----
@@ -52,7 +52,9 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     information criterion, the facts fixed because a model's error is not white). A view
     ranks by the best of its forms. So of two views that explain as much, the simpler
     comes first: a delay before a gain and phase of each band; and no view wins by
-    freedom. Ranges are chosen after that: the narrowest that holds four fifths.
+    freedom. A base whose loop has a wrong shape leaves a residual that hides a smaller
+    effect: forms are also tried beside what such a shape could leave, and must then
+    save clearly more than the shape alone does. Ranges are chosen after that: the narrowest that holds four fifths.
     """
     if not compared:
         raise InputError("locate: expected at least one record, got none")

@@ -83,7 +83,7 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
 
 def _response(spectra: Spectra) -> dict[str, list[float]]:
     """Give measurement over simulation where the simulation has power."""
-    excited = spectra.simulated > 1e-5 * float(np.max(spectra.simulated))
+    excited = spectra.simulated >= 1e-5 * float(np.max(spectra.simulated))
     groups = _groups(np.cumsum(excited) - 1, int(np.sum(excited)))
     cross = _gather(groups, spectra.cross.real, excited) + 1j * _gather(
         groups, spectra.cross.imag, excited
@@ -91,6 +91,7 @@ def _response(spectra: Spectra) -> dict[str, list[float]]:
     simulated = _gather(groups, spectra.simulated, excited)
     residual = _gather(groups, spectra.residual, excited)
     energy = _gather(groups, spectra.simulated * spectra.frequency, excited)
+    simulated = np.maximum(simulated, 1e-300)
     ratio = 1 + cross / simulated
     # The measurement's power is that of simulation plus residual.
     measured = simulated + residual + 2 * cross.real

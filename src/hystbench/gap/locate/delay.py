@@ -8,6 +8,7 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.locate.regression import (
     FACTS,
     Form,
+    best,
     fit_form,
     fitted_p_value,
     saved,
@@ -83,7 +84,8 @@ def fit_delay(samples: Samples) -> tuple[float, Form]:
             step *= 0.5
     explained = samples.power - least
     fitted = shifted - samples.simulated
-    return delay, Form(fitted, explained, 1, saved(samples, explained, 1))
+    alone = Form(fitted, explained, 1, saved(samples, explained, 1))
+    return delay, best([alone, fit_form(samples, [fitted], searched=1)])
 
 
 def _shift(item: Compared, delay: float) -> FloatArray:

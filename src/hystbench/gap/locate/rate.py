@@ -7,7 +7,6 @@ from collections.abc import Callable
 import numpy as np
 
 from hystbench.gap.compared import Compared
-from hystbench.gap.locate.branch import plays
 from hystbench.gap.locate.regression import (
     Form,
     best,
@@ -64,7 +63,7 @@ def rate_forms(samples: Samples) -> dict[str, Form]:
     powers = [sign * speed**exponent for exponent in EXPONENTS]
     size = np.abs(samples.input) / max(samples.reach, 1e-300)
     # What plays lag behind their input is the loop's width; here it grows with rate.
-    widths = [(one - samples.input) / samples.reach for one in plays(samples)[::2]]
+    widths = [(one - samples.input) / samples.reach for one in samples.plays[1::3]]
     widening = [
         fit_form(samples, [width * speed**exponent for width in widths], searched=1)
         for exponent in EXPONENTS

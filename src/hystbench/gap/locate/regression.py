@@ -14,6 +14,9 @@ from hystbench.record import FloatArray
 # The residual counts as this many independent facts in all, however finely sampled:
 # an error of a model is not white (docs/gap.md, "A score that saturates").
 FACTS = 300
+# What a form must save, in nats, to be read beside a wrong shape of the base's loop and
+# not as a part of that shape.
+BESIDE = 20.0
 # Bins over which the spectrum of what is left is smoothed.
 SMOOTH = 17
 
@@ -59,7 +62,12 @@ def saved(samples: Samples, explained: float, freedom: int) -> float:
 def fit_form(
     samples: Samples, columns: Sequence[FloatArray], searched: int = 0
 ) -> Form:
-    """Fit columns to the residual by least squares.
+    """Fit columns to the residual by least squares, alone and beside a wrong loop.
+
+    A base is never exact, and a wrong shape of its loop hides what else is wrong. So a
+    form that explains half of the gap is also fitted together with what such a shape
+    could leave (:attr:`Samples.shapes`), all of it charged. It is ranked by that if it
+    saves more than alone and, by a margin, more than the shape does without it.
 
     Parameters
     ----------
@@ -67,13 +75,38 @@ def fit_form(
     columns : sequence of ndarray, shape (n,)
     searched : int
         Parameters inside the columns that were searched for, counted as freedom.
+
+    Returns
+    -------
+    Form
+        ``explained`` is that of the columns alone; ``fitted`` the columns' part.
     """
     design = np.stack(columns)
-    weights, rank = _solve(design @ design.T, design @ samples.residual)
+    gram, moments = design @ design.T, design @ samples.residual
+    weights, rank = _solve(gram, moments)
     fitted = weights @ design
     explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
     freedom = rank + searched
-    return Form(fitted, explained, freedom, saved(samples, explained, freedom))
+    alone = saved(samples, explained, freedom)
+    if explained < 0.5 * samples.gap_power:
+        return Form(fitted, explained, freedom, alone)
+    # The same beside a wrong shape of the loop, whose directions are taken out of the
+    # columns and of the residual by their products alone.
+    along = design @ samples.shapes.T
+    extra_weights, extra_rank = _solve(
+        gram - along @ along.T,
+        moments - along @ samples.shaped,
+        np.sqrt(np.diag(gram)),
+    )
+    gained = extra_weights @ (moments - along @ samples.shaped)
+    both = float(gained + samples.shaped @ samples.shaped) / len(samples.residual)
+    count = extra_rank + searched + len(samples.shapes)
+    beside = saved(samples, both, count) - BESIDE
+    shape = float(samples.shaped @ samples.shaped) / len(samples.residual)
+    if beside <= max(alone, saved(samples, shape, len(samples.shapes))):
+        return Form(fitted, explained, freedom, alone)
+    own = extra_weights @ design
+    return Form(own, explained, freedom, beside)
 
 
 def fit_by_record(
@@ -92,12 +125,19 @@ def fit_by_record(
     return Form(fitted, explained, freedom, saved(samples, explained, freedom))
 
 
-def _solve(gram: FloatArray, moments: FloatArray) -> tuple[FloatArray, int]:
-    """Solve normal equations that may be singular; tell their rank."""
-    scale = np.sqrt(np.diag(gram))
-    scale[scale == 0] = np.inf
+def _solve(
+    gram: FloatArray, moments: FloatArray, scale: FloatArray | None = None
+) -> tuple[FloatArray, int]:
+    """Solve normal equations that may be singular; tell their rank.
+
+    ``scale`` holds the columns' norms before anything was taken out of them: what is
+    left of a column that lay in the span is rounding, not a direction.
+    """
+    if scale is None:
+        scale = np.sqrt(np.diag(gram))
+    scale = np.where(scale > 0, scale, np.inf)
     values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
-    kept = values > 1e-9 * max(float(values[-1]), 1e-300)
+    kept = values > 1e-9 * max(float(values[-1]), 1.0)
     basis = vectors[:, kept]
     return basis @ (basis.T @ (moments / scale) / values[kept]) / scale, int(kept.sum())
 

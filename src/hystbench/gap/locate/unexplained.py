@@ -78,6 +78,8 @@ def unexplained_view(samples: Samples) -> View:
         forms["a lone line and a drift"] = best(both)
     kind = max(forms, key=lambda name: forms[name].saved)
     form = forms[kind]
+    again = fit_form(samples, [form.fitted], searched=form.freedom - 1)
+    form = best([form, again])
     share = samples.share(form.explained, form.freedom)
     test = fit_by_record(samples, drifts[ORDERS])
     p_value = min(1.0, 2 * min(lines.p_value, fitted_p_value(samples, test)))
