@@ -54,7 +54,8 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     comes first: a delay before a gain and phase of each band; and no view wins by
     freedom. A base whose loop has a wrong shape leaves a residual that hides a smaller
     effect: forms are also tried beside what such a shape could leave, and must then
-    save clearly more than the shape alone does. Ranges are chosen after that: the narrowest that holds four fifths.
+    save clearly more than the shape alone does. Ranges are chosen after that: the
+    narrowest that holds four fifths.
     """
     if not compared:
         raise InputError("locate: expected at least one record, got none")

@@ -51,9 +51,9 @@ def branch_view(samples: Samples) -> View:
 
 def branch_forms(samples: Samples) -> dict[str, Form]:
     """Fit every form that tells rising from falling, by what it is in words."""
-    u = samples.input / max(samples.reach, 1e-300)
+    u = samples.input / samples.reach
     direction = samples.direction
-    loops = list(samples.plays / max(samples.reach, 1e-300))
+    loops = list(samples.plays / samples.reach)
     few = loops[1::2]
     top = max(float(np.max(np.abs(samples.speed))), 1e-300)
     soft = [

@@ -30,7 +30,8 @@ RUN_UP = 128
 def rate_view(samples: Samples) -> View:
     """Fit powers of the rate, loops that widen with it, and what exceeds a rate.
 
-    The p-value is that of the odd map over the rate.
+    The p-value is the smaller of two, doubled: that of the odd map over the rate, and
+    that of the best form times the number of limits that were tried.
     """
     unit = f"{samples.compared[0].record.input.unit}/s"
     forms = rate_forms(samples)
@@ -39,6 +40,9 @@ def rate_view(samples: Samples) -> View:
     speed = np.abs(samples.speed)
     start, end = narrowest(speed, form.fitted**2)
     share = samples.share(form.explained, form.freedom)
+    mapped = fitted_p_value(samples, forms["an odd map over the rate"])
+    tried = 2 * (len(LIMITS) + len(FINER))
+    p_value = min(1.0, 2 * min(mapped, tried * fitted_p_value(samples, form)))
     return View(
         view="rate",
         axis="magnitude of the input's rate",
@@ -46,7 +50,7 @@ def rate_view(samples: Samples) -> View:
         end=end,
         unit=unit,
         share_of_gap_power=share,
-        p_value=fitted_p_value(samples, forms["an odd map over the rate"]),
+        p_value=p_value,
         sentence=(
             f"{percent(share)} of the gap is {kind}; most of it lies where the input "
             f"moves at {number(start)} to {number(end)} {unit}."
@@ -61,7 +65,7 @@ def rate_forms(samples: Samples) -> dict[str, Form]:
     speed = np.abs(samples.speed) / top
     sign = np.sign(samples.speed)
     powers = [sign * speed**exponent for exponent in EXPONENTS]
-    size = np.abs(samples.input) / max(samples.reach, 1e-300)
+    size = np.abs(samples.input) / samples.reach
     # What plays lag behind their input is the loop's width; here it grows with rate.
     widths = [(one - samples.input) / samples.reach for one in samples.plays[1::3]]
     widening = [
@@ -82,7 +86,7 @@ def rate_forms(samples: Samples) -> dict[str, Form]:
 
 def _limited(samples: Samples, top: float) -> Form:
     """Fit what a limit of the rate leaves behind, of the input and of the output."""
-    reach = float(np.max(np.abs(samples.simulated))) / max(samples.reach, 1e-300)
+    reach = float(np.max(np.abs(samples.simulated))) / samples.reach
     found = []
     for gain, of in ((1.0, _input), (reach, _simulated)):
         limits = np.array(LIMITS)

@@ -118,8 +118,9 @@ class Samples:
 
     @cached_property
     def reach(self) -> float:
-        """Largest magnitude of the input."""
-        return float(max(np.max(np.abs(item.record.u)) for item in self.compared))
+        """Largest magnitude of the input, never quite zero."""
+        largest = max(float(np.max(np.abs(item.record.u))) for item in self.compared)
+        return max(largest, 1e-300)
 
     @cached_property
     def plays(self) -> FloatArray:
@@ -139,8 +140,8 @@ class Samples:
 
         The span of powers of the input and of its play operators.
         """
-        u = self.input / max(self.reach, 1e-300)
-        span = np.concatenate([[u, u**2, u**3], self.plays / max(self.reach, 1e-300)])
+        u = self.input / self.reach
+        span = np.concatenate([[u, u**2, u**3], self.plays / self.reach])
         scale = np.maximum(np.sqrt(np.sum(span**2, axis=1)), 1e-300)
         values, vectors = np.linalg.eigh(span @ span.T / np.outer(scale, scale))
         kept = values > 1e-9 * max(float(values[-1]), 1e-300)
