@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
@@ -16,6 +17,9 @@ from hystbench.gap.locate.samples import Samples, take_samples
 from hystbench.gap.locate.slow_time import block_means
 from hystbench.gap.locate.spectra import Spectra, take_spectra
 from hystbench.record import FloatArray
+
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 # Points of a curve over frequency or time, and of a map over an axis.
 POINTS = 200
@@ -217,16 +221,16 @@ def _loop_area(item: Compared, frequency: float) -> float:
     return -area / max(len(record) * record.dt * float(frequency), 1e-300)
 
 
-def _groups(place: FloatArray, count: int) -> FloatArray:
+def _groups(place: IntArray, count: int) -> IntArray:
     """Number the group of each bin, so that there are at most ``POINTS``."""
     size = max(1, -(-count // POINTS))
     return place // size
 
 
-def _gather(groups: Any, values: FloatArray, chosen: Any) -> FloatArray:
-    return np.bincount(groups[chosen], values[chosen])
+def _gather(groups: IntArray, values: FloatArray, chosen: BoolArray) -> FloatArray:
+    return np.bincount(groups[chosen], values[chosen]).astype(np.float64)
 
 
-def _listed(values: FloatArray) -> list[float]:
+def _listed(values: ArrayLike) -> list[float]:
     """Give plain floats, with as many digits as a picture can show."""
-    return [float(f"{value:.6g}") for value in values]
+    return [float(f"{value:.6g}") for value in np.asarray(values)]

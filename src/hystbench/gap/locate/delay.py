@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import cast
+
 import numpy as np
 
 from hystbench.gap.compared import Compared
@@ -73,7 +76,7 @@ def fit_delay(samples: Samples) -> tuple[float, Form]:
     for _ in range(STEPS):
         moved = float(np.mean((shifted - target) * speed)) / mean_speed
         trial = float(np.clip(delay + step * moved, -limit, limit))
-        tried = samples.thin(lambda item, shift=trial: _shift(item, shift))
+        tried = samples.thin(partial(_shift, delay=trial))
         error = float(np.mean((target - tried) ** 2))
         if error < least:
             if least - error < 1e-6 * least:
@@ -99,4 +102,5 @@ def _shift(item: Compared, delay: float) -> FloatArray:
     a, b = values[left], values[left + 1]
     p, q = slope[left], slope[left + 1]
     chord = b - a
-    return a + x * (p + x * (3 * chord - 2 * p - q + x * (p + q - 2 * chord)))
+    bent = p + x * (3 * chord - 2 * p - q + x * (p + q - 2 * chord))
+    return cast(FloatArray, a + x * bent)

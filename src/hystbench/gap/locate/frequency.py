@@ -87,19 +87,21 @@ def linear_forms(samples: Samples, spectra: Spectra) -> dict[str, Form]:
 
 def _lag(frequency: FloatArray, parameters: FloatArray) -> ComplexArray:
     """Give 1 / (1 + s tau) - 1 for each tau."""
-    return 1 / (1 + 2j * np.pi * frequency * parameters[:, :1]) - 1
+    s = 2j * np.pi * frequency
+    return cast(ComplexArray, 1 / (1 + s * parameters[:, :1]) - 1)
 
 
 def _slab(frequency: FloatArray, parameters: FloatArray) -> ComplexArray:
     """Give tanh(q) / q - 1, q^2 = s tau, for each tau: diffusion into a slab."""
     root = np.sqrt(2j * np.pi * np.maximum(frequency, 1e-9) * parameters[:, :1])
-    return np.tanh(root) / root - 1
+    return cast(ComplexArray, np.tanh(root) / root - 1)
 
 
 def _mode(frequency: FloatArray, parameters: FloatArray) -> ComplexArray:
     """Give wn^2 / (s^2 + 2 zeta wn s + wn^2) - 1 for each pair of Hz and zeta."""
     ratio = frequency / parameters[:, :1]
-    return 1 / (1 - ratio**2 + 2j * parameters[:, 1:] * ratio) - 1
+    response = 1 / (1 - ratio**2 + 2j * parameters[:, 1:] * ratio)
+    return cast(ComplexArray, response - 1)
 
 
 def _shaped(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -190,7 +191,7 @@ def _level(power: FloatArray) -> FloatArray:
     medians = np.median(power[edges[:-1, np.newaxis] + np.arange(short)], axis=1)
     levels = np.log(np.maximum(medians / np.log(2), 1e-300))
     centres = 0.5 * (edges[:-1] + edges[1:])
-    return np.exp(np.interp(np.arange(len(power)), centres, levels))
+    return cast(FloatArray, np.exp(np.interp(np.arange(len(power)), centres, levels)))
 
 
 def _input_lines(cause: FloatArray) -> BoolArray:
