@@ -60,11 +60,12 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     if not compared:
         raise InputError("locate: expected at least one record, got none")
     samples = take_samples(compared, floor)
+    spectra = take_spectra(samples)
     views = (
-        delay_view(samples),
+        delay_view(samples, spectra),
         amplitude_view(samples),
         branch_view(samples),
-        frequency_view(samples, take_spectra(samples)),
+        frequency_view(samples, spectra),
         slow_time_view(samples),
         unexplained_view(samples),
         rate_view(samples),

@@ -13,7 +13,6 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.locate.distortion import Distortion, take_distortion
 from hystbench.gap.locate.regression import (
     Form,
-    best,
     colour_count,
     f_test,
     fit_form,
@@ -124,7 +123,7 @@ def _shaped(
         return pooled
     run = samples.thin(lambda item: _run(item, shape, grid[row : row + 1]))
     timed = fit_form(samples, [run], searched=grid.shape[1])
-    return best([pooled, replace(timed, fitted=power)])
+    return replace(timed, fitted=power)
 
 
 def _run(
