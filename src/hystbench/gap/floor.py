@@ -154,10 +154,18 @@ def _median_level(power: FloatArray) -> float:
 
 def _at_least(y: FloatArray, rms: float) -> float:
     """Keep the floor above that of quantisation, and above zero."""
-    values = np.unique(y)
-    spread = float(values[-1] - values[0])
-    steps = np.diff(values)
-    steps = steps[steps > TINY * spread]
-    quantisation = float(np.min(steps)) / np.sqrt(12) if len(steps) else 0.0
     scale = float(np.max(np.abs(y)))
-    return float(max(rms, quantisation, TINY * scale, np.finfo(float).tiny))
+    return float(max(rms, _step(y) / np.sqrt(12), TINY * scale, TINY**2))
+
+
+def _step(y: FloatArray) -> float:
+    """Give the step of quantised values: all differences are whole multiples of it."""
+    values = np.unique(y)
+    steps = np.diff(values)
+    steps = steps[steps > TINY * float(values[-1] - values[0])]
+    if not len(steps):
+        return 0.0
+    least = float(np.min(steps))
+    multiples = steps / least
+    whole = np.abs(multiples - np.round(multiples)) < 0.05
+    return least if bool(np.all(whole)) else 0.0

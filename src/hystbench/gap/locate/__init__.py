@@ -9,6 +9,7 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
 from hystbench.gap.locate.amplitude import amplitude_view
 from hystbench.gap.locate.branch import branch_view
+from hystbench.gap.locate.curves import curves
 from hystbench.gap.locate.delay import delay_view
 from hystbench.gap.locate.frequency import frequency_view
 from hystbench.gap.locate.rate import rate_view
@@ -19,7 +20,7 @@ from hystbench.gap.locate.spectra import take_spectra
 from hystbench.gap.locate.unexplained import unexplained_view
 from hystbench.gap.locate.view import View
 
-__all__ = ["View", "locate"]
+__all__ = ["View", "curves", "locate"]
 
 
 def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
@@ -39,7 +40,7 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     Raises
     ------
     InputError
-        If there is no record.
+        If there is no record, or one is too short.
 
     Notes
     -----
@@ -51,16 +52,20 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     information criterion, the facts fixed because a model's error is not white). A view
     ranks by the best of its forms. So of two views that explain as much, the simpler
     comes first: a delay before a gain and phase of each band; and no view wins by
-    freedom. Ranges are chosen after that: the narrowest that holds four fifths.
+    freedom. A base whose loop has a wrong shape leaves a residual that hides a smaller
+    effect: forms are also tried beside what such a shape could leave, and must then
+    save clearly more than the shape alone does. Ranges are chosen after that: the
+    narrowest that holds four fifths.
     """
     if not compared:
         raise InputError("locate: expected at least one record, got none")
     samples = take_samples(compared, floor)
+    spectra = take_spectra(samples)
     views = (
-        delay_view(samples),
+        delay_view(samples, spectra),
         amplitude_view(samples),
         branch_view(samples),
-        frequency_view(samples, take_spectra(samples)),
+        frequency_view(samples, spectra),
         slow_time_view(samples),
         unexplained_view(samples),
         rate_view(samples),

@@ -56,7 +56,7 @@ def amplitude_view(samples: Samples) -> View:
 
 def static_forms(samples: Samples) -> dict[str, Form]:
     """Fit every static form, by what it is in words."""
-    u = samples.input / max(samples.reach, 1e-300)
+    u = samples.input / samples.reach
     s = samples.simulated / max(float(np.max(np.abs(samples.simulated))), 1e-300)
     one = np.ones_like(u)
     return {

@@ -10,8 +10,6 @@ from hystbench.gap.locate.view import View, number, percent
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
-# Thresholds of play operators, as shares of the input's largest magnitude.
-THRESHOLDS = (0.03, 0.08, 0.15, 0.25, 0.4, 0.55, 0.7, 0.85)
 # Half-widths of a backlash, as shares of the simulated output's largest magnitude.
 BACKLASH = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2)
 # Speeds over which friction turns, as shares of the greatest.
@@ -53,9 +51,10 @@ def branch_view(samples: Samples) -> View:
 
 def branch_forms(samples: Samples) -> dict[str, Form]:
     """Fit every form that tells rising from falling, by what it is in words."""
-    u = samples.input / max(samples.reach, 1e-300)
+    u = samples.input / samples.reach
     direction = samples.direction
-    loops = [one / max(samples.reach, 1e-300) for one in plays(samples)]
+    loops = list(samples.plays / samples.reach)
+    few = loops[1::2]
     top = max(float(np.max(np.abs(samples.speed))), 1e-300)
     soft = [
         fit_form(samples, [np.tanh(samples.speed / (share * top))], searched=1)
@@ -70,25 +69,12 @@ def branch_forms(samples: Samples) -> dict[str, Form]:
             samples, [direction, direction * u, direction * u**2]
         ),
         "a play at the output": best(slack),
+        "the loop's width": fit_form(samples, [u, *few]),
         "the shape of the loop": fit_form(samples, [u, direction, *loops]),
         "the shape of an asymmetric loop": fit_form(
-            samples,
-            [np.ones_like(u), u, u**2, u**3, *loops, *[one**2 for one in loops]],
+            samples, [np.ones_like(u), u, u**2, u**3, *loops, *[f**2 for f in few]]
         ),
     }
-
-
-def plays(samples: Samples) -> list[FloatArray]:
-    """Give play operators of the input over the thresholds, in the input's unit.
-
-    They approximate any Preisach operator, so no loop is out of their reach.
-    """
-    thresholds = np.array(THRESHOLDS) * samples.reach
-    parts = [
-        play(item.record.u, thresholds)[0][:: samples.stride]
-        for item in samples.compared
-    ]
-    return list(np.ascontiguousarray(np.concatenate(parts).T))
 
 
 def _slack(samples: Samples) -> list[FloatArray]:

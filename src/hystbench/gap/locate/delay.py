@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.regression import (
     FACTS,
     Form,
+    best,
     fit_form,
     fitted_p_value,
     saved,
 )
 from hystbench.gap.locate.samples import Samples, derivative
+from hystbench.gap.locate.spectra import Spectra
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
 
-STEPS = 6
+# Delays that are tried first, and rounds of parabolas after that.
+STARTS = 301
+STEPS = 3
 
 
-def delay_view(samples: Samples) -> View:
+def delay_view(samples: Samples, spectra: Spectra) -> View:
     """Shift the simulated output in time until it fits best.
 
     A delay of the input of a simulator that does not change with time is a delay of its
@@ -27,7 +33,7 @@ def delay_view(samples: Samples) -> View:
     counting as few facts. The p-value is that of the first-order term, -delay * dy/dt.
     """
     first = fit_form(samples, [samples.simulated_speed])
-    delay, form = fit_delay(samples)
+    delay, form = fit_delay(samples, spectra)
     share = samples.share(form.explained, 1)
     rest = max(samples.power - form.explained, 0.0)
     slope = max(float(np.mean(samples.simulated_speed**2)), 1e-300)
@@ -51,8 +57,8 @@ def delay_view(samples: Samples) -> View:
     )
 
 
-def fit_delay(samples: Samples) -> tuple[float, Form]:
-    """Find the delay in seconds by Gauss-Newton steps from several starts.
+def fit_delay(samples: Samples, spectra: Spectra) -> tuple[float, Form]:
+    """Find the delay in seconds: by the cross-spectrum, then by parabolas in time.
 
     Returns
     -------
@@ -60,41 +66,48 @@ def fit_delay(samples: Samples) -> tuple[float, Form]:
     form : Form
         With one free parameter.
     """
+    slopes = [derivative(item.simulated, item.record.dt) for item in samples.compared]
+
+    def shifted(delay: float) -> FloatArray:
+        pairs = zip(samples.compared, slopes, strict=True)
+        return np.concatenate(
+            [_shift(item, slope, delay, samples.stride) for item, slope in pairs]
+        )
+
     target = samples.residual + samples.simulated
-    speed = samples.simulated_speed
-    mean_speed = max(float(np.mean(speed**2)), 1e-300)
-    delay, shifted = 0.0, samples.simulated
-    least = float(np.mean((target - shifted) ** 2))
-    # Beyond a quarter of the fastest period a shift is no longer told from a phase.
-    limit = 0.25 / float(np.max(samples.main_frequencies))
+    # Beyond one and a half of the fastest period a shift is no longer told from
+    # others that differ by whole periods.
+    limit = 1.5 / float(np.max(samples.main_frequencies))
     limit = max(limit, 4 * max(item.record.dt for item in samples.compared))
-    step = 1.0
+    grid = np.linspace(-limit, limit, STARTS)
+    turned = np.exp(2j * np.pi * np.outer(grid, spectra.frequency))
+    likeness = np.real(turned @ (spectra.cross + spectra.simulated))
+    # Zero wins ties: a record that tells nothing has no delay.
+    delay = float(grid[np.argmax(likeness - 1e-9 * np.abs(likeness) * np.abs(grid))])
+    step = float(grid[1] - grid[0])
     for _ in range(STEPS):
-        moved = float(np.mean((shifted - target) * speed)) / mean_speed
-        trial = float(np.clip(delay + step * moved, -limit, limit))
-        tried = samples.thin(lambda item, shift=trial: _shift(item, shift))
-        error = float(np.mean((target - tried) ** 2))
-        if error < least:
-            if least - error < 1e-6 * least:
-                delay, shifted, least = trial, tried, error
-                break
-            delay, shifted, least = trial, tried, error
-        else:
-            step *= 0.5
-    explained = samples.power - least
-    fitted = shifted - samples.simulated
-    return delay, Form(fitted, explained, 1, saved(samples, explained, 1))
+        places = np.array([delay - step, delay, delay + step])
+        errors = [float(np.mean((target - shifted(one)) ** 2)) for one in places]
+        bend = errors[0] - 2 * errors[1] + errors[2]
+        if bend <= 0:
+            break
+        moved = 0.5 * step * (errors[0] - errors[2]) / bend
+        delay += float(np.clip(moved, -step, step))
+        step *= 0.3
+    fitted = shifted(delay) - samples.simulated
+    explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
+    alone = Form(fitted, explained, 1, saved(samples, explained, 1))
+    return delay, best([alone, fit_form(samples, [fitted], searched=1)])
 
 
-def _shift(item: Compared, delay: float) -> FloatArray:
-    """Delay the simulated output by cubic Hermite interpolation."""
+def _shift(item: Compared, slope: FloatArray, delay: float, stride: int) -> FloatArray:
+    """Delay every stride-th simulated sample by cubic Hermite interpolation."""
     dt, values = item.record.dt, item.simulated
     n = len(values)
-    slope = derivative(values, dt) * dt
-    place = np.clip(np.arange(n) - delay / dt, 0.0, n - 1.0)
+    place = np.clip(np.arange(0, n, stride) - delay / dt, 0.0, n - 1.0)
     left = np.minimum(place.astype(np.int64), n - 2)
     x = place - left
-    a, b = values[left], values[left + 1]
-    p, q = slope[left], slope[left + 1]
-    chord = b - a
-    return a + x * (p + x * (3 * chord - 2 * p - q + x * (p + q - 2 * chord)))
+    a, p, q = values[left], slope[left] * dt, slope[left + 1] * dt
+    chord = values[left + 1] - a
+    bent = p + x * (3 * chord - 2 * p - q + x * (p + q - 2 * chord))
+    return cast(FloatArray, a + x * bent)

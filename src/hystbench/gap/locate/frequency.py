@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Callable
+from dataclasses import replace
+from typing import cast
 
+import numpy as np
+from scipy import fft
+
+from hystbench.gap.compared import Compared
 from hystbench.gap.locate.distortion import Distortion, take_distortion
 from hystbench.gap.locate.regression import (
     Form,
+    colour_count,
     f_test,
+    fit_form,
     narrowest_bins,
     saved,
 )
@@ -27,7 +35,8 @@ def frequency_view(samples: Samples, spectra: Spectra) -> View:
     The forms are a mode, a first-order lag, diffusion and any gain and phase in a few
     bands. The range is the narrowest band, in the logarithm of frequency, that holds
     four fifths of what is linear. The p-value is that of a gain and a phase in each
-    of six bands of equal simulated power.
+    of six bands of equal simulated power; it errs to the large side, as the window
+    may smear a line over less than it is charged for.
     """
     forms = linear_forms(samples, spectra)
     kind = max(forms, key=lambda name: forms[name].saved)
@@ -58,40 +67,78 @@ def frequency_view(samples: Samples, spectra: Spectra) -> View:
 def linear_forms(samples: Samples, spectra: Spectra) -> dict[str, Form]:
     """Fit every linear form, by what it is in words.
 
-    ``fitted`` of these forms is the power explained in each bin.
+    Each is searched in the pooled spectra, and the best of a lag, of diffusion and of
+    a mode is then run in time, where a record's ends do no harm. ``fitted`` of these
+    forms is the power explained in each bin.
     """
-    omega = 2 * np.pi * spectra.frequency
-    excited = spectra.simulated > 1e-4 * float(np.max(spectra.simulated))
+    excited = spectra.simulated >= 1e-4 * float(np.max(spectra.simulated))
     low = float(spectra.frequency[excited][0])
     high = float(spectra.frequency[excited][-1])
-    times = np.geomspace(0.01 / high, 3 / low, 60)[:, np.newaxis] / (2 * np.pi)
-    lag = 1 / (1 + 1j * omega * times) - 1
-    root = np.sqrt(1j * omega * times)
-    slab = np.tanh(root) / root - 1
-    natural = np.geomspace(low / 1.5, high * 2, MODES)[:, np.newaxis, np.newaxis]
-    ratio = spectra.frequency / natural
-    damping = np.array(DAMPINGS)[np.newaxis, :, np.newaxis]
-    mode = (1 / (1 - ratio**2 + 2j * damping * ratio) - 1).reshape(-1, len(omega))
+    times = np.geomspace(0.01 / high, 3 / low, 60) / (2 * np.pi)
+    modes = [(f, z) for f in np.geomspace(low / 1.5, high * 2, MODES) for z in DAMPINGS]
     return {
-        "a lag": _shaped(samples, spectra, lag, 2),
-        "diffusion": _shaped(samples, spectra, slab, 2),
-        "a mode": _shaped(samples, spectra, mode, 3),
+        "a lag": _shaped(samples, spectra, _lag, times[:, np.newaxis]),
+        "diffusion": _shaped(samples, spectra, _slab, times[:, np.newaxis]),
+        "a mode": _shaped(samples, spectra, _mode, np.array(modes)),
         "a gain and phase of each band's own": _banded(samples, spectra),
     }
 
 
+def _lag(frequency: FloatArray, parameters: FloatArray) -> ComplexArray:
+    """Give 1 / (1 + s tau) - 1 for each tau."""
+    s = 2j * np.pi * frequency
+    return cast(ComplexArray, 1 / (1 + s * parameters[:, :1]) - 1)
+
+
+def _slab(frequency: FloatArray, parameters: FloatArray) -> ComplexArray:
+    """Give tanh(q) / q - 1, q^2 = s tau, for each tau: diffusion into a slab."""
+    root = np.sqrt(2j * np.pi * np.maximum(frequency, 1e-9) * parameters[:, :1])
+    return cast(ComplexArray, np.tanh(root) / root - 1)
+
+
+def _mode(frequency: FloatArray, parameters: FloatArray) -> ComplexArray:
+    """Give wn^2 / (s^2 + 2 zeta wn s + wn^2) - 1 for each pair of Hz and zeta."""
+    ratio = frequency / parameters[:, :1]
+    response = 1 / (1 - ratio**2 + 2j * parameters[:, 1:] * ratio)
+    return cast(ComplexArray, response - 1)
+
+
 def _shaped(
-    samples: Samples, spectra: Spectra, shapes: ComplexArray, freedom: int
+    samples: Samples,
+    spectra: Spectra,
+    shape: Callable[[FloatArray, FloatArray], ComplexArray],
+    grid: FloatArray,
 ) -> Form:
-    """Fit each shape (rows) with one real factor; keep the best."""
+    """Fit a shape with one real factor at each row of parameters; keep the best."""
+    shapes = shape(spectra.frequency, grid)
     moment = np.real(np.conj(shapes) @ spectra.cross)
     energy = np.abs(shapes) ** 2 @ spectra.simulated
-    explained = moment**2 / np.maximum(energy, 1e-300)
-    row = int(np.argmax(explained))
+    row = int(np.argmax(moment**2 / np.maximum(energy, 1e-300)))
+    explained = float(moment[row] ** 2 / max(float(energy[row]), 1e-300))
     factor = moment[row] / max(float(energy[row]), 1e-300)
     power = np.abs(factor * shapes[row]) ** 2 * spectra.simulated
-    gained = float(explained[row])
-    return Form(power, gained, freedom, saved(samples, gained, freedom))
+    freedom = 1 + grid.shape[1]
+    pooled = Form(power, explained, freedom, saved(samples, explained, freedom))
+    if explained < 0.3 * samples.gap_power:
+        return pooled
+    run = samples.thin(lambda item: _run(item, shape, grid[row : row + 1]))
+    timed = fit_form(samples, [run], searched=grid.shape[1])
+    return replace(timed, fitted=power)
+
+
+def _run(
+    item: Compared,
+    shape: Callable[[FloatArray, FloatArray], ComplexArray],
+    parameters: FloatArray,
+) -> FloatArray:
+    """Send the simulated output, at rest before, through a shape."""
+    n = len(item.simulated)
+    length = fft.next_fast_len(2 * n, real=True)
+    start = item.simulated[0]
+    spectrum = fft.rfft(item.simulated - start, length)
+    frequency = fft.rfftfreq(length, item.record.dt)
+    response = shape(frequency, parameters)[0]
+    return cast(FloatArray, fft.irfft(spectrum * response, length)[:n])
 
 
 def _banded(samples: Samples, spectra: Spectra) -> Form:
@@ -119,22 +166,15 @@ def _in_bands(
 
 def _p_value(samples: Samples, spectra: Spectra) -> float:
     """Test six bands, cut without a look at the residual."""
-    _, explained, bands = _in_bands(spectra, spectra.simulated, 6)
+    fitted, explained, bands = _in_bands(spectra, spectra.simulated, 6)
     share = explained / max(float(np.sum(spectra.residual)), 1e-300)
-    count = _effective_count(samples, spectra) / HANN_INFLATION
-    return f_test(share, 2 * bands, count)
-
-
-def _effective_count(samples: Samples, spectra: Spectra) -> float:
-    """Count independent samples by the colour of what a linear fit leaves.
-
-    ``n (sum S)^2 / sum S^2``, as :func:`effective_count`, over bins of unlike width.
-    """
-    fitted, _, _ = _in_bands(spectra, spectra.linear, GROUPS)
-    left = np.maximum(spectra.residual - fitted, 1e-12 * np.sum(spectra.residual))
-    width = spectra.noise / float(np.sum(spectra.noise))
-    flatness = float(np.sum(left)) ** 2 / float(np.sum(left**2 / width))
-    return len(samples.residual) * flatness
+    n = sum(len(item.record) for item in samples.compared)
+    # What any linear system leaves tells the colour; bins of the axis are unlike wide.
+    width = spectra.noise
+    freest, _, _ = _in_bands(spectra, spectra.linear, GROUPS)
+    left = np.maximum(spectra.residual - freest, 0.0)
+    count = colour_count(n, left / width, fitted / width, width)
+    return f_test(share, 2 * bands, count / HANN_INFLATION)
 
 
 def _told(distortion: Distortion | None) -> str:

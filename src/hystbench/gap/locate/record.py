@@ -6,6 +6,7 @@ import numpy as np
 
 from hystbench.gap.locate.regression import (
     fit_by_record,
+    fit_form,
     fitted_p_value,
     narrowest_bins,
 )
@@ -17,14 +18,23 @@ from hystbench.record import FloatArray
 def record_view(samples: Samples) -> View:
     """Share the gap's power out among the records.
 
-    The range is the fewest neighbouring records that hold four fifths of it. What is
-    explained, for rank and p-value, is a gain and an offset of each record's own.
+    The range is the fewest neighbouring records that hold four fifths of it. For the
+    rank, the record that holds most is given a gain and an offset of its own: this
+    view comes first where one record is off. The p-value is that of a gain and an
+    offset of each record's own.
     """
     shares = record_shares(samples)
     first, last = narrowest_bins(shares)
     share = float(np.sum(shares[first : last + 1]))
     names = [item.record.name for item in samples.compared]
     form = fit_by_record(samples, [samples.simulated, np.ones_like(samples.simulated)])
+    most = samples.slices[int(np.argmax(shares))]
+    columns = []
+    for values in (samples.simulated, np.ones_like(samples.simulated)):
+        column = np.zeros_like(values)
+        column[most] = values[most]
+        columns.append(column)
+    single = fit_form(samples, columns, searched=1)
     own = samples.share(form.explained, form.freedom)
     where = names[first] if first == last else f"{names[first]} to {names[last]}"
     return View(
@@ -40,7 +50,7 @@ def record_view(samples: Samples) -> View:
             f"records, {where}; a gain and an offset of each record's own would take "
             f"away {percent(own)}."
         ),
-        saved=form.saved,
+        saved=single.saved,
     )
 
 

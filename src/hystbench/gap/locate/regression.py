@@ -14,6 +14,11 @@ from hystbench.record import FloatArray
 # The residual counts as this many independent facts in all, however finely sampled:
 # an error of a model is not white (docs/gap.md, "A score that saturates").
 FACTS = 300
+# What a form must save, in nats, to be read beside a wrong shape of the base's loop and
+# not as a part of that shape.
+BESIDE = 20.0
+# Bins over which the spectrum of what is left is smoothed.
+SMOOTH = 17
 
 
 @dataclass(frozen=True)
@@ -57,7 +62,12 @@ def saved(samples: Samples, explained: float, freedom: int) -> float:
 def fit_form(
     samples: Samples, columns: Sequence[FloatArray], searched: int = 0
 ) -> Form:
-    """Fit columns to the residual by least squares.
+    """Fit columns to the residual by least squares, alone and beside a wrong loop.
+
+    A base is never exact, and a wrong shape of its loop hides what else is wrong. So a
+    form that explains half of the gap is also fitted together with what such a shape
+    could leave (:attr:`Samples.shapes`), all of it charged. It is ranked by that if it
+    saves more than alone and, by a margin, more than the shape does without it.
 
     Parameters
     ----------
@@ -65,13 +75,38 @@ def fit_form(
     columns : sequence of ndarray, shape (n,)
     searched : int
         Parameters inside the columns that were searched for, counted as freedom.
+
+    Returns
+    -------
+    Form
+        ``explained`` is that of the columns alone; ``fitted`` the columns' part.
     """
     design = np.stack(columns)
-    weights, rank = _solve(design @ design.T, design @ samples.residual)
+    gram, moments = design @ design.T, design @ samples.residual
+    weights, rank = _solve(gram, moments)
     fitted = weights @ design
     explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
     freedom = rank + searched
-    return Form(fitted, explained, freedom, saved(samples, explained, freedom))
+    alone = saved(samples, explained, freedom)
+    if explained < 0.5 * samples.gap_power:
+        return Form(fitted, explained, freedom, alone)
+    # The same beside a wrong shape of the loop, whose directions are taken out of the
+    # columns and of the residual by their products alone.
+    along = design @ samples.shapes.T
+    extra_weights, extra_rank = _solve(
+        gram - along @ along.T,
+        moments - along @ samples.shaped,
+        np.sqrt(np.diag(gram)),
+    )
+    gained = extra_weights @ (moments - along @ samples.shaped)
+    both = float(gained + samples.shaped @ samples.shaped) / len(samples.residual)
+    count = extra_rank + searched + len(samples.shapes)
+    beside = saved(samples, both, count) - BESIDE
+    shape = float(samples.shaped @ samples.shaped) / len(samples.residual)
+    if beside <= max(alone, saved(samples, shape, len(samples.shapes))):
+        return Form(fitted, explained, freedom, alone)
+    own = extra_weights @ design
+    return Form(own, explained, freedom, beside)
 
 
 def fit_by_record(
@@ -90,12 +125,19 @@ def fit_by_record(
     return Form(fitted, explained, freedom, saved(samples, explained, freedom))
 
 
-def _solve(gram: FloatArray, moments: FloatArray) -> tuple[FloatArray, int]:
-    """Solve normal equations that may be singular; tell their rank."""
-    scale = np.sqrt(np.diag(gram))
-    scale[scale == 0] = np.inf
+def _solve(
+    gram: FloatArray, moments: FloatArray, scale: FloatArray | None = None
+) -> tuple[FloatArray, int]:
+    """Solve normal equations that may be singular; tell their rank.
+
+    ``scale`` holds the columns' norms before anything was taken out of them: what is
+    left of a column that lay in the span is rounding, not a direction.
+    """
+    if scale is None:
+        scale = np.sqrt(np.diag(gram))
+    scale = np.where(scale > 0, scale, np.inf)
     values, vectors = np.linalg.eigh(gram / np.outer(scale, scale))
-    kept = values > 1e-9 * max(float(values[-1]), 1e-300)
+    kept = values > 1e-9 * max(float(values[-1]), 1.0)
     basis = vectors[:, kept]
     return basis @ (basis.T @ (moments / scale) / values[kept]) / scale, int(kept.sum())
 
@@ -108,7 +150,7 @@ def best(forms: Sequence[Form]) -> Form:
 def fitted_p_value(samples: Samples, form: Form) -> float:
     """Give the F test's p-value of a form without searched parameters."""
     rest = samples.residual - form.fitted
-    count = effective_count(samples, rest)
+    count = effective_count(samples, rest, form.fitted)
     share = form.explained / max(samples.power, 1e-300)
     return f_test(share, form.freedom, count)
 
@@ -128,21 +170,32 @@ def f_test(share: float, freedom: float, count: float) -> float:
     return float(special.betainc(left / 2, freedom / 2, 1.0 - share))
 
 
-def effective_count(samples: Samples, values: FloatArray) -> float:
+def effective_count(samples: Samples, rest: FloatArray, fitted: FloatArray) -> float:
     """Count the independent samples among autocorrelated ones.
 
-    Two signals of autocorrelation rho are correlated by chance as n / (1 + 2 sum
-    rho_k^2) independent samples are (Bartlett 1946); in the spectrum S this is
-    (sum S)^2 / sum S^2. For periodogram bins of two degrees of freedom, mean S^2 is
-    twice the square of the mean.
+    A fit picks up the rest where both have power. With the spectra S of the rest,
+    smoothed over its neighbours, and F of what was fitted, the count is
+    ``n mean(S) mean(F) / mean(S F)``: n for a white rest, few for a slow fit to a slow
+    rest (Bartlett 1946, in the frequency domain). It is never more than n.
     """
-    first, second = 0.0, 0.0
+    rests, fits = [], []
     for part in samples.slices:
-        power = np.abs(fft.rfft(values[part])) ** 2
-        first += float(np.sum(power))
-        second += float(np.sum(power**2))
-    count = 4 * first**2 / max(second, 1e-300)
-    return float(min(count, len(values)))
+        power = np.abs(fft.rfft(rest[part])) ** 2
+        window = np.ones(min(SMOOTH, len(power)))
+        covered = np.convolve(np.ones_like(power), window, mode="same")
+        rests.append(np.convolve(power, window, mode="same") / covered)
+        fits.append(np.abs(fft.rfft(fitted[part])) ** 2)
+    s, f = np.concatenate(rests), np.concatenate(fits)
+    return colour_count(len(rest), s, f, np.ones_like(s))
+
+
+def colour_count(
+    n: int, rest: FloatArray, fitted: FloatArray, width: FloatArray
+) -> float:
+    """Give ``n mean(S) mean(F) / mean(S F)`` over bins of a width, n at most."""
+    means = float(np.sum(rest * width)) * float(np.sum(fitted * width))
+    shared = float(np.sum(rest * fitted * width)) * float(np.sum(width))
+    return n * min(1.0, means / shared) if shared > 0 else float(n)
 
 
 def hats(values: FloatArray, knots: FloatArray) -> list[FloatArray]:

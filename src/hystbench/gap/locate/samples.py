@@ -10,6 +10,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
 from hystbench.operators import play
@@ -17,6 +18,23 @@ from hystbench.record import FloatArray
 
 # More samples than this tell a map over an axis nothing more.
 ENOUGH = 14_000
+FEWEST = 32
+# Thresholds of play operators, as shares of the input's largest magnitude.
+THRESHOLDS = (
+    0.02,
+    0.05,
+    0.09,
+    0.13,
+    0.18,
+    0.24,
+    0.3,
+    0.37,
+    0.45,
+    0.54,
+    0.64,
+    0.74,
+    0.85,
+)
 PRIMES = (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61)
 
 
@@ -100,8 +118,42 @@ class Samples:
 
     @cached_property
     def reach(self) -> float:
-        """Largest magnitude of the input."""
-        return float(max(np.max(np.abs(item.record.u)) for item in self.compared))
+        """Largest magnitude of the input, never quite zero."""
+        largest = max(float(np.max(np.abs(item.record.u))) for item in self.compared)
+        return max(largest, 1e-300)
+
+    @cached_property
+    def plays(self) -> FloatArray:
+        """Play operators of the input, shape (thresholds, n), in the input's unit.
+
+        They approximate any Preisach operator, so no loop is out of their reach.
+        """
+        thresholds = np.array(THRESHOLDS) * self.reach
+        parts = [
+            play(item.record.u, thresholds)[0][:: self.stride] for item in self.compared
+        ]
+        return np.ascontiguousarray(np.concatenate(parts).T)
+
+    @cached_property
+    def shapes(self) -> FloatArray:
+        """What a wrong shape of the base's loop could leave, orthonormal, (m, n).
+
+        The span of powers of the input and of its play operators.
+        """
+        u = self.input / self.reach
+        span = np.concatenate([[u, u**2, u**3], self.plays / self.reach])
+        scale = np.maximum(np.sqrt(np.sum(span**2, axis=1)), 1e-300)
+        values, vectors = np.linalg.eigh(span @ span.T / np.outer(scale, scale))
+        kept = values > 1e-9 * max(float(values[-1]), 1e-300)
+        return cast(
+            FloatArray,
+            (vectors[:, kept] / np.sqrt(values[kept])).T @ (span.T / scale).T,
+        )
+
+    @cached_property
+    def shaped(self) -> FloatArray:
+        """How much of each direction of ``shapes`` the residual holds, shape (m,)."""
+        return self.shapes @ self.residual
 
     @cached_property
     def power(self) -> float:
@@ -125,8 +177,11 @@ class Samples:
         for item in self.compared:
             u = item.record.u - np.mean(item.record.u)
             speed = np.gradient(u, item.record.dt)
-            found.append(np.sqrt(np.mean(speed**2) / max(np.mean(u**2), 1e-300)))
-        return np.array(found) / (2 * np.pi)
+            rate = np.sqrt(np.mean(speed**2) / max(float(np.mean(u**2)), 1e-300))
+            # An input that hardly moves has the record for its half-period.
+            least = 0.5 / (len(item.record) * item.record.dt)
+            found.append(max(float(rate) / (2 * np.pi), least))
+        return np.array(found)
 
     @cached_property
     def durations(self) -> FloatArray:
@@ -140,7 +195,19 @@ class Samples:
 
 
 def take_samples(compared: Sequence[Compared], floor: Floor) -> Samples:
-    """Choose the stride and gather the records."""
+    """Choose the stride and gather the records.
+
+    Raises
+    ------
+    InputError
+        If a record is too short to have a spectrum.
+    """
+    for item in compared:
+        if len(item.record) < FEWEST:
+            raise InputError(
+                f"{item.record.name}: expected at least {FEWEST} samples to locate a "
+                f"gap, got {len(item.record)}"
+            )
     total = sum(len(item.record) for item in compared)
     least = max(1, total // ENOUGH)
     stride = next((prime for prime in PRIMES if prime >= least), least)

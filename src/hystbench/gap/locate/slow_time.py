@@ -1,4 +1,4 @@
-"""The slow-time view: what follows the input with a long memory, as creep and heat do."""
+"""The slow-time view: what follows the input with a long memory: creep, heat."""
 
 from __future__ import annotations
 
@@ -92,4 +92,4 @@ def block_means(values: FloatArray, size: int) -> FloatArray:
     """Average blocks of as many samples each; the last may be shorter."""
     starts = np.arange(0, len(values), size)
     counts = np.diff(np.append(starts, len(values)))
-    return cast(FloatArray, np.add.reduceat(values, starts) / counts)
+    return np.add.reduceat(values, starts) / counts

@@ -75,7 +75,7 @@ def take_spectra(samples: Samples) -> Spectra:
     bins = np.digitize(np.log(frequency), np.log(edges)) - 1
 
     def gather(values: FloatArray) -> FloatArray:
-        return np.bincount(bins, values, BINS)
+        return np.bincount(bins, values, BINS).astype(np.float64)
 
     simulated = np.concatenate(simulateds)
     cross = np.concatenate(crosses)

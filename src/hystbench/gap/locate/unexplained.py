@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft
 
 from hystbench.gap.floor import periodogram
 from hystbench.gap.locate.regression import (
@@ -17,6 +17,7 @@ from hystbench.gap.locate.regression import (
     narrowest,
 )
 from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.spectra import HANN_INFLATION
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
 
@@ -27,7 +28,9 @@ LINES = 3
 # Half-periods of the fastest drift within a record.
 ORDERS = 4
 # Bins of a periodogram over which its own level is read.
-NEIGHBOURS = 32
+NEIGHBOURS = 48
+# Variance of the mean over that of the median scaled to it, of exponential values.
+MEDIAN_EFFICIENCY = float(np.log(2) ** 2)
 
 
 @dataclass(frozen=True)
@@ -51,10 +54,10 @@ def unexplained_view(samples: Samples) -> View:
 
     A line must stand out in the residual, at one frequency in at least half of the
     records, where the input has none. For the p-value it must not be a harmonic of
-    the input's strongest line either: distortion lies there. A drift has fewer half-periods in a record than the
-    input has. The range is that of the lines in Hz, or of time in s for a drift. The
-    p-value is the smaller of the line's (Fisher's test) and the drift's (F test),
-    doubled for the choice.
+    the input's strongest line either: distortion lies there. A drift has fewer
+    half-periods in a record than the input has. The range is that of the line in Hz,
+    or of time in s for a drift. The p-value is the smaller of the line's (Fisher's
+    test) and the drift's (F test), doubled for the choice.
     """
     lines = find_lines(samples)
     drifts = {order: _drift_columns(samples, order) for order in (1, ORDERS)}
@@ -76,6 +79,8 @@ def unexplained_view(samples: Samples) -> View:
         forms["a lone line and a drift"] = best(both)
     kind = max(forms, key=lambda name: forms[name].saved)
     form = forms[kind]
+    again = fit_form(samples, [form.fitted], searched=form.freedom - 1)
+    form = best([form, again])
     share = samples.share(form.explained, form.freedom)
     test = fit_by_record(samples, drifts[ORDERS])
     p_value = min(1.0, 2 * min(lines.p_value, fitted_p_value(samples, test)))
@@ -170,8 +175,11 @@ def find_lines(samples: Samples) -> Lines:
             found.append(place)
         if len(found) == LINES:
             break
-    # A bin of white noise exceeds x times its mean with probability exp(-x).
-    p_value = -np.expm1(bins * np.log1p(-np.exp(-max(strongest, 1e-12))))
+    # A bin exceeds x times its level with probability exp(-x); as the level is itself
+    # read off a few neighbours, the tail is that of F with 2 and 2 nu degrees.
+    nu = NEIGHBOURS * MEDIAN_EFFICIENCY / HANN_INFLATION
+    one = (1 + strongest / nu) ** -nu
+    p_value = -np.expm1(bins * np.log1p(-min(one, 1 - 1e-12)))
     return Lines(tuple(found), float(np.clip(p_value, 0.0, 1.0)))
 
 
@@ -179,11 +187,11 @@ def _level(power: FloatArray) -> FloatArray:
     """Give the mean level of noise around each bin, by medians of blocks."""
     blocks = max(1, len(power) // NEIGHBOURS)
     edges = np.linspace(0, len(power), blocks + 1).astype(np.int64)
-    widths = np.diff(edges)
-    short = int(widths.min())
-    index = edges[:-1, np.newaxis] + np.arange(short)
-    medians = np.median(power[index], axis=1) / np.log(2)
-    return np.maximum(np.repeat(medians, widths), 1e-300)
+    short = int(np.diff(edges).min())
+    medians = np.median(power[edges[:-1, np.newaxis] + np.arange(short)], axis=1)
+    levels = np.log(np.maximum(medians / np.log(2), 1e-300))
+    centres = 0.5 * (edges[:-1] + edges[1:])
+    return cast(FloatArray, np.exp(np.interp(np.arange(len(power)), centres, levels)))
 
 
 def _input_lines(cause: FloatArray) -> BoolArray:

@@ -1,0 +1,236 @@
+"""What the pictures of the gap draw: short lists of numbers, ready for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hystbench.errors import InputError
+from hystbench.gap.compared import Compared
+from hystbench.gap.floor import Floor
+from hystbench.gap.locate.distortion import take_distortion
+from hystbench.gap.locate.record import record_shares
+from hystbench.gap.locate.samples import Samples, take_samples
+from hystbench.gap.locate.slow_time import block_means
+from hystbench.gap.locate.spectra import Spectra, take_spectra
+from hystbench.record import FloatArray
+
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+# Points of a curve over frequency or time, and of a map over an axis.
+POINTS = 200
+CELLS = 40
+
+
+def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
+    """Work out what the pictures of the gap draw.
+
+    Parameters
+    ----------
+    compared : sequence of Compared
+    floor : Floor
+
+    Returns
+    -------
+    dict
+        Lists of floats of at most 200 points, and these keys only. Y and U are the
+        units of output and input.
+
+        - ``units``: ``{"input": U, "output": Y}``.
+        - ``response``: best linear approximation of measurement over simulation, on
+          excited lines: ``frequency`` (Hz), ``magnitude`` (1 where the model is
+          right), ``phase`` (degrees, 0 where it is right), ``coherence`` (0 to 1).
+        - ``spectrum``: ``frequency`` (Hz); ``residual``, ``linear`` (the part of it
+          that is linear in the simulated output), ``simulated`` and ``floor``, all
+          amplitude densities in Y/sqrt(Hz).
+        - ``over_input``: residual by the input: ``input`` (U), ``rising`` and
+          ``falling`` (Y, mean residual of each branch, null where the cell is empty),
+          ``rms`` (Y), ``floor`` (Y, one number).
+        - ``over_rate``: residual by the input's rate: ``rate`` (U/s), ``mean`` (Y),
+          ``rms`` (Y); cells of equally many samples.
+        - ``slow``: one mapping a record, in order: ``record`` (name), ``time`` (s),
+          ``residual`` (Y, mean over a block of at least one main period), 25 points
+          at most.
+        - ``records``: ``name``, ``share`` (of the gap's power, adding to 1), ``rms``
+          (Y), ``floor`` (Y), ``loop_area`` (U Y a cycle of the residual over the
+          input, positive where the measurement lags more), ``frequency`` (Hz, the
+          main one).
+        - ``harmonics``: ``excited``, ``odd``, ``even``, ``other``: shares of the
+          residual's power in periodic records, or null where there are none.
+
+    Raises
+    ------
+    InputError
+        If there is no record.
+    """
+    if not compared:
+        raise InputError("curves: expected at least one record, got none")
+    samples = take_samples(compared, floor)
+    spectra = take_spectra(samples)
+    channels = compared[0].record
+    distortion = take_distortion(samples)
+    return {
+        "units": {"input": channels.input.unit, "output": channels.output.unit},
+        "response": _response(spectra),
+        "spectrum": _spectrum(samples, spectra),
+        "over_input": _over_input(samples, floor),
+        "over_rate": _over_rate(samples),
+        "slow": [_slow(item, f) for item, f in _with_frequency(samples)],
+        "records": _records(samples, floor),
+        "harmonics": None if distortion is None else dict(vars(distortion)),
+    }
+
+
+def _response(spectra: Spectra) -> dict[str, list[float]]:
+    """Give measurement over simulation where the simulation has power."""
+    excited = spectra.simulated >= 1e-5 * float(np.max(spectra.simulated))
+    groups = _groups(np.cumsum(excited) - 1, int(np.sum(excited)))
+    cross = _gather(groups, spectra.cross.real, excited) + 1j * _gather(
+        groups, spectra.cross.imag, excited
+    )
+    simulated = _gather(groups, spectra.simulated, excited)
+    residual = _gather(groups, spectra.residual, excited)
+    energy = _gather(groups, spectra.simulated * spectra.frequency, excited)
+    simulated = np.maximum(simulated, 1e-300)
+    ratio = 1 + cross / simulated
+    # The measurement's power is that of simulation plus residual.
+    measured = simulated + residual + 2 * cross.real
+    coherence = np.abs(simulated + cross) ** 2 / np.maximum(
+        simulated * measured, 1e-300
+    )
+    return {
+        "frequency": _listed(energy / simulated),
+        "magnitude": _listed(np.abs(ratio)),
+        "phase": _listed(np.degrees(np.angle(ratio))),
+        "coherence": _listed(np.clip(coherence, 0.0, 1.0)),
+    }
+
+
+def _spectrum(samples: Samples, spectra: Spectra) -> dict[str, list[float]]:
+    """Give amplitude densities of the residual, its linear part and the floor."""
+    count = len(spectra.frequency)
+    groups = _groups(np.arange(count), count)
+    everywhere = np.ones(count, dtype=np.bool_)
+    noise = _gather(groups, spectra.noise, everywhere)
+    centre = _gather(groups, spectra.noise * spectra.frequency, everywhere) / noise
+    # White noise of variance s^2 at a sampling interval dt has the density 2 s^2 dt.
+    dts = [(len(item.record), item.record.dt) for item in samples.compared]
+    mean_dt = sum(n * dt for n, dt in dts) / sum(n for n, _ in dts)
+    scale = 2 * samples.noise * mean_dt / noise
+    linear = np.minimum(spectra.linear, spectra.residual)
+
+    def density(power: FloatArray) -> list[float]:
+        return _listed(np.sqrt(scale * _gather(groups, power, everywhere)))
+
+    return {
+        "frequency": _listed(centre),
+        "residual": density(spectra.residual),
+        "linear": density(linear),
+        "simulated": density(spectra.simulated),
+        "floor": density(spectra.noise),
+    }
+
+
+def _over_input(samples: Samples, floor: Floor) -> dict[str, Any]:
+    """Average the residual over cells of the input, branch by branch."""
+    u = samples.input
+    edges = np.linspace(float(u.min()), float(u.max()), CELLS + 1)
+    cell = np.clip(np.searchsorted(edges, u, side="right") - 1, 0, CELLS - 1)
+    branches = {}
+    for name, chosen in (
+        ("rising", samples.direction > 0),
+        ("falling", samples.direction < 0),
+    ):
+        count = np.bincount(cell[chosen], minlength=CELLS)
+        total = np.bincount(cell[chosen], samples.residual[chosen], CELLS)
+        branches[name] = [
+            float(t / n) if n else None for t, n in zip(total, count, strict=True)
+        ]
+    count = np.maximum(np.bincount(cell, minlength=CELLS), 1)
+    power = np.bincount(cell, samples.residual**2, CELLS) / count
+    return {
+        "input": _listed(0.5 * (edges[1:] + edges[:-1])),
+        **branches,
+        "rms": _listed(np.sqrt(power)),
+        "floor": floor.rms,
+    }
+
+
+def _over_rate(samples: Samples) -> dict[str, list[float]]:
+    """Average the residual over cells of the rate, of equally many samples."""
+    order = np.argsort(samples.speed)
+    starts = np.unique(np.linspace(0, len(order), CELLS + 1)[:-1].astype(np.int64))
+    count = np.diff(np.append(starts, len(order)))
+
+    def mean(values: FloatArray) -> FloatArray:
+        return np.asarray(np.add.reduceat(values[order], starts) / count)
+
+    return {
+        "rate": _listed(mean(samples.speed)),
+        "mean": _listed(mean(samples.residual)),
+        "rms": _listed(np.sqrt(mean(samples.residual**2))),
+    }
+
+
+def _with_frequency(samples: Samples) -> list[tuple[Compared, float]]:
+    return list(zip(samples.compared, samples.main_frequencies.tolist(), strict=True))
+
+
+def _slow(item: Compared, frequency: float) -> dict[str, Any]:
+    """Average a record's residual over blocks of at least one main period."""
+    n, dt = len(item.record), item.record.dt
+    period = item.record.period_samples or round(1 / max(frequency * dt, 1 / n))
+    # Whole periods, so that what repeats cancels alike in every block.
+    size = max(1, period) * max(1, -(-n // (25 * max(1, period))))
+    size = min(size, n)
+    means = block_means(item.residual[: n // size * size], size)
+    time = (np.arange(len(means)) + 0.5) * size * dt
+    return {
+        "record": item.record.name,
+        "time": _listed(time),
+        "residual": _listed(means),
+    }
+
+
+def _records(samples: Samples, floor: Floor) -> dict[str, list[Any]]:
+    """Give share, RMS and loop area record by record."""
+    frequencies = samples.main_frequencies
+    items = samples.compared
+    areas = [
+        _loop_area(item, frequency)
+        for item, frequency in zip(items, frequencies, strict=True)
+    ]
+    return {
+        "name": [item.record.name for item in items],
+        "share": _listed(record_shares(samples)),
+        "rms": [float(np.sqrt(np.mean(item.residual**2))) for item in items],
+        "floor": [floor.per_record[item.record.name] for item in items],
+        "loop_area": areas,
+        "frequency": _listed(frequencies),
+    }
+
+
+def _loop_area(item: Compared, frequency: float) -> float:
+    """Give the area of residual over input, a cycle of the main frequency."""
+    record = item.record
+    area = float(np.sum(item.residual * np.gradient(record.u)))
+    return -area / max(len(record) * record.dt * float(frequency), 1e-300)
+
+
+def _groups(place: IntArray, count: int) -> IntArray:
+    """Number the group of each bin, so that there are at most ``POINTS``."""
+    size = max(1, -(-count // POINTS))
+    return place // size
+
+
+def _gather(groups: IntArray, values: FloatArray, chosen: BoolArray) -> FloatArray:
+    return np.bincount(groups[chosen], values[chosen]).astype(np.float64)
+
+
+def _listed(values: ArrayLike) -> list[float]:
+    """Give plain floats, with as many digits as a picture can show."""
+    return [float(f"{value:.6g}") for value in np.asarray(values)]

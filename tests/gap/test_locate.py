@@ -1,0 +1,313 @@
+"""Views of the gap: each is found where it was put, and nothing is found in noise."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jsonschema import validate
+
+from hystbench.errors import InputError
+from hystbench.gap.floor import noise_floor
+from hystbench.gap.locate import locate
+from hystbench.gap.locate.regression import narrowest_bins
+from hystbench.gap.schema import VIEW
+from tests.gap.examples import (
+    DT,
+    compare,
+    effects,
+    gap_of,
+    hysteretic,
+    inputs,
+    plain_play,
+    straight,
+)
+
+KINDS = set(VIEW["properties"]["view"]["enum"])
+
+# What an engineer would say first of each effect.
+FIRST = {
+    "input-delay": "delay",
+    "drive-lag": "frequency",
+    "eddy-diffusion": "frequency",
+    "drive-saturation": "amplitude",
+    "slew-limit": "rate",
+    "dead-zone": "amplitude",
+    "hysteresis": "branch",
+    "asymmetry": "amplitude",
+    "saturation": "amplitude",
+    "rate-dependent-hysteresis": "rate",
+    "resonance": "frequency",
+    "friction": "branch",
+    "backlash": "branch",
+    "creep": "slow-time",
+    "thermal-drift": "slow-time",
+    "sensor-lag": "frequency",
+    "sensor-nonlinearity": "amplitude",
+    "mains-pickup": "unexplained",
+    "drift": "unexplained",
+    "calibration-error": "amplitude",
+}
+PLANTS = {"gain": straight, "hysteresis": hysteretic}
+CASES = [
+    (name, plant)
+    for name in FIRST
+    for plant in PLANTS
+    if (name, plant)
+    not in {("hysteresis", "hysteresis"), ("rate-dependent-hysteresis", "gain")}
+]
+
+
+@cache
+def views_of(name, plant, ratio_db=20.0, seed=0):
+    compared, _ = gap_of(name, PLANTS[plant], ratio_db, seed)
+    return locate(compared, noise_floor(compared))
+
+
+def test_every_effect_of_the_examples_has_a_first_view():
+    assert set(FIRST) == set(effects(np.random.default_rng(0)))
+
+
+@pytest.mark.parametrize(("name", "plant"), CASES)
+@pytest.mark.parametrize(("ratio_db", "seed"), [(20.0, 0), (10.0, 1)])
+def test_the_first_view_is_what_an_engineer_would_say(name, plant, ratio_db, seed):
+    first = views_of(name, plant, ratio_db, seed)[0]
+    assert first.view == FIRST[name]
+    assert first.share_of_gap_power > 0.8
+    assert first.p_value < 1e-3
+
+
+@pytest.mark.parametrize(("name", "plant"), CASES)
+def test_views_are_of_the_contract_and_say_their_own_numbers(name, plant):
+    views = views_of(name, plant)
+    assert {view.view for view in views} == KINDS
+    assert len(views) == len(KINDS)
+    saved = [view.saved for view in views]
+    assert saved == sorted(saved, reverse=True)
+    for view in views:
+        mapping = view.to_mapping()
+        validate(mapping, VIEW)
+        assert 0 <= mapping["share_of_gap_power"] <= 1
+        told = [float(one) for one in re.findall(r"([\d.e+-]*\d) %", view.sentence)]
+        assert round(100 * view.share_of_gap_power) in told
+        if view.view in {"amplitude", "rate", "slow-time", "frequency"}:
+            for end in (view.start, view.end):
+                assert f"{end:.3g}" in view.sentence
+            assert view.start <= view.end
+
+
+def test_a_mode_is_found_around_its_frequency():
+    rng = np.random.default_rng(0)
+    # One broad record: elsewhere a loud sine above the mode would hold the power.
+    name, u, period = inputs(8000)[5]
+    y = effects(rng)["resonance"](straight, u) + 0.02 * rng.standard_normal(len(u))
+    compared = [compare(name, u, y, straight(u), period)]
+    first = locate(compared, noise_floor(compared))[0]
+    assert first.view == "frequency"
+    assert 50 < first.start < 70 < first.end < 100
+
+
+@given(st.floats(1e-4, 3e-3))
+@settings(max_examples=15)
+def test_a_delay_is_told_in_seconds(delay):
+    found = []
+    rng = np.random.default_rng(0)
+    for name, u, period in inputs(3000)[:3]:
+        t = np.arange(len(u)) * DT
+        size, hertz = float(name.split("-")[2]), float(name.split("-")[1])
+        y = 6 * size * np.sin(2 * np.pi * hertz * (t - delay))
+        y += 0.002 * rng.standard_normal(len(u))
+        found.append(compare(name, u, y, 6 * u, period))
+    view = next(one for one in locate(found, noise_floor(found)) if one.view == "delay")
+    assert view.start < delay < view.end
+    assert view.end - view.start < 0.3 * delay
+
+
+def test_a_mains_line_lies_in_its_range_and_a_hidden_drift_in_time():
+    mains = views_of("mains-pickup", "gain")[0]
+    assert (mains.axis, mains.unit) == ("frequency", "Hz")
+    assert mains.start < 50.03 < mains.end < mains.start + 2
+    drift = views_of("drift", "gain")[0]
+    assert (drift.axis, drift.unit) == ("time in the record", "s")
+
+
+def test_saturation_is_found_at_large_inputs_and_a_dead_zone_is_not():
+    saturation = views_of("drive-saturation", "gain")[0]
+    # The limit is 0.6; all of the power lies above it.
+    assert saturation.start >= 0.6
+    dead_zone = views_of("dead-zone", "gain")[0]
+    assert dead_zone.start < 0.3
+
+
+def test_asymmetry_of_one_record_is_told_by_the_record_view():
+    rng = np.random.default_rng(0)
+    found = []
+    for name, u, period in inputs(3000):
+        gap = 0.1 * 6 * u if name == "multisine" else 0.0
+        y = 6 * u + gap + 0.01 * rng.standard_normal(len(u))
+        found.append(compare(name, u, y, 6 * u, period))
+    views = locate(found, noise_floor(found))
+    assert views[0].view == "record"
+    assert (views[0].start, views[0].end) == ("multisine", "multisine")
+
+
+@pytest.mark.parametrize(
+    "name", sorted(set(FIRST) - {"hysteresis", "calibration-error"})
+)
+def test_the_first_view_stays_beside_a_wrong_loop_shape(name):
+    """The base's own misfit is a third of the gap, as beside a foreign plant.
+
+    A gain error is not asked for: beside another loop it is a part of the loop's shape.
+    """
+
+    def wrong(u):
+        thresholds = [0, 0.05, 0.15, 0.3, 0.55, 0.9]
+        weights = [3.2, 1.0, 1.3, 1.2, 0.9, 0.5]
+        pairs = zip(thresholds, weights, strict=True)
+        return sum(weight * plain_play(u, half) for half, weight in pairs)
+
+    rng = np.random.default_rng(3)
+    effect = effects(rng)[name]
+    rows = [
+        (n, u, p, effect(hysteretic, u), hysteretic(u), wrong(u))
+        for n, u, p in inputs(3000, 3)
+    ]
+
+    def rms(values):
+        return np.sqrt(np.mean(np.concatenate(values) ** 2))
+
+    gap = rms([y - t for *_, y, t, _ in rows])
+    part = gap / 3 / rms([w - t for *_, t, w in rows])
+    compared = [
+        compare(
+            n, u, y + 0.1 * gap * rng.standard_normal(len(u)), t + part * (w - t), p
+        )
+        for n, u, p, y, t, w in rows
+    ]
+    assert locate(compared, noise_floor(compared))[0].view == FIRST[name]
+
+
+def test_a_wrong_loop_shape_alone_is_told_by_the_branch_view():
+    rng = np.random.default_rng(5)
+    compared = [
+        compare(
+            n,
+            u,
+            hysteretic(u) + 0.02 * rng.standard_normal(len(u)),
+            5.5 * plain_play(u, 0.05) + 2.2 * plain_play(u, 0.35),
+            p,
+        )
+        for n, u, p in inputs(3000, 5)
+    ]
+    assert locate(compared, noise_floor(compared))[0].view == "branch"
+
+
+def test_white_noise_alone_is_nothing():
+    seeds = 50
+    p_values = {kind: [] for kind in KINDS}
+    for seed in range(seeds):
+        rng = np.random.default_rng(seed + 500)
+        compared = [
+            compare(n, u, 6 * u + 0.1 * rng.standard_normal(len(u)), 6 * u, p)
+            for n, u, p in inputs(1500, seed)
+        ]
+        for view in locate(compared, noise_floor(compared)):
+            p_values[view.view].append(view.p_value)
+            # Nothing pays for its parameters, and no share is large.
+            assert view.saved < 0
+            if view.view != "record":
+                assert view.share_of_gap_power < 0.5
+    for kind, found in p_values.items():
+        # A binomial count of 50 at 5 % exceeds 8 in one of a thousand.
+        assert np.sum(np.array(found) < 0.05) <= 8, kind
+        assert np.min(found) > 1e-4, kind
+
+
+def test_coloured_noise_is_not_taken_for_a_function_of_the_input():
+    count = 0
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        compared = []
+        for n, u, p in inputs(1500, seed):
+            noise = np.convolve(rng.standard_normal(len(u) + 39), np.ones(40) / 20)
+            noise = noise[39 : 39 + len(u)]
+            compared.append(compare(n, u, 6 * u + noise, 6 * u, p))
+        views = {v.view: v for v in locate(compared, noise_floor(compared))}
+        kinds = ("amplitude", "rate", "branch", "delay")
+        count += sum(views[kind].p_value < 0.01 for kind in kinds)
+    # Eighty tests at 1 %: more than five in one of ten thousand.
+    assert count <= 5
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_units_do_not_matter(scale):
+    compared, _ = gap_of("friction", straight)
+    scaled = [
+        compare(
+            c.record.name,
+            c.record.u * scale,
+            c.record.y / scale,
+            c.simulated / scale,
+            c.record.period_samples,
+        )
+        for c in compared
+    ]
+    plain = views_of("friction", "gain")
+    other = locate(scaled, noise_floor(scaled))
+    for a, b in zip(plain, other, strict=True):
+        assert a.view == b.view
+        assert a.share_of_gap_power == pytest.approx(b.share_of_gap_power, abs=1e-6)
+
+
+def test_degenerate_records_give_views_and_no_warning():
+    rng = np.random.default_rng(0)
+    t = np.arange(2000) * DT
+    u = np.sin(2 * np.pi * 5 * t)
+    noise = rng.standard_normal(2000)
+    cases = [
+        [compare("perfect", u, 6 * u, 6 * u, 400)],
+        [compare("still", 0 * u, noise, 0 * u, 400)],
+        [compare("constant", 0 * u + 1, noise, 0 * u + 6)],
+        [compare("nothing", 0 * u, 0 * u, 0 * u)],
+        [compare("quantised", u, np.round(6.3 * u, 1), 6 * u, 400)],
+        [compare("short", u[:40], 6.3 * u[:40], 6 * u[:40])],
+        [
+            compare("fast", u, 6.3 * u, 6 * u),
+            compare("slow", u[::4], 6.3 * u[::4], 6 * u[::4], dt=4 * DT),
+            compare("brief", u[:300], 6.3 * u[:300], 6 * u[:300]),
+        ],
+    ]
+    for compared in cases:
+        for view in locate(compared, noise_floor(compared)):
+            validate(view.to_mapping(), VIEW)
+
+
+def test_a_record_too_short_is_refused_by_name():
+    u = np.sin(np.arange(20.0))
+    compared = [compare("stub", u, 6.3 * u, 6 * u)]
+    with pytest.raises(InputError, match="stub: expected at least 32 samples"):
+        locate(compared, noise_floor(compared))
+
+
+def test_no_record_is_refused():
+    compared, _ = gap_of("friction", straight)
+    with pytest.raises(InputError, match="at least one record"):
+        locate([], noise_floor(compared))
+
+
+@given(
+    st.lists(st.floats(0, 1), min_size=1, max_size=30).filter(lambda x: sum(x) > 1e-3),
+    st.floats(0.1, 0.95),
+)
+def test_the_narrowest_range_holds_enough_and_no_narrower_one_does(held, hold):
+    values = np.array(held)
+    first, last = narrowest_bins(values, hold)
+    wanted = hold * values.sum()
+    assert values[first : last + 1].sum() >= wanted - 1e-9
+    width = last - first
+    for start in range(len(values) - width + 1):
+        assert values[start : start + width].sum() < wanted + 1e-9
