@@ -16,8 +16,12 @@ from hystbench.record import FloatArray, Use
 
 Function = Callable[[FloatArray], FloatArray]
 
-#: Sampling rate of the fast records in Hz and the largest current in A.
-RATE, LARGEST = 2000.0, 0.6
+#: Sampling rates in Hz of the slower and of the faster records, and the largest
+#: current in A. No line lies above a tenth of the rate, so that a model which knows
+#: the samples alone does not miss the turning points.
+RATE, FAST, LARGEST = 2000.0, 4000.0, 0.6
+#: Samples of a multisine's period.
+PERIOD = 2000
 #: Points of a period's table for each sample of the record.
 TABLE = 32
 #: Length of a switch-on and of the edge of a step: at least so long, in seconds and
@@ -80,18 +84,18 @@ def chirp(low: float, high: float, amplitude: float, seconds: float) -> Function
 
 def multisine(
     random: np.random.Generator,
-    low: int,
-    high: int,
+    low: float,
+    high: float,
     peak: float,
     colour: float = 0.0,
     odd: bool = False,
 ) -> Function:
-    """Random-phase multisine of period one second with a line at each whole hertz.
+    """Random-phase multisine of a period of half a second, a line each 2 Hz.
 
     Parameters
     ----------
-    low, high : int
-        First and last line in Hz.
+    low, high : float
+        Band in Hz.
     peak : float
         Largest magnitude in A; of 20 draws of the phases the flattest is taken.
     colour : float
@@ -99,30 +103,27 @@ def multisine(
     odd : bool
         Only odd lines: even distortion then falls between them.
     """
-    points = int(RATE) * TABLE
-    lines = np.arange(low | 1 if odd else low, high + 1, 2 if odd else 1)
-    best, flattest = np.zeros(points), np.inf
+    seconds = PERIOD / FAST
+    lines = np.arange(max(1, np.ceil(low * seconds)), high * seconds + 1e-9, dtype=int)
+    if odd:
+        lines = lines[lines % 2 == 1]
+    flattest, kept = np.inf, np.zeros(1, dtype=complex)
     for _ in range(20):
-        spectrum = np.zeros(int(RATE) * 2 + 1, dtype=complex)
+        spectrum = np.zeros(lines[-1] + 1, dtype=complex)
         phases = random.uniform(0.0, 2.0 * np.pi, len(lines))
         spectrum[lines] = lines ** (-colour) * np.exp(1j * phases)
-        crest = _crest(np.fft.irfft(spectrum))
+        values = np.fft.irfft(spectrum, 4 * PERIOD)
+        crest = float(np.abs(values).max() / np.sqrt(np.mean(values**2)))
         if crest < flattest:
-            flattest, kept = crest, spectrum[: lines[-1] + 1].copy()
-    spectrum = np.zeros(points // 2 + 1, dtype=complex)
-    spectrum[: len(kept)] = kept
-    best = np.fft.irfft(spectrum)
-    best *= peak / np.abs(best).max()
-    return lambda t: _periodic(best, t)
+            flattest, kept = crest, spectrum
+    table = np.fft.irfft(kept, PERIOD * TABLE)
+    table *= peak / np.abs(table).max()
+    return lambda t: _periodic(table, t, seconds)
 
 
-def _crest(values: FloatArray) -> float:
-    return float(np.abs(values).max() / np.sqrt(np.mean(values**2)))
-
-
-def _periodic(table: FloatArray, time: FloatArray) -> FloatArray:
-    """Read a table of one second between its points by the cubic through four."""
-    place = (time % 1.0) * len(table)
+def _periodic(table: FloatArray, time: FloatArray, seconds: float) -> FloatArray:
+    """Read a period's table between its points by the cubic through four."""
+    place = (time / seconds % 1.0) * len(table)
     k = np.floor(place + 1e-7).astype(int)
     p = place - k
     wide = np.concatenate([table[-1:], table, table[:3]])
@@ -207,25 +208,25 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "sine-high",
             "fit",
-            RATE,
+            FAST,
             4000,
             sine(high, uniform(0.2, 0.35)),
-            int(RATE) // high,
+            int(FAST) // high,
         ),
         Excitation(
             "multisine-wide",
             "fit",
-            RATE,
+            FAST,
             8000,
-            multisine(random, 1, 500, uniform(0.2, 0.3)),
+            multisine(random, 2, 400, uniform(0.2, 0.3)),
             2000,
         ),
         Excitation(
             "multisine-strong",
             "fit",
-            RATE,
+            FAST,
             8000,
-            multisine(random, 1, 200, uniform(0.45, 0.6), colour=0.3),
+            multisine(random, 2, 200, uniform(0.45, 0.6), colour=0.3),
             2000,
         ),
         Excitation(
@@ -243,14 +244,14 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
         ),
         Excitation("long", "fit", 100.0, 6000, slow),
         Excitation(
-            "chirp", "hold-out", RATE, 6000, chirp(1.0, 350.0, uniform(0.2, 0.4), 3.0)
+            "chirp", "hold-out", FAST, 6000, chirp(2.0, 300.0, uniform(0.2, 0.4), 1.5)
         ),
         Excitation(
             "multisine-other",
             "hold-out",
-            RATE,
+            FAST,
             6000,
-            multisine(random, 1, 350, uniform(0.3, 0.5)),
+            multisine(random, 2, 320, uniform(0.3, 0.5)),
             2000,
         ),
         Excitation(
@@ -277,7 +278,7 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation("triangle", "fit", RATE, 8000, triangle(0.5, LARGEST), 4000),
         Excitation("ringing", "fit", RATE, 6000, ringing(4.0, 0.58, 0.8)),
         Excitation(
-            "sweep", "fit", RATE, 8000, chirp(2.0, 400.0, uniform(0.25, 0.35), 4.0)
+            "sweep", "fit", FAST, 8000, chirp(2.0, 380.0, uniform(0.25, 0.35), 2.0)
         ),
         Excitation(
             "sweep-strong", "fit", RATE, 6000, chirp(0.8, 90.0, uniform(0.5, 0.6), 3.0)
@@ -285,9 +286,9 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "pink",
             "fit",
-            RATE,
+            FAST,
             8000,
-            multisine(random, 1, 450, uniform(0.4, 0.6), colour=0.7, odd=True),
+            multisine(random, 2, 400, uniform(0.4, 0.6), colour=0.7, odd=True),
             2000,
         ),
         Excitation(
@@ -314,7 +315,7 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "white",
             "hold-out",
-            RATE,
+            FAST,
             8000,
             multisine(random, 2, 300, uniform(0.3, 0.5)),
             2000,

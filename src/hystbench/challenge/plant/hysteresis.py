@@ -199,12 +199,14 @@ def draw_plays(random: np.random.Generator) -> GeneralizedPlays:
     while True:
         factors = np.exp(random.uniform(-0.2, 0.2, 8))
         a = np.array(PUBLISHED) * (1.0 if published else factors)
-        v = np.linspace(-0.8, 0.8, 201)
+        v = np.linspace(-LARGEST_CURRENT, LARGEST_CURRENT, 201)
         left = a[0] * np.tanh(a[1] * v + a[2]) + a[3]
         right = a[4] * np.tanh(a[5] * v + a[6]) + a[7]
         middle = 0.5 * (left[100] + right[100])
-        ordered = left[100] > right[100] and np.mean(left - right > 0) > 0.5
-        if published or ordered:
+        # as near to each other as the published ones, and in order about rest
+        gap, rise = left - right, left[-1] - left[0]
+        near = gap.min() > -0.01 * rise and gap.max() < 0.1 * rise
+        if published or (near and gap[100] > 0.01 * rise):
             break
     a[[3, 7]] -= middle
     count = int(random.integers(12, 31))
@@ -237,7 +239,7 @@ def draw_jiles_atherton(random: np.random.Generator) -> JilesAtherton:
         bias=shape * random.uniform(1.6, 2.2),
         shape=shape,
         coupling=shape * random.uniform(0.1, 0.8),
-        pinning=random.uniform(0.05, 0.14),
+        pinning=random.uniform(0.03, 0.07),
         reversible=random.uniform(0.15, 0.45),
         strain=1.0,
     )
