@@ -150,7 +150,7 @@ class Readings:
         All records; a record's number is its place here.
     """
 
-    def __init__(self, actuator: Actuator, excitations: tuple[Excitation, ...]):
+    def __init__(self, actuator: Actuator, excitations: tuple[Excitation, ...]) -> None:
         self.actuator, self.excitations = actuator, excitations
         self._read: dict[str, FloatArray] = {}
 
@@ -170,9 +170,7 @@ class Readings:
             for item in chosen
         ]
 
-    def minus(
-        self, less: Readings, chosen: tuple[Excitation, ...]
-    ) -> list[FloatArray]:
+    def minus(self, less: Readings, chosen: tuple[Excitation, ...]) -> list[FloatArray]:
         """Difference to another plant's readings."""
         pairs = zip(self.of(chosen), less.of(chosen), strict=True)
         return [mine - other for mine, other in pairs]
@@ -267,9 +265,7 @@ def _record(
     y = full.actuator.convert(noisy, item.dt, number)
     u = np.round(item.sampled(), 8)
     rounded = np.round(y / RESOLUTION) * RESOLUTION
-    return Record(
-        item.name, item.dt, u, rounded, INPUT, OUTPUT, "twin", item.use
-    )
+    return Record(item.name, item.dt, u, rounded, INPUT, OUTPUT, "twin", item.use)
 
 
 def _told(spec: CaseSpec, plant: Plant, noise: float, size: float) -> dict[str, Any]:
@@ -318,9 +314,7 @@ def _hold_out(
     }
 
 
-def _base_error(
-    bare: Readings, chosen: tuple[Excitation, ...], model: Model
-) -> float:
+def _base_error(bare: Readings, chosen: tuple[Excitation, ...], model: Model) -> float:
     """Error of the base model on the plant without its effects."""
     pairs = zip(bare.of(chosen), chosen, strict=True)
     return _rms([y - model.simulate(item.sampled(), item.dt) for y, item in pairs])

@@ -77,9 +77,7 @@ def sine(frequency: float, amplitude: float, bias: float = 0.0) -> Function:
 def chirp(low: float, high: float, amplitude: float, seconds: float) -> Function:
     """Sine whose frequency rises evenly in its logarithm."""
     rate = np.log(high / low) / seconds
-    return lambda t: (
-        amplitude * np.sin(2.0 * np.pi * low * np.expm1(rate * t) / rate)
-    )
+    return lambda t: amplitude * np.sin(2.0 * np.pi * low * np.expm1(rate * t) / rate)
 
 
 def multisine(

@@ -111,10 +111,13 @@ class Everett:
         half = 0.5 * (middle[:, None] - middle[None, :])
         centre = 0.5 * (middle[:, None] + middle[None, :]) - self.centre
         inside = np.where(half > 0, half, 1.0)
-        density = np.exp(
-            -0.5 * (centre / self.interaction) ** 2
-            - 0.5 * (np.log(inside / self.coercive) / self.coercive_spread) ** 2
-        ) / inside
+        density = (
+            np.exp(
+                -0.5 * (centre / self.interaction) ** 2
+                - 0.5 * (np.log(inside / self.coercive) / self.coercive_spread) ** 2
+            )
+            / inside
+        )
         density[half <= 0] = 0.0
         mass = density * (self.irreversible / density.sum())
         out = np.zeros((self.points, self.points))

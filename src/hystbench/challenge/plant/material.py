@@ -116,9 +116,7 @@ KINDS = (
             "excess-field": Form(
                 excess_field,
                 {
-                    "coefficient": Range(
-                        2e-4, 2e-3, "A (s/A)^exponent", most=0.03
-                    ),
+                    "coefficient": Range(2e-4, 2e-3, "A (s/A)^exponent", most=0.03),
                     "exponent": _EXPONENT,
                 },
                 "coefficient",
