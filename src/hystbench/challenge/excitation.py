@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hystbench.challenge.plant.interpolation import cubic
 from hystbench.record import FloatArray, Use
 
 Function = Callable[[FloatArray], FloatArray]
@@ -66,7 +67,7 @@ class Excitation:
 
     def sampled(self) -> FloatArray:
         """Command at the record's samples."""
-        return self(np.arange(self.samples) * self.dt)
+        return self(np.asarray(np.arange(self.samples) * self.dt, dtype=np.float64))
 
 
 def sine(frequency: float, amplitude: float, bias: float = 0.0) -> Function:
@@ -122,16 +123,9 @@ def multisine(
 def _periodic(table: FloatArray, time: FloatArray, seconds: float) -> FloatArray:
     """Read a period's table between its points by the cubic through four."""
     place = (time / seconds % 1.0) * len(table)
-    k = np.floor(place + 1e-7).astype(int)
-    p = place - k
+    k = np.floor(place + 1e-7).astype(np.int64)
     wide = np.concatenate([table[-1:], table, table[:3]])
-    before, here, after, second = (wide[k + i] for i in range(4))
-    return np.asarray(
-        here
-        + 0.5 * p * (after - before)
-        + p**2 * (before - 2.5 * here + 2.0 * after - 0.5 * second)
-        + 0.5 * p**3 * (second - before + 3.0 * (here - after))
-    )
+    return cubic(wide, k + 1, place - k)
 
 
 def staircase(levels: Sequence[float], hold: float, edge: float) -> Function:
@@ -190,7 +184,7 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
     ripple = float(random.choice([5.0, 8.0, 10.0]))
     uniform = random.uniform
     slow = add(
-        staircase(_levels(random, 8, 0.4), 7.5, 0.3),
+        staircase(_levels(random, 8, 0.4), 6.0, 0.3),
         sine(uniform(0.3, 1.0), uniform(0.05, 0.2)),
     )
     return (
@@ -240,7 +234,7 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "steps", "fit", 500.0, 6000, staircase(_levels(random, 8, 0.6), 1.5, 0.03)
         ),
-        Excitation("long", "fit", 100.0, 6000, slow),
+        Excitation("long", "fit", 125.0, 6000, slow),
         Excitation(
             "chirp", "hold-out", FAST, 6000, chirp(2.0, 300.0, uniform(0.2, 0.4), 1.5)
         ),
@@ -262,9 +256,9 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "steps-other",
             "hold-out",
-            200.0,
+            250.0,
             4000,
-            staircase(_levels(random, 9, 0.55), 2.2, 0.08),
+            staircase(_levels(random, 9, 0.55), 1.78, 0.06),
         ),
     )
 
@@ -303,10 +297,10 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "walk",
             "fit",
-            100.0,
+            125.0,
             6000,
             add(
-                staircase(_levels(random, 12, 0.5), 5.0, 0.2),
+                staircase(_levels(random, 12, 0.5), 4.0, 0.2),
                 sine(uniform(0.3, 0.8), 0.08),
             ),
         ),

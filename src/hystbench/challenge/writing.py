@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -67,7 +68,7 @@ def _dataset(case: Case) -> str:
 
     entries = []
     for record in case.records:
-        entry = {"file": f"{record.name}.csv", "use": record.use}
+        entry: dict[str, Any] = {"file": f"{record.name}.csv", "use": record.use}
         if record.name in case.period_samples:
             entry["period_samples"] = case.period_samples[record.name]
         entries.append(entry)

@@ -5,6 +5,7 @@ Fields are currents in A, outputs are displacements in um that are zero at the s
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -140,7 +141,7 @@ class Everett:
         common = (self.points, self.limit, table, past)
         kernels.call("hc_everett", 1, len(past), *common, start, begin)
         kernels.call("hc_everett", len(v), len(past), *common, v, y)
-        return y - begin[0] + self.reversible * np.tanh(v / self.knee)
+        return np.asarray(y - begin[0] + self.reversible * np.tanh(v / self.knee))
 
     def scaled(self, factor: float) -> Everett:
         """Multiply both parts."""
@@ -186,7 +187,7 @@ class JilesAtherton:
         field = np.ascontiguousarray(self.bias + v)
         m = np.empty_like(field)
         kernels.call("hc_jiles_atherton", len(field), *constants, field, state, m)
-        return self.strain * (m**2 - start**2)
+        return np.asarray(self.strain * (m**2 - start**2))
 
     def scaled(self, factor: float) -> JilesAtherton:
         """Multiply the strain."""
@@ -248,7 +249,7 @@ def draw_jiles_atherton(random: np.random.Generator) -> JilesAtherton:
     )
 
 
-DRAWS = {
+DRAWS: dict[str, Callable[[np.random.Generator], Hysteresis]] = {
     "gpi": draw_plays,
     "preisach": draw_everett,
     "jiles-atherton": draw_jiles_atherton,
@@ -264,5 +265,5 @@ def swing(hysteresis: Hysteresis) -> float:
 
 def draw(family: str, random: np.random.Generator) -> Hysteresis:
     """Draw a loop of a family whose full swing is 30 to 55 um."""
-    loop: Hysteresis = DRAWS[family](random)
+    loop = DRAWS[family](random)
     return loop.scaled(random.uniform(30.0, 55.0) / swing(loop))
