@@ -243,7 +243,7 @@ def draw_jiles_atherton(random: np.random.Generator) -> JilesAtherton:
         bias=shape * random.uniform(1.6, 2.2),
         shape=shape,
         coupling=shape * random.uniform(0.1, 0.8),
-        pinning=random.uniform(0.03, 0.07),
+        pinning=random.uniform(0.025, 0.055),
         reversible=random.uniform(0.15, 0.45),
         strain=1.0,
     )
