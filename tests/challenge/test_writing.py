@@ -78,7 +78,7 @@ def test_the_truth_is_never_in_the_folder(written):
     assert names == {"model.yaml", "dataset.yaml", *(n for n in names if ".csv" in n)}
     telling = [
         *KINDS,
-        *("joule", "jiles", "preisach", "truth", "seed", "ratio", "effect", "noise"),
+        *("joule", "jiles", "preisach", "truth", "seed", "ratio_db", "effect", "noise"),
         *(str(value) for value in truth["effects"][0]["parameters"].values()),
     ]
     for file in files:
