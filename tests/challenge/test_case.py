@@ -229,6 +229,21 @@ def test_every_effect_shows_on_every_family(family, name, spread, excitations):
             assert 1e-5 < largest < 2.0
 
 
+def test_a_biased_loop_is_read_from_its_own_middle(excitations):
+    # Over the largest loop a bias then tilts and bends, and shifts nothing.
+    item = excitations["slow-loop"]
+    effect = draw(KINDS["asymmetry"], np.random.default_rng(2), 1.0, ("field-bias",))
+    for family in FAMILIES:
+        loop = draw_loop(family, np.random.default_rng(3))
+        y, plain = (
+            Actuator(loop, None, effects, 0).read(item, item.dt, item.samples, 0)
+            for effects in ((effect,), ())
+        )
+        difference = (y - plain)[2000:4000]
+        assert abs(np.mean(difference)) < 0.02 * rms(plain)
+        assert np.std(difference) > 1e-3
+
+
 def test_a_command_is_delayed_exactly(excitations):
     item = excitations["multisine-wide"]
     effect = draw(KINDS["input-delay"], np.random.default_rng(2), 1.0, ("pure",))

@@ -251,14 +251,14 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
             "hold-out",
             RATE,
             4000,
-            add(sine(2.0, uniform(0.2, 0.35)), sine(43.0, uniform(0.08, 0.2))),
+            add(sine(2.0, uniform(0.45, 0.5)), sine(43.0, uniform(0.06, 0.1))),
         ),
         Excitation(
             "steps-other",
             "hold-out",
             250.0,
             4000,
-            staircase(_levels(random, 9, 0.55), 1.78, 0.06),
+            staircase(_levels(random, 9, 0.6), 1.78, 0.06),
         ),
     )
 
@@ -317,7 +317,7 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
             "hold-out",
             RATE,
             6000,
-            add(sine(31.0, uniform(0.1, 0.25)), sine(34.0, uniform(0.1, 0.25))),
+            add(sine(31.0, uniform(0.2, 0.3)), sine(34.0, uniform(0.2, 0.3))),
             2000,
         ),
         Excitation(

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.challenge.plant import mechanics
-from hystbench.challenge.plant.hysteresis import Hysteresis
+from hystbench.challenge.plant.hysteresis import Hysteresis, middle
 from hystbench.challenge.plant.interpolation import cubic
 from hystbench.challenge.plant.kind import Effect, Run, Stage
 from hystbench.record import FloatArray
@@ -110,8 +110,10 @@ class Actuator:
 
         commanded = act("command", time)
         v = u if commanded is time else excitation(commanded)
-        z = act("material", self._material(act("field", act("drive", v)), act))
-        reading = act("sensor", act("mechanics", self._mode(z, fine, act)))
+        field = act("field", act("drive", v))
+        strain, zero = self._material(field, act)
+        moved = act("mechanics", self._mode(act("material", strain), fine, act))
+        reading = act("sensor", moved - zero)
         taken: FloatArray = np.arange(samples, dtype=np.float64) * dt
         asked = act("sampling", taken)
         if asked is not taken:
@@ -134,14 +136,21 @@ class Actuator:
                 signal = effect.act(signal, run)
         return signal
 
-    def _material(self, field: FloatArray, act: Act) -> FloatArray:
+    def _material(self, field: FloatArray, act: Act) -> tuple[FloatArray, float]:
+        """Strain from zero on, and where the sensor was set to zero.
+
+        A bias moves the loop. The sensor is set to zero in the middle of the major
+        loop, as it is without a bias; the strain itself has no jump at the start.
+        """
         if isinstance(self.loop, float):
-            return self.loop * field
+            return self.loop * (field - field[0]), 0.0
         stages = {effect.stage for effect in self.effects}
         growth = act("threshold", field) if "threshold" in stages else None
         z = self.loop.respond(field, growth)
-        # the sensor is set to zero at rest, also where a bias moved the rest
-        return z - z[0] if field[0] != 0.0 else z
+        if field[0] == 0.0:
+            return z, 0.0
+        shift = middle(self.loop, float(field[0])) - middle(self.loop, 0.0)
+        return z - z[0], shift - float(z[0])
 
     def _mode(self, z: FloatArray, dt: float, act: Act) -> FloatArray:
         if any(effect.stage == "mode" for effect in self.effects):

@@ -102,7 +102,7 @@ KINDS = (
         {
             "clip": Form(
                 clip,
-                {"limit": Range(0.3, 0.5, "A", shifts=False, least=0.15, most=0.57)},
+                {"limit": Range(0.3, 0.5, "A", shifts=False, least=0.15, most=0.54)},
                 "limit",
                 power=-3.0,
             )
