@@ -16,7 +16,7 @@ from hystbench.challenge.plant.effects import APART, KINDS, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
 from hystbench.challenge.plant.kind import Range, draw
 from hystbench.challenge.spec import FAMILIES, CaseSpec, draw_spec
-from hystbench.challenge.where import shortest
+from hystbench.challenge.where import held, shortest
 from hystbench.errors import InputError
 
 CREEP = CaseSpec(3, "single", ("creep",), "gpi", 20.0)
@@ -157,6 +157,19 @@ def test_where_the_mains_are():
     assert found["from"] <= 50.0 <= found["to"]
     assert found["to"] < 60.0
     assert len(parameters["amplitudes"]) == 3
+
+
+def test_what_a_range_holds():
+    found, parameters = place("resonance", "frequency")
+    assert held(found, 0.0, 1e5) == pytest.approx(1.0, abs=1e-3)
+    assert held(found, found["from"], found["to"]) == pytest.approx(
+        found["share"], abs=1e-3
+    )
+    low, high = 0.5 * parameters["frequency_hz"], 2 * parameters["frequency_hz"]
+    assert held(found, low, high) > 0.5
+    assert held(found, 0.0, 5.0) < 0.1
+    plain = {"edges": [0.0, 1.0, 3.0], "shares": [0.4, 0.6]}
+    assert held(plain, 0.5, 2.0) == pytest.approx(0.2 + 0.3)
 
 
 def test_where_drift_is():

@@ -132,8 +132,10 @@ def make_case(spec: CaseSpec) -> Case:
     gap = full.minus(bare, fit)
     truth["ratio_all_db"] = _decibel(_rms(gap), noise) if effects else None
     truth["ratio_all_retuned_db"] = _decibel(_retuned(gap, bare.of(fit)), noise)
-    truth["hold_out"] = _hold_out(full, bare, excitations, model)
-    truth["base_error_fit_rms_um"] = _base_error(bare, fit, model)
+    held_out = tuple(item for item in excitations if item.use == "hold-out")
+    truth["hold_out"] = _hold_out(full, bare, held_out, model)
+    base_error = _minus(bare.of(fit), _simulated(model, fit))
+    truth["base_error_fit_rms_um"] = _rms(base_error)
     periods = {
         item.name: item.period_samples
         for item in excitations
@@ -174,8 +176,7 @@ class Readings:
 
     def minus(self, less: Readings, chosen: tuple[Excitation, ...]) -> list[FloatArray]:
         """Difference to another plant's readings."""
-        pairs = zip(self.of(chosen), less.of(chosen), strict=True)
-        return [mine - other for mine, other in pairs]
+        return _minus(self.of(chosen), less.of(chosen))
 
 
 def _draw(
@@ -301,26 +302,23 @@ def _effect_told(effect: Effect) -> dict[str, Any]:
 
 
 def _hold_out(
-    full: Readings,
-    bare: Readings,
-    excitations: tuple[Excitation, ...],
-    model: Model,
+    full: Readings, bare: Readings, chosen: tuple[Excitation, ...], model: Model
 ) -> dict[str, float]:
     """Gap on the hold-out records: all of it, and what the effects explain."""
-    chosen = tuple(item for item in excitations if item.use == "hold-out")
-    simulated = [model.simulate(item.sampled(), item.dt) for item in chosen]
-    pairs = zip(full.of(chosen), simulated, strict=True)
+    base = _simulated(model, chosen)
     return {
-        "gap_rms_um": _rms([y - base for y, base in pairs]),
+        "gap_rms_um": _rms(_minus(full.of(chosen), base)),
         "explainable_rms_um": _rms(full.minus(bare, chosen)),
-        "base_error_rms_um": _base_error(bare, chosen, model),
+        "base_error_rms_um": _rms(_minus(bare.of(chosen), base)),
     }
 
 
-def _base_error(bare: Readings, chosen: tuple[Excitation, ...], model: Model) -> float:
-    """Error of the base model on the plant without its effects."""
-    pairs = zip(bare.of(chosen), chosen, strict=True)
-    return _rms([y - model.simulate(item.sampled(), item.dt) for y, item in pairs])
+def _simulated(model: Model, chosen: tuple[Excitation, ...]) -> list[FloatArray]:
+    return [model.simulate(item.sampled(), item.dt) for item in chosen]
+
+
+def _minus(some: list[FloatArray], others: list[FloatArray]) -> list[FloatArray]:
+    return [one - other for one, other in zip(some, others, strict=True)]
 
 
 def _retuned(difference: list[FloatArray], output: list[FloatArray]) -> float:

@@ -90,14 +90,15 @@ EXPORT ptrdiff_t hc_everett(ptrdiff_t n, ptrdiff_t past, ptrdiff_t points, doubl
     return most;
 }
 
-/* Langevin's function coth x - 1/x and its slope, from one tanh */
+/* Langevin's function coth x - 1/x and its slope, from one exponential */
 static inline double langevin(double x, double *slope)
 {
     if (fabs(x) < 1e-2) {
         *slope = 1.0 / 3.0 - x * x / 15.0;
         return x * (1.0 / 3.0 - x * x / 45.0);
     }
-    double coth = 1.0 / tanh(x), inverse = 1.0 / x;
+    double e = exp(-2.0 * fabs(x)), inverse = 1.0 / x;
+    double coth = copysign((1.0 + e) / (1.0 - e), x);
     *slope = 1.0 - coth * coth + inverse * inverse;
     return coth - inverse;
 }
