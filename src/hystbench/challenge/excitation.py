@@ -171,8 +171,9 @@ def add(*functions: Function) -> Function:
 
 
 def _levels(random: np.random.Generator, count: int, largest: float) -> list[float]:
-    """Levels that differ from their neighbours, high and low by turns."""
-    sizes = random.uniform(0.1, 1.0, count) * largest
+    """Levels mostly high and low by turns; one of them is the largest."""
+    sizes = random.uniform(0.1, 1.0, count)
+    sizes *= largest / sizes.max()
     signs = np.where(random.uniform(size=count) < 0.3, 1.0, (-1.0) ** np.arange(count))
     return [float(value) for value in sizes * signs]
 

@@ -116,7 +116,7 @@ KINDS = (
         {
             "rate": Form(
                 slew,
-                {"rate": Range(25.0, 90.0, "A/s", shifts=False, least=5.0, most=200.0)},
+                {"rate": Range(25.0, 90.0, "A/s", shifts=False, least=5.0, most=400.0)},
                 "rate",
                 power=-1.5,
             )
