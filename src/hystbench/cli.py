@@ -38,6 +38,7 @@ COMMANDS = {
     "twins": "Run all models on several twins.",
     "pressure": "Judge the claims on many twins, step sizes and seeds.",
     "contest": "Give each filter its own best step size.",
+    "hide": "Make records in which a plant hides effects.",
     "show": "Print the tables of a comparison.",
     "figure": "Draw one figure.",
     "docs": "Fill the tables of README.md and docs from results.",

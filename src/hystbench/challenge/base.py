@@ -54,7 +54,7 @@ def base_model(
         )
     else:
         block = _identified(u, loop.respond(u))
-    chain = [block]
+    chain: list[Block] = [block]
     if mode is not None:
         chain.append(Resonance(hold="band-limited", **mode.parameters()))
     return Model("base", INPUT, OUTPUT, tuple(chain))

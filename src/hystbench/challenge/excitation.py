@@ -12,12 +12,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hystbench.challenge.plant.interpolation import cubic
 from hystbench.record import FloatArray, Use
 
 Function = Callable[[FloatArray], FloatArray]
 
-#: Sampling rate of the fast records in Hz and the largest current in A.
-RATE, LARGEST = 2000.0, 0.6
+#: Sampling rates in Hz of the slower and of the faster records, and the largest
+#: current in A. No line lies above a tenth of the rate, so that a model which knows
+#: the samples alone does not miss the turning points.
+RATE, FAST, LARGEST = 2000.0, 4000.0, 0.6
+#: Samples of a multisine's period.
+PERIOD = 2000
 #: Points of a period's table for each sample of the record.
 TABLE = 32
 #: Length of a switch-on and of the edge of a step: at least so long, in seconds and
@@ -62,7 +67,7 @@ class Excitation:
 
     def sampled(self) -> FloatArray:
         """Command at the record's samples."""
-        return self(np.arange(self.samples) * self.dt)
+        return self(np.asarray(np.arange(self.samples) * self.dt, dtype=np.float64))
 
 
 def sine(frequency: float, amplitude: float, bias: float = 0.0) -> Function:
@@ -73,25 +78,23 @@ def sine(frequency: float, amplitude: float, bias: float = 0.0) -> Function:
 def chirp(low: float, high: float, amplitude: float, seconds: float) -> Function:
     """Sine whose frequency rises evenly in its logarithm."""
     rate = np.log(high / low) / seconds
-    return lambda t: (
-        amplitude * np.sin(2.0 * np.pi * low * np.expm1(rate * t) / rate)
-    )
+    return lambda t: amplitude * np.sin(2.0 * np.pi * low * np.expm1(rate * t) / rate)
 
 
 def multisine(
     random: np.random.Generator,
-    low: int,
-    high: int,
+    low: float,
+    high: float,
     peak: float,
     colour: float = 0.0,
     odd: bool = False,
 ) -> Function:
-    """Random-phase multisine of period one second with a line at each whole hertz.
+    """Random-phase multisine of a period of half a second, a line each 2 Hz.
 
     Parameters
     ----------
-    low, high : int
-        First and last line in Hz.
+    low, high : float
+        Band in Hz.
     peak : float
         Largest magnitude in A; of 20 draws of the phases the flattest is taken.
     colour : float
@@ -99,40 +102,30 @@ def multisine(
     odd : bool
         Only odd lines: even distortion then falls between them.
     """
-    points = int(RATE) * TABLE
-    lines = np.arange(low | 1 if odd else low, high + 1, 2 if odd else 1)
-    best, flattest = np.zeros(points), np.inf
+    seconds = PERIOD / FAST
+    lines = np.arange(max(1, np.ceil(low * seconds)), high * seconds + 1e-9, dtype=int)
+    if odd:
+        lines = lines[lines % 2 == 1]
+    flattest, kept = np.inf, np.zeros(1, dtype=complex)
     for _ in range(20):
-        spectrum = np.zeros(int(RATE) * 2 + 1, dtype=complex)
+        spectrum = np.zeros(lines[-1] + 1, dtype=complex)
         phases = random.uniform(0.0, 2.0 * np.pi, len(lines))
         spectrum[lines] = lines ** (-colour) * np.exp(1j * phases)
-        crest = _crest(np.fft.irfft(spectrum))
+        values = np.fft.irfft(spectrum, 4 * PERIOD)
+        crest = float(np.abs(values).max() / np.sqrt(np.mean(values**2)))
         if crest < flattest:
-            flattest, kept = crest, spectrum[: lines[-1] + 1].copy()
-    spectrum = np.zeros(points // 2 + 1, dtype=complex)
-    spectrum[: len(kept)] = kept
-    best = np.fft.irfft(spectrum)
-    best *= peak / np.abs(best).max()
-    return lambda t: _periodic(best, t)
+            flattest, kept = crest, spectrum
+    table = np.fft.irfft(kept, PERIOD * TABLE)
+    table *= peak / np.abs(table).max()
+    return lambda t: _periodic(table, t, seconds)
 
 
-def _crest(values: FloatArray) -> float:
-    return float(np.abs(values).max() / np.sqrt(np.mean(values**2)))
-
-
-def _periodic(table: FloatArray, time: FloatArray) -> FloatArray:
-    """Read a table of one second between its points by the cubic through four."""
-    place = (time % 1.0) * len(table)
-    k = np.floor(place + 1e-7).astype(int)
-    p = place - k
+def _periodic(table: FloatArray, time: FloatArray, seconds: float) -> FloatArray:
+    """Read a period's table between its points by the cubic through four."""
+    place = (time / seconds % 1.0) * len(table)
+    k = np.floor(place + 1e-7).astype(np.int64)
     wide = np.concatenate([table[-1:], table, table[:3]])
-    before, here, after, second = (wide[k + i] for i in range(4))
-    return np.asarray(
-        here
-        + 0.5 * p * (after - before)
-        + p**2 * (before - 2.5 * here + 2.0 * after - 0.5 * second)
-        + 0.5 * p**3 * (second - before + 3.0 * (here - after))
-    )
+    return cubic(wide, k + 1, place - k)
 
 
 def staircase(levels: Sequence[float], hold: float, edge: float) -> Function:
@@ -178,8 +171,9 @@ def add(*functions: Function) -> Function:
 
 
 def _levels(random: np.random.Generator, count: int, largest: float) -> list[float]:
-    """Levels that differ from their neighbours, high and low by turns."""
-    sizes = random.uniform(0.1, 1.0, count) * largest
+    """Levels mostly high and low by turns; one of them is the largest."""
+    sizes = random.uniform(0.1, 1.0, count)
+    sizes *= largest / sizes.max()
     signs = np.where(random.uniform(size=count) < 0.3, 1.0, (-1.0) ** np.arange(count))
     return [float(value) for value in sizes * signs]
 
@@ -191,7 +185,7 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
     ripple = float(random.choice([5.0, 8.0, 10.0]))
     uniform = random.uniform
     slow = add(
-        staircase(_levels(random, 8, 0.4), 7.5, 0.3),
+        staircase(_levels(random, 8, 0.4), 6.0, 0.3),
         sine(uniform(0.3, 1.0), uniform(0.05, 0.2)),
     )
     return (
@@ -207,25 +201,25 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "sine-high",
             "fit",
-            RATE,
+            FAST,
             4000,
             sine(high, uniform(0.2, 0.35)),
-            int(RATE) // high,
+            int(FAST) // high,
         ),
         Excitation(
             "multisine-wide",
             "fit",
-            RATE,
+            FAST,
             8000,
-            multisine(random, 1, 500, uniform(0.2, 0.3)),
+            multisine(random, 2, 400, uniform(0.2, 0.3)),
             2000,
         ),
         Excitation(
             "multisine-strong",
             "fit",
-            RATE,
+            FAST,
             8000,
-            multisine(random, 1, 200, uniform(0.45, 0.6), colour=0.3),
+            multisine(random, 2, 200, uniform(0.45, 0.6), colour=0.3),
             2000,
         ),
         Excitation(
@@ -241,16 +235,16 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "steps", "fit", 500.0, 6000, staircase(_levels(random, 8, 0.6), 1.5, 0.03)
         ),
-        Excitation("long", "fit", 100.0, 6000, slow),
+        Excitation("long", "fit", 125.0, 6000, slow),
         Excitation(
-            "chirp", "hold-out", RATE, 6000, chirp(1.0, 350.0, uniform(0.2, 0.4), 3.0)
+            "chirp", "hold-out", FAST, 6000, chirp(2.0, 300.0, uniform(0.2, 0.4), 1.5)
         ),
         Excitation(
             "multisine-other",
             "hold-out",
-            RATE,
+            FAST,
             6000,
-            multisine(random, 1, 350, uniform(0.3, 0.5)),
+            multisine(random, 2, 320, uniform(0.3, 0.5)),
             2000,
         ),
         Excitation(
@@ -258,26 +252,26 @@ def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
             "hold-out",
             RATE,
             4000,
-            add(sine(2.0, uniform(0.2, 0.35)), sine(43.0, uniform(0.08, 0.2))),
+            add(sine(2.0, uniform(0.45, 0.5)), sine(43.0, uniform(0.06, 0.1))),
         ),
         Excitation(
             "steps-other",
             "hold-out",
-            200.0,
+            250.0,
             4000,
-            staircase(_levels(random, 9, 0.55), 2.2, 0.08),
+            staircase(_levels(random, 9, 0.6), 1.78, 0.06),
         ),
     )
 
 
 def other(random: np.random.Generator) -> tuple[Excitation, ...]:
-    """Another laboratory's records, for the transfer score."""
+    """Seven records to fit and three held out, of another laboratory."""
     uniform = random.uniform
     return (
-        Excitation("triangle", "fit", RATE, 8000, triangle(0.5, LARGEST), 4000),
+        Excitation("triangle", "fit", RATE, 12000, triangle(0.5, LARGEST), 4000),
         Excitation("ringing", "fit", RATE, 6000, ringing(4.0, 0.58, 0.8)),
         Excitation(
-            "sweep", "fit", RATE, 8000, chirp(2.0, 400.0, uniform(0.25, 0.35), 4.0)
+            "sweep", "fit", FAST, 8000, chirp(2.0, 380.0, uniform(0.25, 0.35), 2.0)
         ),
         Excitation(
             "sweep-strong", "fit", RATE, 6000, chirp(0.8, 90.0, uniform(0.5, 0.6), 3.0)
@@ -285,9 +279,9 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "pink",
             "fit",
-            RATE,
+            FAST,
             8000,
-            multisine(random, 1, 450, uniform(0.4, 0.6), colour=0.7, odd=True),
+            multisine(random, 2, 400, uniform(0.4, 0.6), colour=0.7, odd=True),
             2000,
         ),
         Excitation(
@@ -304,17 +298,17 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
         Excitation(
             "walk",
             "fit",
-            100.0,
+            125.0,
             6000,
             add(
-                staircase(_levels(random, 12, 0.5), 5.0, 0.2),
+                staircase(_levels(random, 12, 0.5), 4.0, 0.2),
                 sine(uniform(0.3, 0.8), 0.08),
             ),
         ),
         Excitation(
             "white",
             "hold-out",
-            RATE,
+            FAST,
             8000,
             multisine(random, 2, 300, uniform(0.3, 0.5)),
             2000,
@@ -324,15 +318,15 @@ def other(random: np.random.Generator) -> tuple[Excitation, ...]:
             "hold-out",
             RATE,
             6000,
-            add(sine(31.0, uniform(0.1, 0.25)), sine(34.0, uniform(0.1, 0.25))),
+            add(sine(31.0, uniform(0.2, 0.3)), sine(34.0, uniform(0.2, 0.3))),
             2000,
         ),
         Excitation(
             "walk-other",
             "hold-out",
             250.0,
-            5000,
-            staircase(_levels(random, 14, 0.55), 1.4, 0.06),
+            4000,
+            staircase(_levels(random, 12, 0.55), 1.4, 0.06),
         ),
     )
 

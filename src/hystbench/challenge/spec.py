@@ -63,7 +63,9 @@ class CaseSpec:
         if self.kind not in CASE_KINDS:
             raise InputError(f"kind: {self.kind!r}; {nearest(self.kind, CASE_KINDS)}")
         if self.family not in FAMILIES:
-            raise InputError(f"family: {self.family!r}; {nearest(self.family, FAMILIES)}")
+            raise InputError(
+                f"family: {self.family!r}; {nearest(self.family, FAMILIES)}"
+            )
         if self.campaign not in CAMPAIGNS:
             raise InputError(
                 f"campaign: {self.campaign!r}; {nearest(self.campaign, CAMPAIGNS)}"

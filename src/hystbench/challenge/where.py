@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -89,6 +90,22 @@ def where(
     for item in ranges:
         item["right"] = item["view"] in kind.views
     return ranges
+
+
+def held(view: Mapping[str, Any], low: float, high: float) -> float:
+    """Tell which share of an effect's power a range holds.
+
+    Parameters
+    ----------
+    view : mapping
+        One of what :func:`where` gives, with ``edges`` and ``shares``.
+    low, high : float
+        The range, in the view's unit; a bin that lies partly in it counts by its part.
+    """
+    edges = np.asarray(view["edges"])
+    start, stop = edges[:-1], edges[1:]
+    inside = np.clip(np.minimum(stop, high) - np.maximum(start, low), 0.0, None)
+    return float(np.asarray(view["shares"]) @ (inside / (stop - start)))
 
 
 def _spectrum(difference: FloatArray, dt: float) -> FloatArray:

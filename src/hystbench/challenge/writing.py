@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,22 @@ def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
         If the truth would lie in the folder, or the folder holds something.
     """
     folder, truth_file = Path(folder), Path(truth_file)
+    check_places(folder, truth_file)
+    for record in case.records:
+        write_text(folder / "dataset" / f"{record.name}.csv", _csv(record))
+    write_text(folder / "model.yaml", case.model.to_yaml())
+    write_text(folder / "dataset" / "dataset.yaml", _dataset(case))
+    write_json(truth_file, case.truth)
+
+
+def check_places(folder: Path, truth_file: Path) -> None:
+    """Refuse places before anything is made.
+
+    Raises
+    ------
+    InputError
+        As :func:`write_case`.
+    """
     if truth_file.resolve().is_relative_to(folder.resolve()):
         raise InputError(
             f"{truth_file}: truth inside {folder}; expected a file outside the folder "
@@ -39,11 +56,6 @@ def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
         )
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(f"{folder}: expected a new or an empty folder")
-    for record in case.records:
-        write_text(folder / "dataset" / f"{record.name}.csv", _csv(record))
-    write_text(folder / "model.yaml", case.model.to_yaml())
-    write_text(folder / "dataset" / "dataset.yaml", _dataset(case))
-    write_json(truth_file, case.truth)
 
 
 def _csv(record: Record) -> str:
@@ -56,7 +68,7 @@ def _dataset(case: Case) -> str:
 
     entries = []
     for record in case.records:
-        entry = {"file": f"{record.name}.csv", "use": record.use}
+        entry: dict[str, Any] = {"file": f"{record.name}.csv", "use": record.use}
         if record.name in case.period_samples:
             entry["period_samples"] = case.period_samples[record.name]
         entries.append(entry)

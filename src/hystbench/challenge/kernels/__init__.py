@@ -80,7 +80,9 @@ def call(name: str, *arguments: FloatArray | float | int) -> int:
     return result
 
 
-def run(name: str, *arguments: FloatArray | float | int, over: FloatArray) -> FloatArray:
+def run(
+    name: str, *arguments: FloatArray | float | int, over: FloatArray
+) -> FloatArray:
     """Call a loop that takes a signal last but one and writes its response last."""
     signal = np.ascontiguousarray(over, dtype=np.float64)
     out = np.empty_like(signal)

@@ -90,19 +90,17 @@ EXPORT ptrdiff_t hc_everett(ptrdiff_t n, ptrdiff_t past, ptrdiff_t points, doubl
     return most;
 }
 
-static inline double langevin(double x)
+/* Langevin's function coth x - 1/x and its slope, from one exponential */
+static inline double langevin(double x, double *slope)
 {
-    if (fabs(x) < 1e-2)
+    if (fabs(x) < 1e-2) {
+        *slope = 1.0 / 3.0 - x * x / 15.0;
         return x * (1.0 / 3.0 - x * x / 45.0);
-    return 1.0 / tanh(x) - 1.0 / x;
-}
-
-static inline double langevin_slope(double x)
-{
-    if (fabs(x) < 1e-2)
-        return 1.0 / 3.0 - x * x / 15.0;
-    double s = sinh(x);
-    return fabs(x) > 300.0 ? 1.0 / (x * x) : 1.0 / (x * x) - 1.0 / (s * s);
+    }
+    double e = exp(-2.0 * fabs(x)), inverse = 1.0 / x;
+    double coth = copysign((1.0 + e) / (1.0 - e), x);
+    *slope = 1.0 - coth * coth + inverse * inverse;
+    return coth - inverse;
 }
 
 typedef struct {
@@ -114,7 +112,8 @@ typedef struct {
 static double susceptibility(const material *p, double h, double m, double direction)
 {
     double x = (h + p->coupling * m) / p->shape;
-    double off = langevin(x) - m, slope = langevin_slope(x) / p->shape;
+    double slope, off = langevin(x, &slope) - m;
+    slope /= p->shape;
     double wall = 0.0;
     if (off * direction > 0.0)
         wall = off / (p->pinning * direction - p->coupling * off);

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.challenge.plant import mechanics
-from hystbench.challenge.plant.hysteresis import Hysteresis
+from hystbench.challenge.plant.hysteresis import Hysteresis, middle
+from hystbench.challenge.plant.interpolation import cubic
 from hystbench.challenge.plant.kind import Effect, Run, Stage
 from hystbench.record import FloatArray
 
@@ -101,7 +102,7 @@ class Actuator:
         # some samples more, so that a clock that is off still finds a reading
         count = (samples + 8) * step
         fine = dt / step
-        time = np.arange(count) * fine
+        time: FloatArray = np.arange(count, dtype=np.float64) * fine
         u = excitation(time)
 
         def act(stage: Stage, signal: FloatArray) -> FloatArray:
@@ -109,17 +110,21 @@ class Actuator:
 
         commanded = act("command", time)
         v = u if commanded is time else excitation(commanded)
-        z = act("material", self._material(act("field", act("drive", v)), act))
-        reading = act("sensor", act("mechanics", self._mode(z, fine, act)))
-        taken = np.arange(samples) * dt
+        field = act("field", act("drive", v))
+        strain, zero = self._material(field, act)
+        moved = act("mechanics", self._mode(act("material", strain), fine, act))
+        reading = act("sensor", moved - zero)
+        taken: FloatArray = np.arange(samples, dtype=np.float64) * dt
         asked = act("sampling", taken)
         if asked is not taken:
-            return _cubic(reading, asked / fine)
+            place = asked / fine
+            k = np.clip(place.astype(np.int64), 1, count - 3)
+            return cubic(reading, k, place - k)
         return np.ascontiguousarray(reading[: samples * step : step])
 
     def convert(self, reading: FloatArray, dt: float, record: int) -> FloatArray:
         """Compute what is written down of a reading, with whatever noise it has."""
-        time = np.arange(len(reading)) * dt
+        time: FloatArray = np.arange(len(reading), dtype=np.float64) * dt
         return self._act("samples", reading, Place(time, reading, dt, record))
 
     def _act(self, stage: Stage, signal: FloatArray, place: Place) -> FloatArray:
@@ -131,14 +136,21 @@ class Actuator:
                 signal = effect.act(signal, run)
         return signal
 
-    def _material(self, field: FloatArray, act: Act) -> FloatArray:
+    def _material(self, field: FloatArray, act: Act) -> tuple[FloatArray, float]:
+        """Strain from zero on, and where the sensor was set to zero.
+
+        A bias moves the loop. The sensor is set to zero in the middle of the major
+        loop, as it is without a bias; the strain itself has no jump at the start.
+        """
         if isinstance(self.loop, float):
-            return self.loop * field
+            return self.loop * (field - field[0]), 0.0
         stages = {effect.stage for effect in self.effects}
         growth = act("threshold", field) if "threshold" in stages else None
         z = self.loop.respond(field, growth)
-        # the sensor is set to zero at rest, also where a bias moved the rest
-        return z - z[0] if field[0] != 0.0 else z
+        if field[0] == 0.0:
+            return z, 0.0
+        shift = middle(self.loop, float(field[0])) - middle(self.loop, 0.0)
+        return z - z[0], shift - float(z[0])
 
     def _mode(self, z: FloatArray, dt: float, act: Act) -> FloatArray:
         if any(effect.stage == "mode" for effect in self.effects):
@@ -148,16 +160,3 @@ class Actuator:
         p = self.mode
         x = mechanics.oscillate(z, dt, p.frequency_hz, p.damping_ratio, 0.0)
         return (1.0 - p.participation) * z + p.participation * x
-
-
-def _cubic(values: FloatArray, place: FloatArray) -> FloatArray:
-    """Read between samples by the cubic through the four around."""
-    k = np.clip(place.astype(int), 1, len(values) - 3)
-    p = place - k
-    before, here, after, second = (values[k + i] for i in (-1, 0, 1, 2))
-    return (
-        here
-        + 0.5 * p * (after - before)
-        + p**2 * (before - 2.5 * here + 2.0 * after - 0.5 * second)
-        + 0.5 * p**3 * (second - before + 3.0 * (here - after))
-    )

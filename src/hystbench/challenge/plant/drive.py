@@ -102,7 +102,7 @@ KINDS = (
         {
             "clip": Form(
                 clip,
-                {"limit": Range(0.3, 0.5, "A", shifts=False, least=0.15, most=0.57)},
+                {"limit": Range(0.3, 0.5, "A", shifts=False, least=0.15, most=0.54)},
                 "limit",
                 power=-3.0,
             )
@@ -116,7 +116,7 @@ KINDS = (
         {
             "rate": Form(
                 slew,
-                {"rate": Range(25.0, 90.0, "A/s", shifts=False, least=5.0, most=200.0)},
+                {"rate": Range(25.0, 90.0, "A/s", shifts=False, least=5.0, most=400.0)},
                 "rate",
                 power=-1.5,
             )

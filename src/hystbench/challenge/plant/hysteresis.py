@@ -5,7 +5,9 @@ Fields are currents in A, outputs are displacements in um that are zero at the s
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -106,20 +108,7 @@ class Everett:
 
         Swing of the output when the input goes from b up to a.
         """
-        step = 2.0 * self.limit / (self.points - 1)
-        middle = -self.limit + step * (np.arange(self.points - 1) + 0.5)
-        half = 0.5 * (middle[:, None] - middle[None, :])
-        centre = 0.5 * (middle[:, None] + middle[None, :]) - self.centre
-        inside = np.where(half > 0, half, 1.0)
-        density = np.exp(
-            -0.5 * (centre / self.interaction) ** 2
-            - 0.5 * (np.log(inside / self.coercive) / self.coercive_spread) ** 2
-        ) / inside
-        density[half <= 0] = 0.0
-        mass = density * (self.irreversible / density.sum())
-        out = np.zeros((self.points, self.points))
-        out[1:, :-1] = np.cumsum(np.cumsum(mass, axis=0)[:, ::-1], axis=1)[:, ::-1]
-        return out
+        return _everett_table(self)
 
     def history(self) -> FloatArray:
         """Turning points that demagnetize: alternating, shrinking."""
@@ -137,7 +126,7 @@ class Everett:
         common = (self.points, self.limit, table, past)
         kernels.call("hc_everett", 1, len(past), *common, start, begin)
         kernels.call("hc_everett", len(v), len(past), *common, v, y)
-        return y - begin[0] + self.reversible * np.tanh(v / self.knee)
+        return np.asarray(y - begin[0] + self.reversible * np.tanh(v / self.knee))
 
     def scaled(self, factor: float) -> Everett:
         """Multiply both parts."""
@@ -146,6 +135,24 @@ class Everett:
             irreversible=self.irreversible * factor,
             reversible=self.reversible * factor,
         )
+
+
+@lru_cache(maxsize=4)
+def _everett_table(plane: Everett) -> FloatArray:
+    """Sum the density's cells; one plane is asked for many times in a case."""
+    step = 2.0 * plane.limit / (plane.points - 1)
+    middle = -plane.limit + step * (np.arange(plane.points - 1) + 0.5)
+    half = 0.5 * (middle[:, None] - middle[None, :])
+    centre = 0.5 * (middle[:, None] + middle[None, :]) - plane.centre
+    inside = np.where(half > 0, half, 1.0)
+    logarithm = np.log(inside / plane.coercive) / plane.coercive_spread
+    density = np.exp(-0.5 * ((centre / plane.interaction) ** 2 + logarithm**2)) / inside
+    density[half <= 0] = 0.0
+    mass = density * (plane.irreversible / density.sum())
+    out = np.zeros((plane.points, plane.points))
+    out[1:, :-1] = np.cumsum(np.cumsum(mass, axis=0)[:, ::-1], axis=1)[:, ::-1]
+    out.setflags(write=False)
+    return out
 
 
 @dataclass(frozen=True)
@@ -183,7 +190,7 @@ class JilesAtherton:
         field = np.ascontiguousarray(self.bias + v)
         m = np.empty_like(field)
         kernels.call("hc_jiles_atherton", len(field), *constants, field, state, m)
-        return self.strain * (m**2 - start**2)
+        return np.asarray(self.strain * (m**2 - start**2))
 
     def scaled(self, factor: float) -> JilesAtherton:
         """Multiply the strain."""
@@ -199,12 +206,14 @@ def draw_plays(random: np.random.Generator) -> GeneralizedPlays:
     while True:
         factors = np.exp(random.uniform(-0.2, 0.2, 8))
         a = np.array(PUBLISHED) * (1.0 if published else factors)
-        v = np.linspace(-0.8, 0.8, 201)
+        v = np.linspace(-LARGEST_CURRENT, LARGEST_CURRENT, 201)
         left = a[0] * np.tanh(a[1] * v + a[2]) + a[3]
         right = a[4] * np.tanh(a[5] * v + a[6]) + a[7]
         middle = 0.5 * (left[100] + right[100])
-        ordered = left[100] > right[100] and np.mean(left - right > 0) > 0.5
-        if published or ordered:
+        # as near to each other as the published ones, and in order about rest
+        gap, rise = left - right, left[-1] - left[0]
+        near = gap.min() > -0.01 * rise and gap.max() < 0.1 * rise
+        if published or (near and gap[100] > 0.01 * rise):
             break
     a[[3, 7]] -= middle
     count = int(random.integers(12, 31))
@@ -218,9 +227,9 @@ def draw_plays(random: np.random.Generator) -> GeneralizedPlays:
 
 def draw_everett(random: np.random.Generator) -> Everett:
     """Draw a Preisach plane."""
-    share = random.uniform(0.25, 0.55)
+    share = random.uniform(0.25, 0.45)
     return Everett(
-        interaction=random.uniform(0.2, 0.45),
+        interaction=random.uniform(0.28, 0.45),
         centre=random.uniform(-0.08, 0.08),
         coercive=random.uniform(0.06, 0.16),
         coercive_spread=random.uniform(0.35, 0.7),
@@ -237,27 +246,36 @@ def draw_jiles_atherton(random: np.random.Generator) -> JilesAtherton:
         bias=shape * random.uniform(1.6, 2.2),
         shape=shape,
         coupling=shape * random.uniform(0.1, 0.8),
-        pinning=random.uniform(0.05, 0.14),
+        pinning=random.uniform(0.025, 0.055),
         reversible=random.uniform(0.15, 0.45),
         strain=1.0,
     )
 
 
-DRAWS = {
+DRAWS: dict[str, Callable[[np.random.Generator], Hysteresis]] = {
     "gpi": draw_plays,
     "preisach": draw_everett,
     "jiles-atherton": draw_jiles_atherton,
 }
 
 
-def swing(hysteresis: Hysteresis) -> float:
-    """Peak-to-peak displacement in um over the largest current, once around."""
+def _cycle(hysteresis: Hysteresis, bias: float) -> FloatArray:
+    """Displacement over the largest current, the second time around."""
     angle = np.linspace(0.0, 4.0 * np.pi, 4001)
-    y = hysteresis.respond(LARGEST_CURRENT * np.sin(angle))
-    return float(np.ptp(y[2000:]))
+    return hysteresis.respond(bias + LARGEST_CURRENT * np.sin(angle))[2001:]
+
+
+def swing(hysteresis: Hysteresis) -> float:
+    """Peak-to-peak displacement in um over the largest current."""
+    return float(np.ptp(_cycle(hysteresis, 0.0)))
+
+
+def middle(hysteresis: Hysteresis, bias: float) -> float:
+    """Mean displacement in um over the largest current about a bias."""
+    return float(np.mean(_cycle(hysteresis, bias)))
 
 
 def draw(family: str, random: np.random.Generator) -> Hysteresis:
     """Draw a loop of a family whose full swing is 30 to 55 um."""
-    loop: Hysteresis = DRAWS[family](random)
+    loop = DRAWS[family](random)
     return loop.scaled(random.uniform(30.0, 55.0) / swing(loop))

@@ -21,6 +21,7 @@ def square(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
 def excess_field(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Lose to moving domain walls a field that grows with the rate (Bertotti 1988)."""
     speed = np.gradient(z, run.dt)
+    speed[0] = 0.0  # at rest, so that what it loses there is no bias
     return z - p["coefficient"] * np.abs(speed) ** p["exponent"] * np.sign(speed)
 
 
@@ -116,9 +117,7 @@ KINDS = (
             "excess-field": Form(
                 excess_field,
                 {
-                    "coefficient": Range(
-                        2e-4, 2e-3, "A (s/A)^exponent", most=0.03
-                    ),
+                    "coefficient": Range(2e-4, 2e-3, "A (s/A)^exponent", most=0.03),
                     "exponent": _EXPONENT,
                 },
                 "coefficient",

@@ -80,7 +80,7 @@ def _creep_told(p: Parameters) -> dict[str, Any]:
     return dict(_elements(p))
 
 
-_FREQUENCY = Range(60.0, 280.0, "Hz", most=500.0)
+_FREQUENCY = Range(60.0, 280.0, "Hz", most=350.0)
 _DAMPING = Range(0.01, 0.06, "-", most=0.15)
 _VELOCITY = Range(0.5, 5.0, "A/s")
 _COULOMB = Range(0.15, 1.0, "um", most=4.0)

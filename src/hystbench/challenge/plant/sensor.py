@@ -50,13 +50,14 @@ def ramp(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
 
 def path(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Drift along a smooth random path, new in each record, from zero."""
-    edges = np.log(PATH_BAND)
-    frequency = np.exp(run.random.uniform(*edges, PATH_COSINES))
+    low, high = np.log(PATH_BAND)
+    frequency = np.exp(run.random.uniform(low, high, PATH_COSINES))
     phase = run.random.uniform(0.0, 2.0 * np.pi, PATH_COSINES)
     angle = 2.0 * np.pi * frequency[:, None]
     slow = np.cos(angle * run.time[::64] + phase[:, None]).sum(axis=0)
     smooth = np.interp(run.time, run.time[::64], slow)
-    return z + p["size"] / np.sqrt(PATH_COSINES / 2.0) * (smooth - smooth[0])
+    scale = p["size"] / np.sqrt(PATH_COSINES / 2.0)
+    return np.asarray(z + scale * (smooth - smooth[0]))
 
 
 def calibration(z: FloatArray, run: Run, p: Parameters) -> FloatArray:

@@ -85,8 +85,8 @@ def hysteretic_sensor(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
 
 
 def fractional(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
-    """Relax over six decades at once, as ``s^-order`` does (Oustaloup's spread)."""
-    times = np.logspace(-4.0, 2.0, 13)
+    """Relax over five decades at once, as ``s^-order`` does (Oustaloup's spread)."""
+    times = np.logspace(-2.7, 2.3, 11)
     shares = times ** (p["order"] - 0.5)
     magnitudes = p["magnitude"] * shares / shares.sum()
     return kelvin_voigt(z, run.dt, list(magnitudes), list(times))

@@ -1,0 +1,40 @@
+"""The effects, their forms and ranges as a table, for docs/challenge.md."""
+
+from __future__ import annotations
+
+from hystbench.challenge.plant.effects import KINDS
+
+HEADER = """\
+| effect | place | form | parameter | range | unit | limits | right views |
+|---|---|---|---|---|---|---|---|
+"""
+
+
+def markdown_table() -> str:
+    """Write every effect, form and parameter as a Markdown table.
+
+    A range with a plus and minus sign gets its sign by a coin; one with a star is not
+    multiplied by ``spread``.
+    """
+    rows = []
+    for kind in KINDS.values():
+        use = "" if kind.use == "vocabulary" else f" ({kind.use})"
+        first = [f"`{kind.name}`{use}", kind.place]
+        views = ", ".join(kind.views)
+        for form, about in kind.forms.items():
+            second = form
+            for name, item in about.ranges.items() or [("", None)]:
+                cells = [*first, second, "", "", "", "", views]
+                if item is not None:
+                    sign = "±" if item.sign else ""
+                    star = "" if item.shifts else " *"
+                    bounds = f"{item.least:g} to {item.most:g}"
+                    cells[3:7] = [
+                        f"`{name}`",
+                        f"{sign}{item.low:g} to {item.high:g}{star}",
+                        item.unit,
+                        bounds.replace("0 to inf", "").replace("to inf", "or more"),
+                    ]
+                rows.append("| " + " | ".join(cells) + " |\n")
+                first, second, views = ["", ""], "", ""
+    return HEADER + "".join(rows)
