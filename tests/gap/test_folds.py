@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -44,7 +46,7 @@ def test_neighbours_in_rate_are_held_out_in_different_folds():
         for place, each in enumerate(frequencies)
     }
     ordered = sorted(frequencies)
-    for slower, faster in zip(ordered, ordered[1:], strict=False):
+    for slower, faster in pairwise(ordered):
         assert of[slower] != of[faster]
 
 
@@ -69,12 +71,12 @@ def test_blocks_are_whole_periods_where_there_are_as_many():
 def test_too_short_a_record_is_one_clear_line(count, length):
     records = [record(sine(3), name=f"long-{k}") for k in range(count - 1)]
     records.append(record(sine(3, count=length), name="stub"))
-    with pytest.raises(InputError, match=f"^record stub: {length} samples; .*$"):
+    with pytest.raises(InputError, match=rf"^record stub: {length} samples; .*$"):
         make_folds(records)
 
 
 def test_no_records_is_one_clear_line():
-    with pytest.raises(InputError, match="^no fit records"):
+    with pytest.raises(InputError, match=r"^no fit records"):
         make_folds([])
 
 
