@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from hystbench.errors import InputError
 from hystbench.gap.folds import chosen, make_folds
-
-from .made import record, sine
+from tests.gap.made import record, sine
 
 
 @given(st.lists(st.integers(100, 400), min_size=1, max_size=12))

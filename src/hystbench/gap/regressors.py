@@ -1,0 +1,211 @@
+"""What the black box sees: past and present of input and simulated output.
+
+The measured output is never among them: the black box runs as freely as the
+simulator. Time is not among them either: what the input does not explain, the black
+box cannot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.gap.compared import Compared
+from hystbench.operators import play
+from hystbench.record import FloatArray
+
+Rows = NDArray[np.intp] | slice
+
+#: Lags in shortest sampling intervals: dense where dynamics are fast.
+LAGS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
+#: Low-passes from the shortest sampling interval to a third of the longest record.
+LOW_PASSES = 8
+#: Thresholds of play operators, as parts of the input's largest excursion.
+THRESHOLDS = (0.05, 0.15, 0.3, 0.5, 0.75)
+
+#: Widths over which a signal turns its sign, in its spreads: friction, dead zones.
+TURNS = (0.03, 0.3, 1.0)
+#: Landmarks of the radial basis functions.
+LANDMARKS = 80
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Middle and spread of a signal over the records that fit."""
+
+    middle: float
+    spread: float
+
+    def __call__(self, values: FloatArray) -> FloatArray:
+        """Bring values to middle 0 and spread 1."""
+        return (values - self.middle) / self.spread
+
+
+@dataclass(frozen=True)
+class Regressors:
+    """Signals made of input and simulated output, the same for every record.
+
+    Parameters
+    ----------
+    input, simulated : Scale
+    input_rate, simulated_rate : float
+        RMS of the time derivatives, per second of the scaled signals.
+    excursion : float
+        Largest absolute value of the scaled input.
+    lags_s, time_constants_s : tuple of float
+    """
+
+    input: Scale
+    simulated: Scale
+    input_rate: float
+    simulated_rate: float
+    excursion: float
+    lags_s: tuple[float, ...]
+    time_constants_s: tuple[float, ...]
+
+    @classmethod
+    def of(cls, compared: Sequence[Compared]) -> Regressors:
+        """Choose scales, lags and time constants by the records that fit."""
+        records = [item.record for item in compared]
+        inputs = [record.u for record in records]
+        outputs = [item.simulated for item in compared]
+        steps = [record.dt for record in records]
+        step = min(record.dt for record in records)
+        longest = max(record.dt * len(record) for record in records)
+        u, s = _scale(inputs), _scale(outputs)
+        rates = [
+            _rms([np.gradient(scale(x), dt) for x, dt in zip(each, steps, strict=True)])
+            for scale, each in ((u, inputs), (s, outputs))
+        ]
+        excursion = max(float(np.abs(u(each)).max()) for each in inputs)
+        time_constants = np.geomspace(step, max(longest / 3, 2 * step), LOW_PASSES)
+        return cls(
+            u,
+            s,
+            *rates,
+            excursion,
+            tuple(step * lag for lag in LAGS),
+            tuple(time_constants.tolist()),
+        )
+
+    def linear(self, compared: Compared, rows: Rows) -> FloatArray:
+        """Past and present of both signals, low-passes and play operators.
+
+        Parameters
+        ----------
+        compared : Compared
+        rows : ndarray of int or slice
+            Which samples.
+
+        Returns
+        -------
+        ndarray, shape (rows, m)
+        """
+        dt = compared.record.dt
+        u, s = self.input(compared.record.u), self.simulated(compared.simulated)
+        signals = (u, s, u**2)
+        position = np.arange(len(u))[rows]
+        columns: list[FloatArray] = []
+        for signal in (u, s):
+            columns += [_lagged(signal, lag / dt, position) for lag in self.lags_s]
+        for signal in signals:
+            columns += [
+                _low_pass(signal, dt, time_constant)[rows]
+                for time_constant in self.time_constants_s
+            ]
+        plays, _ = play(u, self.excursion * np.array(THRESHOLDS))
+        return np.column_stack([*columns, plays[rows]])
+
+    def state(self, compared: Compared, rows: Rows) -> FloatArray:
+        """The few signals that everything nonlinear is made of, shape (rows, m)."""
+        dt = compared.record.dt
+        u, s = self.input(compared.record.u), self.simulated(compared.simulated)
+        middle, _ = play(u, [0.3 * self.excursion])
+        columns = (
+            u,
+            s,
+            np.gradient(u, dt) / self.input_rate,
+            np.gradient(s, dt) / self.simulated_rate,
+            middle[:, 0],
+        )
+        return np.column_stack([column[rows] for column in columns])
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Columns made of regressors, standardised by the rows that fit."""
+
+    regressors: Regressors
+    landmarks: Any
+    scaler: Any
+
+    @classmethod
+    def learn(
+        cls, compared: Sequence[Compared], rows: Sequence[Rows]
+    ) -> tuple[Columns, FloatArray]:
+        """Learn landmarks and scales; give the table of those rows as well."""
+        from sklearn.kernel_approximation import Nystroem
+        from sklearn.preprocessing import StandardScaler
+
+        regressors = Regressors.of(compared)
+        pairs = list(zip(compared, rows, strict=True))
+        state = np.concatenate([regressors.state(*pair) for pair in pairs])
+        linear = np.concatenate([regressors.linear(*pair) for pair in pairs])
+        landmarks = Nystroem(
+            gamma=1 / state.shape[1],
+            n_components=min(LANDMARKS, len(state)),
+            random_state=0,
+        ).fit(state)
+        raw = cls._raw(linear, state, landmarks)
+        scaler = StandardScaler().fit(raw)
+        return cls(regressors, landmarks, scaler), cls._whole(scaler, raw)
+
+    def table(self, compared: Compared, rows: Rows) -> FloatArray:
+        """Standardised columns and a constant one, shape (rows, m)."""
+        state = self.regressors.state(compared, rows)
+        linear = self.regressors.linear(compared, rows)
+        return self._whole(self.scaler, self._raw(linear, state, self.landmarks))
+
+    @staticmethod
+    def _raw(linear: FloatArray, state: FloatArray, landmarks: Any) -> FloatArray:
+        first, second = np.triu_indices(state.shape[1])
+        products = state[:, first] * state[:, second]
+        turns = np.hstack([np.tanh(state / width) for width in TURNS])
+        return np.hstack([linear, turns, products, landmarks.transform(state)])
+
+    @staticmethod
+    def _whole(scaler: Any, raw: FloatArray) -> FloatArray:
+        return np.column_stack([scaler.transform(raw), np.ones(len(raw))])
+
+
+def _low_pass(signal: FloatArray, dt: float, time_constant_s: float) -> FloatArray:
+    """First-order low-pass; before the record it rests where that begins."""
+    from scipy.signal import lfilter
+
+    keep = float(np.exp(-dt / time_constant_s))
+    low, _ = lfilter([1 - keep], [1, -keep], signal, zi=[keep * signal[0]])
+    return np.asarray(low)
+
+
+def _lagged(signal: FloatArray, lag: float, position: NDArray[np.intp]) -> FloatArray:
+    """Take a signal some samples ago; before the record it rests where it begins."""
+    at = np.maximum(position - lag, 0)
+    before = np.floor(at).astype(np.intp)
+    after = np.minimum(before + 1, len(signal) - 1)
+    part = at - before
+    return (1 - part) * signal[before] + part * signal[after]
+
+
+def _scale(signals: Sequence[FloatArray]) -> Scale:
+    joined = np.concatenate(signals)
+    spread = float(joined.std())
+    return Scale(float(joined.mean()), spread if spread > 0 else 1.0)
+
+
+def _rms(signals: Sequence[FloatArray]) -> float:
+    value = float(np.sqrt(np.mean(np.square(np.concatenate(signals)))))
+    return value if value > 0 else 1.0
