@@ -263,8 +263,12 @@ def test_the_example_is_what_the_contract_says():
     check_against_schema(GAP, SCHEMA, "example")
 
 
-def test_page_says_every_number_and_word_of_gap_json(tmp_path):
-    page = read(write_report(write_folder(tmp_path)))
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    return read(write_report(write_folder(tmp_path_factory.mktemp("whole"))))
+
+
+def test_page_says_every_number_and_word_of_gap_json(page):
     assert numbers_in(GAP) - NOT_SAID == set(page.numbers)
     for word in words_in(GAP):
         plain = {"um": "µm", "-": "", "repeats": "repeated", "named": "lacks"}
@@ -272,35 +276,39 @@ def test_page_says_every_number_and_word_of_gap_json(tmp_path):
         assert told in page.said or told.replace("-", " ") in page.said
 
 
-def test_page_stands_alone(tmp_path):
-    path = write_report(write_folder(tmp_path))
-    page = read(path)
-    assert path == tmp_path / "report.html"
+def test_page_stands_alone(page):
     assert len(page.sources) >= 8
     assert all(source.startswith("data:image/") for source in page.sources)
     assert not {"script", "link", "iframe"} & set(page.tags)
     assert "Not drawn" not in page.said
 
 
-def test_verdict_comes_first(tmp_path):
-    said = read(write_report(write_folder(tmp_path))).said
-    verdict = said.index("The simulator lacks resonance and creep.")
-    assert verdict < said.index("Effects")
-    assert said.index(GAP["reason"]) < said.index("Where the gap is")
+def test_verdict_comes_first(page):
+    verdict = page.said.index("The simulator lacks resonance and creep.")
+    assert verdict < page.said.index("Effects")
+    assert page.said.index(GAP["reason"]) < page.said.index("Where the gap is")
 
 
 def test_same_input_same_page(tmp_path):
-    folder = write_folder(tmp_path)
-    first = write_report(folder).read_bytes()
+    folder = write_folder(tmp_path, small(), with_curves=False)
+    path = write_report(folder)
+    assert path == tmp_path / "report.html"
+    first = path.read_bytes()
     assert write_report(folder).read_bytes() == first
 
 
+def small(**change):
+    """What the contract asks for and no more."""
+    content = {key: GAP[key] for key in SCHEMA["required"]}
+    content |= {"effects": [], "where": [], "ranking": [], "next_experiment": None}
+    return content | {"verdict": "no-gap"} | change
+
+
 def test_what_is_not_there_is_said(tmp_path):
-    small = {key: GAP[key] for key in SCHEMA["required"]}
-    small |= {"effects": [], "where": [], "ranking": [], "next_experiment": None}
-    small |= {"verdict": "no-gap", "unit": "N"}
-    small["gap"] = GAP["gap"] | {"explained": None, "floor_method": "upper-bound"}
-    folder = write_folder(tmp_path, small, with_curves=False, with_tables=False)
+    power = GAP["gap"] | {"explained": None, "floor_method": "upper-bound"}
+    folder = write_folder(
+        tmp_path, small(gap=power), with_curves=False, with_tables=False
+    )
     said = read(write_report(folder)).said
     assert "There is no gap" in said
     assert "cannot be claimed from it alone" in said
@@ -310,20 +318,20 @@ def test_what_is_not_there_is_said(tmp_path):
     assert "gap.json holds no black box" in said
 
 
-@pytest.mark.parametrize(
-    "key", ["spectrum", "response", "slow", "records", "over_rate"]
-)
-def test_a_missing_curve_is_named(tmp_path, key):
-    folder = write_folder(tmp_path, with_tables=False)
-    left = {name: each for name, each in curves().items() if name != key}
-    (folder / "curves.json").write_text(json.dumps(left))
-    said = read(write_report(folder)).said
-    assert f"Not drawn: curves.json: no {key}." in said
+@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate"])
+def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
+    folder = write_folder(tmp_path, small(), with_tables=False)
+    there = {"units": curves()["units"], key: curves()[key]}
+    (folder / "curves.json").write_text(json.dumps(there))
+    page = read(write_report(folder))
+    assert len(page.sources) == 1
+    for name in ("spectrum", "response", "over_input", "over_rate", "slow", "records"):
+        assert (f"Not drawn: curves.json: no {name}." in page.said) == (name != key)
 
 
 def test_a_range_is_printed_as_one(tmp_path):
-    gap = GAP | {"gap": GAP["gap"] | {"explained": [0.61, 0.97]}}
-    page = read(write_report(write_folder(tmp_path, gap, with_tables=False)))
+    gap = small(gap=GAP["gap"] | {"explained": [0.61, 0.97]})
+    page = read(write_report(write_folder(tmp_path, gap, False, False)))
     assert {0.61, 0.97} <= set(page.numbers)
 
 
@@ -356,8 +364,8 @@ def test_missing_or_broken_files_are_one_line(tmp_path):
 
 
 def test_text_from_outside_is_text(tmp_path):
-    gap = GAP | {"reason": "<script>alert(1)</script>"}
-    page = read(write_report(write_folder(tmp_path, gap)))
+    gap = small(reason="<script>alert(1)</script>")
+    page = read(write_report(write_folder(tmp_path, gap, False, False)))
     assert "script" not in page.tags
 
 

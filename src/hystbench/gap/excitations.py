@@ -25,6 +25,10 @@ AMPLITUDES = (0.25, 0.5, 1.0)
 BIASES = 5
 
 
+#: Value and unit by name: all that makes an excitation.
+Parameters = dict[str, tuple[float | list[float], str]]
+
+
 @dataclass(frozen=True)
 class Limits:
     """What an experiment may ask of the actuator.
@@ -96,7 +100,7 @@ class Excitation:
     """
 
     kind: str
-    parameters: dict[str, tuple[float | list[float], str]]
+    parameters: Parameters
     dt: float
     u: FloatArray
 
@@ -203,8 +207,12 @@ def _sines(limits: Limits, unit: str) -> Iterator[Excitation]:
             u = middle + signals.sine(
                 frequency_hz=frequency, amplitude=amplitude, **common
             )
-            about = {"frequency_hz": (frequency, "Hz"), "amplitude": (amplitude, unit)}
-            yield _made("sine", {**about, "bias": (middle, unit)}, limits, u)
+            about: Parameters = {
+                "frequency_hz": (frequency, "Hz"),
+                "amplitude": (amplitude, unit),
+                "bias": (middle, unit),
+            }
+            yield _made("sine", about, limits, u)
         # half of the rate moves between levels, half is left for the loops
         amplitude = min(half / BIASES, most / 2)
         levels = np.linspace(-1, 1, BIASES) * (half - amplitude)
@@ -212,9 +220,9 @@ def _sines(limits: Limits, unit: str) -> Iterator[Excitation]:
         about = {
             "frequency_hz": (frequency, "Hz"),
             "amplitude": (amplitude, unit),
+            "bias_levels": ((middle + levels).tolist(), unit),
         }
-        biases = {"bias_levels": ((middle + levels).tolist(), unit)}
-        yield _made("biased-minor-loops", {**about, **biases}, limits, u)
+        yield _made("biased-minor-loops", about, limits, u)
 
 
 def _minor_loops(
@@ -232,14 +240,15 @@ def _through(
     levels: FloatArray, count: int, limits: Limits, part: float = 1.0
 ) -> FloatArray:
     """Hold levels for equal times, moving between them at a part of the rate."""
-    held = levels[np.minimum(np.arange(count) * len(levels) // count, len(levels) - 1)]
-    step = part * limits.rate * limits.dt
-    out = np.empty(count)
-    at = 0.0
-    for place, aim in enumerate(held):
-        at += min(max(aim - at, -step), step)
-        out[place] = at
-    return out
+    # corners of the path, in samples: where a move begins, and where it ends
+    hold, step = count / len(levels), part * limits.rate * limits.dt
+    corners, values, at = [], [], 0.0
+    for place, level in enumerate(levels):
+        move = min(max(level - at, -step * hold), step * hold)
+        corners += [place * hold, place * hold + abs(move) / step]
+        values += [at, at + move]
+        at += move
+    return np.asarray(np.interp(np.arange(count), corners, values))
 
 
 def _wide_bands(limits: Limits, unit: str) -> Iterator[Excitation]:
@@ -248,9 +257,10 @@ def _wide_bands(limits: Limits, unit: str) -> Iterator[Excitation]:
     frequencies = _frequencies(limits)
     low, high = float(frequencies[0]), float(frequencies[-1])
     amplitude = min(half, limits.rate / (2 * np.pi * high))
-    about = {"from_hz": (low, "Hz"), "to_hz": (high, "Hz"), "bias": (middle, unit)}
+    about: Parameters = {"from_hz": (low, "Hz"), "to_hz": (high, "Hz")}
     u = signals.chirp(from_hz=low, to_hz=high, amplitude=amplitude, **common)
-    yield _made("chirp", {**about, "amplitude": (amplitude, unit)}, limits, middle + u)
+    about |= {"amplitude": (amplitude, unit), "bias": (middle, unit)}
+    yield _made("chirp", about, limits, middle + u)
     raw = signals.sum_of_sines(
         frequencies_hz=frequencies.tolist(),
         amplitudes=[1.0] * len(frequencies),
@@ -259,8 +269,11 @@ def _wide_bands(limits: Limits, unit: str) -> Iterator[Excitation]:
     )
     fastest = float(np.abs(np.diff(raw)).max()) / limits.dt
     each = min(half / float(np.abs(raw).max()), limits.rate / fastest)
-    about["amplitude_each"] = (each, unit)
-    about["sines"] = (float(len(frequencies)), "")
+    about = {
+        "frequencies_hz": (frequencies.tolist(), "Hz"),
+        "amplitude_each": (each, unit),
+        "bias": (middle, unit),
+    }
     yield _made("multisine", about, limits, middle + each * raw)
 
 
@@ -269,7 +282,7 @@ def _slow(limits: Limits, unit: str) -> Iterator[Excitation]:
     count = round(_common(limits)["duration_s"] / limits.dt)
     for part in AMPLITUDES:
         levels = part * half * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
-        about: dict[str, tuple[float | list[float], str]] = {
+        about: Parameters = {
             "levels": ((middle + levels).tolist(), unit),
             "hold_s": (count * limits.dt / len(levels), "s"),
         }
@@ -287,7 +300,7 @@ def _slow(limits: Limits, unit: str) -> Iterator[Excitation]:
 
 def _made(
     kind: str,
-    about: dict[str, tuple[float | list[float], str]],
+    about: Parameters,
     limits: Limits,
     u: FloatArray,
 ) -> Excitation:

@@ -77,16 +77,17 @@ class Regressors:
         step = min(record.dt for record in records)
         longest = max(record.dt * len(record) for record in records)
         u, s = _scale(inputs), _scale(outputs)
-        rates = [
+        input_rate, simulated_rate = (
             _rms([np.gradient(scale(x), dt) for x, dt in zip(each, steps, strict=True)])
             for scale, each in ((u, inputs), (s, outputs))
-        ]
+        )
         excursion = max(float(np.abs(u(each)).max()) for each in inputs)
         time_constants = np.geomspace(step, max(longest / 3, 2 * step), LOW_PASSES)
         return cls(
             u,
             s,
-            *rates,
+            input_rate,
+            simulated_rate,
             excursion,
             tuple(step * lag for lag in LAGS),
             tuple(time_constants.tolist()),
@@ -197,7 +198,7 @@ def _lagged(signal: FloatArray, lag: float, position: NDArray[np.intp]) -> Float
     before = np.floor(at).astype(np.intp)
     after = np.minimum(before + 1, len(signal) - 1)
     part = at - before
-    return (1 - part) * signal[before] + part * signal[after]
+    return np.asarray((1 - part) * signal[before] + part * signal[after])
 
 
 def _scale(signals: Sequence[FloatArray]) -> Scale:

@@ -159,31 +159,32 @@ def shrink(
     upper = floor_method == "upper-bound"
     shrunk = []
     for record, *simulated in zip(records, before, after, strict=True):
-        left = []
-        for output in simulated:
-            residual, scored = left_over(record, output, nuisance)
-            left.append(residual)
-        sizes = [rms(residual[scored]) for residual in left]
+        (old, scored), (new, _) = (
+            left_over(record, output, nuisance) for output in simulated
+        )
+        size = rms(old[scored]), rms(new[scored])
         shrunk.append(
             RecordShrink(
                 record.name,
-                *sizes,
-                share_explained(*sizes, noise_floor, upper),
+                *size,
+                share_explained(*size, noise_floor, upper),
                 scored,
-                *left,
-                spectra(*(each[scored] for each in left), record.dt, noise_floor),
+                old,
+                new,
+                spectra(old[scored], new[scored], record.dt, noise_floor),
             )
         )
     pairs = [
         (item.residual_before[item.scored], item.residual_after[item.scored])
         for item in shrunk
     ]
-    sizes = [rms(np.concatenate(each)) for each in zip(*pairs, strict=True)]
+    olds, news = zip(*pairs, strict=True)
+    size = rms(np.concatenate(olds)), rms(np.concatenate(news))
     return Shrink(
-        *sizes,
+        *size,
         noise_floor,
         floor_method,
-        share_explained(*sizes, noise_floor, upper),
+        share_explained(*size, noise_floor, upper),
         bootstrap_interval(pairs, noise_floor, upper),
         tuple(shrunk),
     )

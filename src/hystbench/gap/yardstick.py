@@ -123,7 +123,7 @@ class BlackBox:
             columns,
             weights,
             penalty,
-            _explained(share @ before, share @ after, share @ floor),
+            _explained(*(float(share @ each) for each in (before, after, floor))),
             {
                 item.record.name: _explained(*powers)
                 for item, *powers in zip(compared, before, after, floor, strict=True)

@@ -12,7 +12,12 @@ from hystbench.gap.report.read import Content
 
 TEMPLATE = "report.html.j2"
 #: What gap.json may leave out.
-OPTIONAL = {"records": [], "ladder": [], "black_box": None, "base_parameters": {}}
+OPTIONAL: dict[str, Any] = {
+    "records": [],
+    "ladder": [],
+    "black_box": None,
+    "base_parameters": {},
+}
 
 
 def page(content: Content) -> str:
@@ -78,9 +83,9 @@ def _ranking(gap: dict[str, Any]) -> Picture | None:
         pictures.bars,
         names,
         gains,
-        "gain over the base in the score that ranks (named effects blue)",
+        "gain in the score that ranks",
         picked,
-        words="Gain of each effect tried, the best on top",
+        words="Gain over the base of each effect tried; named effects blue",
         height=0.6 + 0.2 * len(names),
     )
 
@@ -138,7 +143,8 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
             lambda: draw(
                 pictures.response,
                 curves["response"],
-                words="Best linear approximation of measurement over simulation",
+                words="Best linear approximation of measurement over simulation; "
+                "dashed where the simulation is right",
                 height=2.0,
                 panels=(1, 3),
             ),
@@ -150,7 +156,8 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 curves.get("over_input"),
                 curves.get("over_rate"),
                 units,
-                words="Residual over the input, by branch, and over the input's rate",
+                words="Residual over the input, by branch, and over the input's rate; "
+                "noise floor grey",
                 panels=(1, 2),
             ),
         ),

@@ -134,8 +134,8 @@ def series(axes: Any, tables: Sequence[HoldOut], floor: float, unit: str) -> Non
             outputs.plot(time[part], values[part], line, color=color, label=name)
         outputs.set_title(table.name)
         outputs.set_ylabel(f"output ({shown})")
-        for values, color, line in zip(left, (BEFORE, AFTER), ("--", "-"), strict=True):
-            residuals.plot(*_hull(time, values), line, color=color, linewidth=0.8)
+        for values, color in zip(left, (BEFORE, AFTER), strict=True):
+            residuals.plot(*_hull(time, values), color=color, linewidth=0.8)
         residuals.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
         residuals.set_title("residual, noise floor grey")
         residuals.set_ylabel(f"({shown})")
@@ -167,7 +167,7 @@ def response(axes: Sequence[Axes], curve: dict[str, Any]) -> None:
         _logarithmic(panel, "x")
         panel.set_xlabel("frequency (Hz)")
         panel.set_ylabel(f"{name} {units[name]}")
-    axes[0].set_title("measurement over simulation")
+    axes[2].set_ylim(0, 1.05)
 
 
 def spectrum(axes: Sequence[Axes], curve: dict[str, Any], unit: str) -> None:
