@@ -340,6 +340,14 @@ def test_a_range_is_printed_as_one(tmp_path):
     [
         ({"verdict": "nmaed"}, r"gap\.json: verdict: 'nmaed' is unknown; "),
         ({"gap": {}}, r"gap\.json: gap: expected the key 'before'"),
+        (
+            {"records": ["held-1"]},
+            r"gap\.json: records: 0: 'held-1'; expected a mapping",
+        ),
+        (
+            {"ladder": [{"name": "base"}]},
+            r"gap\.json: ladder: 0: expected the key 'rms'",
+        ),
         ({"efects": []}, r"gap\.json: unknown key 'efects'; did you mean 'effects'"),
     ],
 )

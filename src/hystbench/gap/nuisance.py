@@ -89,20 +89,22 @@ def left_over(
     return without_nuisance(residual, nuisance(record), scored), scored
 
 
-def drift_and_mains(mains_hz: Sequence[float] = (), drift: bool = True) -> Nuisance:
-    """Regressors of an offset and slope, and of tones of unknown phase.
+def offset_and_mains(mains_hz: Sequence[float] = (), offset: bool = True) -> Nuisance:
+    """Regressors of an offset and of tones of unknown phase.
+
+    No slope: what the first part of a record says of it, the rest would magnify.
 
     Parameters
     ----------
     mains_hz : sequence of float
         Frequencies of the tones.
-    drift : bool
-        Whether the record may have an offset and a slope of its own.
+    offset : bool
+        Whether the record may have one of its own, as a path of drift leaves it.
     """
 
     def regressors(record: Record) -> FloatArray:
         time = record.time
-        columns = [np.ones_like(time), time] if drift else []
+        columns = [np.ones_like(time)] if offset else []
         for frequency in mains_hz:
             angle = 2 * np.pi * frequency * time
             columns += [np.cos(angle), np.sin(angle)]

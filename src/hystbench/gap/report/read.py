@@ -10,11 +10,55 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError, nearest
-from hystbench.gap.schema import SCHEMA
+from hystbench.gap.schema import NAMES, NUMBER, OPTIONAL, SCHEMA
 from hystbench.record import FloatArray
 from hystbench.schema import check_against_schema
 
 COLUMNS = ("time_s", "measured", "before", "after")
+
+
+def _items(**properties: Any) -> dict[str, Any]:
+    each = {"type": "object", "required": list(properties), "properties": properties}
+    return {"type": "array", "items": each}
+
+
+WORD = {"type": "string"}
+#: What the page needs of the parts that the contract leaves open.
+OPEN_PARTS: dict[str, Any] = {
+    "properties": {
+        "records": _items(name=WORD, before=NUMBER, after=NUMBER),
+        "ladder": _items(name=WORD, rms=NUMBER),
+        "base_parameters": {"type": "object"},
+        "black_box": {
+            "properties": {
+                "explained_on_folds": OPTIONAL,
+                "after": NUMBER,
+                "records": _items(
+                    name=WORD, before=NUMBER, after=NUMBER, named=NUMBER, outside=NAMES
+                ),
+            }
+        },
+        "next_experiment": {
+            "properties": {
+                "excitation": WORD,
+                "sentence": WORD,
+                "sampling_interval_s": NUMBER,
+                "separation": NUMBER,
+                "existing_separation": NUMBER,
+                "parameters": {
+                    "type": "object",
+                    "additionalProperties": {
+                        "type": "object",
+                        "required": ["value", "unit"],
+                    },
+                },
+                "pairs": _items(
+                    names=NAMES, separation=NUMBER, existing_separation=NUMBER
+                ),
+            }
+        },
+    }
+}
 
 
 @dataclass(frozen=True, repr=False)
@@ -58,7 +102,16 @@ def read_content(folder: Path) -> Content:
     place = folder / "gap.json"
     gap = _json(place)
     check_against_schema(gap, SCHEMA, str(place))
-    tables = sorted((folder / "holdout").glob("*.csv"))
+    check_against_schema(gap, OPEN_PARTS, str(place))
+    order = [item["name"] for item in gap.get("records", [])]
+    tables = sorted(
+        (folder / "holdout").glob("*.csv"),
+        # in the order of gap.json; those that it does not name come last
+        key=lambda path: (
+            order.index(path.stem) if path.stem in order else len(order),
+            path.stem,
+        ),
+    )
     curves = folder / "curves.json"
     found = _json(curves) if curves.is_file() else None
     if found is not None and not isinstance(found, dict):

@@ -9,6 +9,9 @@ from markupsafe import Markup
 
 from hystbench.figures.style import unit_text
 
+#: A narrow space that does not break.
+NARROW = "\u202f"
+
 VERDICTS = {
     "named": "The simulator lacks {effects}.",
     "parameters": "The simulator lacks no effect: other values of its parameters, "
@@ -72,25 +75,24 @@ def with_error(value: Any, error: Any) -> Markup:
     return number(value, digits) + Markup(" ± ") + number(error, 2)
 
 
-def percent(share: float | None) -> Markup:
+def percent(share: float | None, decimals: int = 0) -> Markup:
     """Print a share in per cent."""
     if share is None:
         return number(None)
-    text = f"{100 * share:.1f}" if 0.9 < abs(share) < 1 else f"{100 * share:.0f}"
-    shown = f"{_minus(text)} %"
+    shown = _minus(f"{100 * share:.{decimals}f}") + NARROW + "%"
     return Markup('<data value="{}">{}</data>').format(repr(float(share)), shown)
 
 
 def explained(share: Any) -> Markup:
     """Print the share that is gone: a number, a range or none."""
     if isinstance(share, list):
-        return percent(share[0]) + Markup(" to ") + percent(share[-1])
-    return percent(share)
+        return percent(share[0], 1) + Markup(" to ") + percent(share[-1], 1)
+    return percent(share, 1)
 
 
 def p_value(value: float) -> Markup:
     """Print a p-value; below 0.001 the exact one matters to nobody."""
-    shown = "< 0.001" if value < 0.001 else f"{value:.2g}"
+    shown = f"<{NARROW}0.001" if value < 0.001 else f"{value:.2g}"
     return Markup('<data value="{}">{}</data>').format(repr(float(value)), shown)
 
 
