@@ -74,6 +74,17 @@ def test_too_short_a_record_is_one_clear_line(count, length):
         make_folds(records)
 
 
+def test_blocks_may_be_asked_for_however_many_records():
+    records = [record(sine(1 + place)) for place in range(6)]
+    assert all(
+        mask.any() and not mask.all()
+        for fold in make_folds(records, whole=False)
+        for mask in (*fold.train, *fold.validation)
+    )
+    with pytest.raises(InputError, match=r"^1 fit record; "):
+        make_folds(records[:1], whole=True)
+
+
 def test_no_records_is_one_clear_line():
     with pytest.raises(InputError, match=r"^no fit records"):
         make_folds([])

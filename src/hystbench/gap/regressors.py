@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,10 @@ Rows = NDArray[np.intp] | slice
 LAGS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 #: Low-passes from the shortest sampling interval to a third of the longest record.
 LOW_PASSES = 8
+#: Damped modes from three periods in the longest record to a fifth of the sampling
+#: frequency.
+MODES = 12
+DAMPING = 0.15
 #: Thresholds of play operators, as parts of the input's largest excursion.
 THRESHOLDS = (0.05, 0.15, 0.3, 0.5, 0.75)
 
@@ -66,6 +70,7 @@ class Regressors:
     excursion: float
     lags_s: tuple[float, ...]
     time_constants_s: tuple[float, ...]
+    frequencies_hz: tuple[float, ...]
 
     @classmethod
     def of(cls, compared: Sequence[Compared]) -> Regressors:
@@ -83,6 +88,7 @@ class Regressors:
         )
         excursion = max(float(np.abs(u(each)).max()) for each in inputs)
         time_constants = np.geomspace(step, max(longest / 3, 2 * step), LOW_PASSES)
+        frequencies = np.geomspace(3 / longest, 0.2 / step, MODES)
         return cls(
             u,
             s,
@@ -91,6 +97,7 @@ class Regressors:
             excursion,
             tuple(step * lag for lag in LAGS),
             tuple(time_constants.tolist()),
+            tuple(frequencies.tolist()),
         )
 
     def linear(self, compared: Compared, rows: Rows) -> FloatArray:
@@ -121,6 +128,15 @@ class Regressors:
         plays, _ = play(u, self.excursion * np.array(THRESHOLDS))
         return np.column_stack([*columns, plays[rows]])
 
+    def modes(self, compared: Compared, rows: Rows) -> FloatArray:
+        """The simulated output through damped modes, shape (rows, m)."""
+        s, dt = self.simulated(compared.simulated), compared.record.dt
+        columns: list[FloatArray] = []
+        for frequency in self.frequencies_hz:
+            ringing = _ringing(s, dt, frequency)[rows]
+            columns += [ringing.real, ringing.imag]
+        return np.column_stack(columns)
+
     def state(self, compared: Compared, rows: Rows) -> FloatArray:
         """The few signals that everything nonlinear is made of, shape (rows, m)."""
         dt = compared.record.dt
@@ -136,6 +152,10 @@ class Regressors:
         return np.column_stack([column[rows] for column in columns])
 
 
+#: Families of columns that may be left out: what helps one gap is ballast for another.
+Family = Literal["plain", "modes", "landmarks"]
+
+
 @dataclass(frozen=True)
 class Columns:
     """Columns made of regressors, standardised by the rows that fit."""
@@ -143,6 +163,7 @@ class Columns:
     regressors: Regressors
     landmarks: Any
     scaler: Any
+    families: tuple[Family, ...]  # of each column
 
     @classmethod
     def learn(
@@ -155,32 +176,44 @@ class Columns:
         regressors = Regressors.of(compared)
         pairs = list(zip(compared, rows, strict=True))
         state = np.concatenate([regressors.state(*pair) for pair in pairs])
-        linear = np.concatenate([regressors.linear(*pair) for pair in pairs])
         landmarks = Nystroem(
             gamma=1 / state.shape[1],
             n_components=min(LANDMARKS, len(state)),
             random_state=0,
         ).fit(state)
-        raw = cls._raw(linear, state, landmarks)
+        parts = [_parts(regressors, landmarks, *pair) for pair in pairs]
+        widths = {name: part.shape[1] for name, part in parts[0].items()}
+        families = [name for name, width in widths.items() for _ in range(width)]
+        raw = np.concatenate([np.hstack(list(part.values())) for part in parts])
         scaler = StandardScaler().fit(raw)
-        return cls(regressors, landmarks, scaler), cls._whole(scaler, raw)
+        return cls(regressors, landmarks, scaler, (*families, "plain")), _whole(
+            scaler, raw
+        )
 
     def table(self, compared: Compared, rows: Rows) -> FloatArray:
         """Standardised columns and a constant one, shape (rows, m)."""
-        state = self.regressors.state(compared, rows)
-        linear = self.regressors.linear(compared, rows)
-        return self._whole(self.scaler, self._raw(linear, state, self.landmarks))
+        parts = _parts(self.regressors, self.landmarks, compared, rows)
+        return _whole(self.scaler, np.hstack(list(parts.values())))
 
-    @staticmethod
-    def _raw(linear: FloatArray, state: FloatArray, landmarks: Any) -> FloatArray:
-        first, second = np.triu_indices(state.shape[1])
-        products = state[:, first] * state[:, second]
-        turns = np.hstack([np.tanh(state / width) for width in TURNS])
-        return np.hstack([linear, turns, products, landmarks.transform(state)])
 
-    @staticmethod
-    def _whole(scaler: Any, raw: FloatArray) -> FloatArray:
-        return np.column_stack([scaler.transform(raw), np.ones(len(raw))])
+def _parts(
+    regressors: Regressors, landmarks: Any, compared: Compared, rows: Rows
+) -> dict[Family, FloatArray]:
+    """Columns of each family, not yet standardised."""
+    state = regressors.state(compared, rows)
+    first, second = np.triu_indices(state.shape[1])
+    turns = [np.tanh(state / width) for width in TURNS]
+    products = state[:, first] * state[:, second]
+    linear = regressors.linear(compared, rows)
+    return {
+        "plain": np.hstack([linear, *turns, products]),
+        "modes": regressors.modes(compared, rows),
+        "landmarks": landmarks.transform(state),
+    }
+
+
+def _whole(scaler: Any, raw: FloatArray) -> FloatArray:
+    return np.column_stack([scaler.transform(raw), np.ones(len(raw))])
 
 
 def _low_pass(signal: FloatArray, dt: float, time_constant_s: float) -> FloatArray:
@@ -190,6 +223,14 @@ def _low_pass(signal: FloatArray, dt: float, time_constant_s: float) -> FloatArr
     keep = float(np.exp(-dt / time_constant_s))
     low, _ = lfilter([1 - keep], [1, -keep], signal, zi=[keep * signal[0]])
     return np.asarray(low)
+
+
+def _ringing(signal: FloatArray, dt: float, frequency_hz: float) -> Any:
+    """Pass through a damped mode, complex: its two parts are a quarter period apart."""
+    from scipy.signal import lfilter
+
+    pole = np.exp((-DAMPING + 1j) * 2 * np.pi * frequency_hz * dt)
+    return lfilter([1 - abs(pole)], [1, -pole], signal)
 
 
 def _lagged(signal: FloatArray, lag: float, position: NDArray[np.intp]) -> FloatArray:

@@ -15,7 +15,7 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.folds import Fold, Mask
-from hystbench.gap.regressors import Columns
+from hystbench.gap.regressors import Columns, Family
 from hystbench.record import FloatArray, Record
 
 #: Rows of all records together that are fitted: neighbouring samples say the same.
@@ -23,6 +23,10 @@ ROWS = 6000
 #: Ridge penalties to choose from, per row of standardised columns; the largest leaves
 #: next to nothing, where nothing carries over from one fold to another.
 PENALTIES = np.geomspace(1e-7, 1e3, 11)
+#: Families of columns that are left out, one choice after another.
+LEFT_OUT: tuple[tuple[Family, ...], ...] = ((), ("modes",), ("modes", "landmarks"))
+#: Penalty of a column that is left out.
+SHUT = 1e9
 #: Amplitude or rate beyond the training records' largest by more is outside.
 BEYOND = 1.02
 
@@ -33,7 +37,8 @@ class BlackBox:
 
     Columns: lags, low-passes and play operators of input and simulated output, the
     products of a few signals and radial basis functions of them. Weights by ridge
-    regression; the penalty for a fold is chosen on the other folds.
+    regression; their penalty, and which families of columns take part, is chosen for a
+    fold on the other folds.
 
     Attributes
     ----------
@@ -45,8 +50,6 @@ class BlackBox:
         The same, record by record.
     power_on_folds : float
         Mean square of what is left on the held-out samples.
-    penalty : float
-        The chosen one, per row.
 
     References
     ----------
@@ -56,7 +59,6 @@ class BlackBox:
 
     columns: Columns
     weights: FloatArray
-    penalty: float
     explained_on_folds: float | None
     explained_by_record: dict[str, float | None]
     power_on_folds: float
@@ -95,9 +97,11 @@ class BlackBox:
         judged = _joined([fold.validation for fold in folds], rows)
         moments = _Moments.of(table, target, train)
 
-        # A fold's penalty is the one that does best on the other folds: its own samples
-        # choose neither weights nor penalty by how well they are predicted.
-        solved = [moments.solve(k, PENALTIES) for k in range(len(folds))]
+        choices = _choices(columns.families)
+
+        # A fold's penalties are those that do best on the other folds: its own samples
+        # choose neither weights nor penalties by how well they are predicted.
+        solved = [moments.solve(k, choices) for k in range(len(folds))]
         errors = np.array(
             [
                 _mean_squares(table, target, held, weights)
@@ -108,8 +112,8 @@ class BlackBox:
         for k, held in enumerate(judged):
             best = int(np.argmin(np.delete(errors, k, axis=0).mean(axis=0)))
             predicted[held] = table[held] @ solved[k][best]
-        penalty = float(PENALTIES[np.argmin(errors.mean(axis=0))])
-        (weights,) = moments.solve(None, [penalty])
+        best = int(np.argmin(errors.mean(axis=0)))
+        (weights,) = moments.solve(None, [choices[best]])
 
         floor = np.broadcast_to(np.square(floor_rms), len(compared))
         left = np.square(target - predicted)
@@ -122,7 +126,6 @@ class BlackBox:
         return cls(
             columns,
             weights,
-            penalty,
             _explained(*(float(share @ each) for each in (before, after, floor))),
             {
                 item.record.name: _explained(*powers)
@@ -187,20 +190,19 @@ class _Moments:
             np.stack([table[group].T @ target[group] for group in groups]),
         )
 
-    def solve(self, fold: int | None, penalties: Any) -> list[FloatArray]:
-        """Weights for each penalty, fitted to what trains a fold, or to all rows."""
+    def solve(
+        self, fold: int | None, choices: Sequence[FloatArray]
+    ) -> list[FloatArray]:
+        """Weights for each choice, fitted to what trains a fold, or to all rows."""
         from scipy.linalg import cho_factor, cho_solve
 
         used = slice(None) if fold is None else self.patterns[:, fold] > 0
         square, mixed = self.square[used].sum(axis=0), self.mixed[used].sum(axis=0)
         rows = self.counts[used].sum()
-        out = []
-        for penalty in penalties:
-            # the constant column, the last one, is hardly held back
-            ridge = np.full(len(square), penalty * rows)
-            ridge[-1] = PENALTIES[0] * rows
-            out.append(cho_solve(cho_factor(square + np.diag(ridge)), mixed))
-        return out
+        return [
+            cho_solve(cho_factor(square + np.diag(rows * ridge)), mixed)
+            for ridge in choices
+        ]
 
 
 def _check(compared: Sequence[Compared], folds: Sequence[Fold]) -> None:
@@ -211,6 +213,18 @@ def _check(compared: Sequence[Compared], folds: Sequence[Fold]) -> None:
                 f"folds of {len(fold.validation)} records do not fit these "
                 f"{len(compared)} records; expected those of make_folds"
             )
+
+
+def _choices(families: Sequence[Family]) -> list[FloatArray]:
+    """Penalties of the columns, per row: every size with every family left out."""
+    choices = []
+    for left_out in LEFT_OUT:
+        shut = np.array([family in left_out for family in families])
+        for penalty in PENALTIES:
+            ridge = np.where(shut, SHUT, penalty)
+            ridge[-1] = PENALTIES[0]  # the constant column is hardly held back
+            choices.append(ridge)
+    return choices
 
 
 def _rows(lengths: Sequence[int]) -> list[Any]:
