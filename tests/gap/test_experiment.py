@@ -7,12 +7,13 @@ from hypothesis import strategies as st
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.excitations import Limits, candidates, write_experiment
+from hystbench.gap.excitations import candidates, write_experiment
 from hystbench.gap.experiment import (
     next_experiment,
     parameter_tangents,
     separation,
 )
+from hystbench.gap.limits import Limits
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
 

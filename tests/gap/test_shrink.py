@@ -4,14 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
+from hystbench.gap.explained import bootstrap_interval, share_explained
 from hystbench.gap.nuisance import offset_and_mains, split_first, without_nuisance
-from hystbench.gap.shrink import (
-    bootstrap_interval,
-    ladder,
-    share_explained,
-    shrink,
-    spectra,
-)
+from hystbench.gap.shrink import ladder, shrink, spectra
 from tests.gap.made import record, sine
 
 LEVELS = st.floats(0.01, 10)

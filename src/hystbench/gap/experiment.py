@@ -11,7 +11,8 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.compared import rms
-from hystbench.gap.excitations import Excitation, Limits, candidates
+from hystbench.gap.excitations import Excitation, candidates
+from hystbench.gap.limits import Limits
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 

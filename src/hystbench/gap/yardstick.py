@@ -16,6 +16,7 @@ from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.folds import Fold, Mask
 from hystbench.gap.regressors import Columns, Family
+from hystbench.gap.ridge import Moments
 from hystbench.record import FloatArray, Record
 
 #: Rows of all records together that are fitted: neighbouring samples say the same.
@@ -95,7 +96,7 @@ class BlackBox:
         )
         train = _joined([fold.train for fold in folds], rows)
         judged = _joined([fold.validation for fold in folds], rows)
-        moments = _Moments.of(table, target, train)
+        moments = Moments.of(table, target, train)
 
         choices = _choices(columns.families)
 
@@ -163,46 +164,6 @@ class BlackBox:
         if _fastest(record) > BEYOND * self.largest_rate:
             ways.append("rate")
         return tuple(ways)
-
-
-@dataclass(frozen=True)
-class _Moments:
-    """Normal equations of the rows that share the folds which they train.
-
-    One pass over the rows serves every fold and penalty.
-    """
-
-    patterns: FloatArray  # shape (patterns, folds), 1 where the rows train the fold
-    counts: FloatArray  # shape (patterns,)
-    square: FloatArray  # shape (patterns, m, m)
-    mixed: FloatArray  # shape (patterns, m)
-
-    @classmethod
-    def of(cls, table: FloatArray, target: FloatArray, train: FloatArray) -> _Moments:
-        patterns, which = np.unique(train.T, axis=0, return_inverse=True)
-        groups = [
-            np.flatnonzero(which.ravel() == each) for each in range(len(patterns))
-        ]
-        return cls(
-            patterns.astype(np.float64),
-            np.array([len(group) for group in groups], dtype=np.float64),
-            np.stack([table[group].T @ table[group] for group in groups]),
-            np.stack([table[group].T @ target[group] for group in groups]),
-        )
-
-    def solve(
-        self, fold: int | None, choices: Sequence[FloatArray]
-    ) -> list[FloatArray]:
-        """Weights for each choice, fitted to what trains a fold, or to all rows."""
-        from scipy.linalg import cho_factor, cho_solve
-
-        used = slice(None) if fold is None else self.patterns[:, fold] > 0
-        square, mixed = self.square[used].sum(axis=0), self.mixed[used].sum(axis=0)
-        rows = self.counts[used].sum()
-        return [
-            cho_solve(cho_factor(square + np.diag(rows * ridge)), mixed)
-            for ridge in choices
-        ]
 
 
 def _check(compared: Sequence[Compared], folds: Sequence[Fold]) -> None:
