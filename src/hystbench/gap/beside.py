@@ -1,0 +1,59 @@
+"""What the black box reaches on hold-out records, beside the named effects."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from hystbench.gap.nuisance import Nuisance
+from hystbench.gap.shrink import Shrink, records_mapping, shrink
+from hystbench.gap.yardstick import BlackBox
+from hystbench.record import FloatArray, Record
+
+
+def black_box_mapping(
+    box: BlackBox,
+    records: Sequence[Record],
+    simulated: Sequence[FloatArray],
+    named: Shrink,
+    nuisance: Nuisance | None = None,
+) -> dict[str, Any]:
+    """Give what gap.json holds under ``black_box``.
+
+    Parameters
+    ----------
+    box : BlackBox
+    records : sequence of Record
+        The hold-out records.
+    simulated : sequence of ndarray, shape (n,) each
+        Output of the base, which the black box corrects.
+    named : Shrink
+        What the named effects reach on the same records.
+    nuisance : callable, optional
+        The same as for ``named``.
+
+    Returns
+    -------
+    dict
+        ``explained_on_folds``, and on hold-out records ``after`` (RMS), ``explained``
+        and ``records``; each of these has ``named`` (RMS after the named effects) and
+        ``outside`` (in what the record lies outside the training range).
+    """
+    corrected = [
+        output + box.predict(record, output)
+        for record, output in zip(records, simulated, strict=True)
+    ]
+    reached = shrink(
+        records, simulated, corrected, named.noise_floor, named.floor_method, nuisance
+    )
+    rows = records_mapping(reached)
+    for row, record, other in zip(rows, records, named.records, strict=True):
+        row["named"] = other.after
+        row["outside"] = list(box.outside(record))
+    explained = reached.explained
+    return {
+        "explained_on_folds": box.explained_on_folds,
+        "after": reached.after,
+        "explained": list(explained) if isinstance(explained, tuple) else explained,
+        "records": rows,
+    }

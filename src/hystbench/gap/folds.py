@@ -1,0 +1,148 @@
+"""Cross-validation over the fit records: what is fitted and what only judges.
+
+A simulation always runs freely over a whole record; only the scoring is masked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.errors import InputError
+from hystbench.record import FloatArray, Record
+
+Mask = NDArray[np.bool_]
+
+#: With so many records whole ones are held out; with fewer, blocks of each.
+RECORDS = 3
+#: Never more folds: each of them is a refit of every candidate.
+FOLDS = 5
+#: Contiguous blocks of a record, where there are few records.
+BLOCKS = 4
+#: Part of a block on each side of it that neither fits nor judges.
+GUARD = 0.1
+#: Samples without which a block says nothing.
+SHORTEST = 25
+
+
+@dataclass(frozen=True)
+class Fold:
+    """What fits and what judges, a mask over the samples of each record.
+
+    Parameters
+    ----------
+    train, validation : tuple of ndarray of bool
+        One mask a record, in the records' order, shape (n,) each. No sample is in
+        both; the samples of a guard gap are in neither.
+    """
+
+    train: tuple[Mask, ...]
+    validation: tuple[Mask, ...]
+
+
+def make_folds(
+    records: Sequence[Record], whole: bool | None = None
+) -> tuple[Fold, ...]:
+    """Divide the fit records into folds.
+
+    Three records or more: whole records are held out, in at most five groups.
+    Records are dealt to the groups in the order of their rate, so that a fold asks
+    for rates between those it was fitted to and not for all of the fastest ones.
+    Fewer records: each is cut into four contiguous blocks, of whole periods where it
+    has as many, and a fold holds out one block of each record. A guard gap of a tenth
+    of a block keeps what a block remembers of its neighbours out of the fit.
+
+    Every sample judges in exactly one fold.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Those with ``use: fit``.
+    whole : bool, optional
+        Whether whole records are held out. By default where there are three; False
+        asks the easier question, whether a model interpolates within each record: of
+        sines of one frequency a record, a free model cannot guess the next frequency.
+
+    Returns
+    -------
+    tuple of Fold
+
+    Raises
+    ------
+    InputError
+        If there is no record, or one is too short.
+    """
+    if not records:
+        raise InputError("no fit records; expected at least one with 'use: fit'")
+    if whole is None:
+        whole = len(records) >= RECORDS
+    if whole and len(records) < 2:
+        raise InputError("1 fit record; expected at least 2 to hold out a whole one")
+    shortest = SHORTEST if whole else SHORTEST * BLOCKS
+    for record in records:
+        if len(record) < shortest:
+            raise InputError(
+                f"record {record.name}: {len(record)} samples; cross-validation "
+                f"expects at least {shortest}"
+            )
+    return _by_record(records) if whole else _by_block(records)
+
+
+def chosen(values: Sequence[FloatArray], masks: Sequence[Mask]) -> FloatArray:
+    """Join the masked samples of all records.
+
+    Parameters
+    ----------
+    values : sequence of ndarray, shape (n,) or (n, m) each
+    masks : sequence of ndarray of bool, shape (n,) each
+
+    Returns
+    -------
+    ndarray, shape (chosen samples,) or (chosen samples, m)
+    """
+    return np.concatenate(
+        [item[mask] for item, mask in zip(values, masks, strict=True)]
+    )
+
+
+def _by_record(records: Sequence[Record]) -> tuple[Fold, ...]:
+    count = min(len(records), FOLDS)
+    group = np.empty(len(records), dtype=int)
+    group[np.argsort([record.rate for record in records], kind="stable")] = (
+        np.arange(len(records)) % count
+    )
+    held = [
+        tuple(
+            np.full(len(record), group[place] == fold)
+            for place, record in enumerate(records)
+        )
+        for fold in range(count)
+    ]
+    return tuple(Fold(tuple(~mask for mask in masks), masks) for masks in held)
+
+
+def _by_block(records: Sequence[Record]) -> tuple[Fold, ...]:
+    folds = []
+    for block in range(BLOCKS):
+        train, validation = [], []
+        for record in records:
+            edges = _edges(record)
+            first, last = edges[block], edges[block + 1]
+            guard = max(1, round(GUARD * (last - first)))
+            sample = np.arange(len(record))
+            validation.append((sample >= first) & (sample < last))
+            train.append((sample < first - guard) | (sample >= last + guard))
+        folds.append(Fold(tuple(train), tuple(validation)))
+    return tuple(folds)
+
+
+def _edges(record: Record) -> list[int]:
+    """Where blocks begin, and the end."""
+    unit = record.period_samples or 1
+    if len(record) // unit < BLOCKS:
+        unit = 1
+    units = len(record) // unit
+    return [unit * (units * block // BLOCKS) for block in range(BLOCKS)] + [len(record)]

@@ -1,0 +1,113 @@
+"""What is new in every record: a path of drift, the phase of the mains.
+
+No fit to other records can know it. It is estimated on a record's first 30 %, which is
+then not scored.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.gap.folds import Mask
+from hystbench.record import FloatArray, Record
+
+#: Part of a hold-out record that estimates what is new in it.
+FIRST = 0.3
+#: Samples without which the first part estimates nothing.
+SHORTEST = 10
+#: Regressors of what is new in a record: shape (n, m) from the record; m may be 0.
+Nuisance = Callable[[Record], FloatArray]
+
+
+def split_first(record: Record, part: float = FIRST) -> Mask:
+    """Mark the samples that are scored: all but the first part of a record.
+
+    Raises
+    ------
+    InputError
+        If the record is too short to divide.
+    """
+    first = round(part * len(record))
+    if first < SHORTEST:
+        raise InputError(
+            f"record {record.name}: {len(record)} samples; expected enough for a "
+            f"first {part:.0%} that estimates and a rest that is scored"
+        )
+    return np.arange(len(record)) >= first
+
+
+def without_nuisance(
+    residual: FloatArray, regressors: FloatArray, scored: Mask
+) -> FloatArray:
+    """Take off what is new in a record, estimated where it is not scored.
+
+    Least squares of the residual on the regressors over the samples outside
+    ``scored``; directions that those samples do not show stay at zero.
+
+    Parameters
+    ----------
+    residual : ndarray, shape (n,)
+    regressors : ndarray, shape (n, m)
+    scored : ndarray of bool, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    if regressors.shape[1] == 0:
+        return residual
+    scale = np.sqrt(np.mean(np.square(regressors), axis=0))
+    columns = regressors / np.where(scale > 0, scale, 1.0)
+    weights, *_ = np.linalg.lstsq(columns[~scored], residual[~scored], rcond=1e-6)
+    return np.asarray(residual - columns @ weights)
+
+
+def left_over(
+    record: Record, simulated: FloatArray, nuisance: Nuisance | None
+) -> tuple[FloatArray, Mask]:
+    """Residual without what is new in the record, and the samples that are scored.
+
+    Parameters
+    ----------
+    record : Record
+    simulated : ndarray, shape (n,)
+    nuisance : callable or None
+        Gives the regressors; without it every sample is scored.
+
+    Returns
+    -------
+    residual : ndarray, shape (n,)
+    scored : ndarray of bool, shape (n,)
+    """
+    residual = record.y - simulated
+    if nuisance is None:
+        return residual, np.ones(len(record), dtype=np.bool_)
+    scored = split_first(record)
+    return without_nuisance(residual, nuisance(record), scored), scored
+
+
+def offset_and_mains(mains_hz: Sequence[float] = (), offset: bool = True) -> Nuisance:
+    """Regressors of an offset and of tones of unknown phase.
+
+    No slope: what the first part of a record says of it, the rest would magnify.
+
+    Parameters
+    ----------
+    mains_hz : sequence of float
+        Frequencies of the tones.
+    offset : bool
+        Whether the record may have one of its own, as a path of drift leaves it.
+    """
+
+    def regressors(record: Record) -> FloatArray:
+        time = record.time
+        columns = [np.ones_like(time)] if offset else []
+        for frequency in mains_hz:
+            angle = 2 * np.pi * frequency * time
+            columns += [np.cos(angle), np.sin(angle)]
+        return np.column_stack(columns) if columns else np.zeros((len(time), 0))
+
+    return regressors

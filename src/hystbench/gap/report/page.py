@@ -1,0 +1,191 @@
+"""Putting the page together: which pictures there are, and what is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from hystbench.figures.style import unit_text
+from hystbench.gap.report import pictures, words
+from hystbench.gap.report.pictures import Picture, draw
+from hystbench.gap.report.read import Content
+
+TEMPLATE = "report.html.j2"
+#: What gap.json may leave out.
+OPTIONAL: dict[str, Any] = {
+    "records": [],
+    "ladder": [],
+    "black_box": None,
+    "base_parameters": {},
+}
+
+
+def page(content: Content) -> str:
+    """Make the page of what was read."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("hystbench.gap.report", "."),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    for name in ("number", "with_error", "percent", "explained", "p_value", "bound"):
+        environment.filters[name] = getattr(words, name)
+    environment.filters["unit"] = words.unit
+    environment.filters["listed"] = words.listed
+    gap = OPTIONAL | content.gap
+    where, missing = _where(content)
+    return environment.get_template(TEMPLATE).render(
+        gap=gap,
+        sentence=words.verdict_sentence(gap),
+        floor_words=words.FLOORS[gap["gap"]["floor_method"]],
+        y=unit_text(gap["unit"]),
+        named=[effect["name"] for effect in gap["effects"]],
+        where_pictures=where,
+        missing=missing,
+        shares=_shares(gap),
+        ladder=_ladder(gap),
+        ranking=_ranking(gap),
+        ranked=sorted(
+            (item for item in gap["ranking"] if "declined" not in item),
+            key=lambda item: -item.get("gain", float("-inf")),
+        ),
+        declined=[item for item in gap["ranking"] if "declined" in item],
+        series=_series(content),
+        drawn=min(len(content.hold_out), pictures.RECORDS),
+        held=len(content.hold_out),
+    )
+
+
+def _shares(gap: dict[str, Any]) -> Picture | None:
+    if not gap["where"]:
+        return None
+    names = [item["view"].replace("-", " ") for item in gap["where"]]
+    shares = [100 * item["share_of_gap_power"] for item in gap["where"]]
+    told = "Share of the gap's power in each view, in per cent"
+    return draw(
+        pictures.bars, names, shares, told, words=told, height=0.5 + 0.22 * len(names)
+    )
+
+
+def _ranking(gap: dict[str, Any]) -> Picture | None:
+    ranked = [item for item in gap["ranking"] if "gain" in item]
+    ranked = sorted(ranked, key=lambda item: -item["gain"])[: pictures.BARS]
+    if not ranked:
+        return None
+    named = {(effect["name"], effect["place"]) for effect in gap["effects"]}
+    names = [f"{item['name']} ({item['place']})" for item in ranked]
+    picked = [(item["name"], item["place"]) in named for item in ranked]
+    gains = [item["gain"] for item in ranked]
+    return draw(
+        pictures.bars,
+        names,
+        gains,
+        "gain in the score that ranks",
+        picked,
+        words="Gain over the base of each effect tried; named effects blue",
+        height=0.6 + 0.2 * len(names),
+    )
+
+
+def _ladder(gap: dict[str, Any]) -> Picture | None:
+    rungs = [(item["name"], item["rms"]) for item in gap["ladder"]]
+    if not rungs:
+        return None
+    return draw(
+        pictures.steps,
+        rungs,
+        gap["gap"]["noise_floor"],
+        gap["unit"],
+        words="RMS residual on hold-out records after each effect was added",
+    )
+
+
+def _series(content: Content) -> Picture | None:
+    tables = content.hold_out[: pictures.RECORDS]
+    if not tables:
+        return None
+
+    def paint(axes: Any, *rest: Any) -> None:
+        pictures.series(axes if len(tables) > 1 else [axes], *rest)
+
+    return draw(
+        paint,
+        tables,
+        content.gap["gap"]["noise_floor"],
+        content.gap["unit"],
+        words="Hold-out records: measured, before and after; residuals and spectra",
+        height=1.75 * len(tables) + 0.2,
+        panels=(len(tables), 3),
+    )
+
+
+def _where(content: Content) -> tuple[list[Picture], list[str]]:
+    """Draw the curves that are there, and name those that are not."""
+    curves = content.curves
+    if curves is None:
+        return [], ["curves.json: no pictures of where the gap is"]
+    units = curves.get("units") or {"input": "", "output": content.gap["unit"]}
+    plans: list[tuple[tuple[str, ...], Callable[[], Picture]]] = [
+        (
+            ("spectrum",),
+            lambda: draw(
+                pictures.spectrum,
+                curves["spectrum"],
+                units["output"],
+                words="Spectrum of the residual beside the simulation and the floor",
+            ),
+        ),
+        (
+            ("response",),
+            lambda: draw(
+                pictures.response,
+                curves["response"],
+                words="Best linear approximation of measurement over simulation; "
+                "dashed where the simulation is right",
+                height=2.0,
+                panels=(1, 3),
+            ),
+        ),
+        (
+            ("over_input", "over_rate"),
+            lambda: draw(
+                pictures.maps,
+                curves.get("over_input"),
+                curves.get("over_rate"),
+                units,
+                words="Residual over the input, by branch, and over the input's rate; "
+                "noise floor grey",
+                panels=(1, 2),
+            ),
+        ),
+        (
+            ("slow",),
+            lambda: draw(
+                pictures.slow,
+                curves["slow"],
+                units["output"],
+                words="Mean of the residual over slow time, record behind record",
+                height=2.0,
+            ),
+        ),
+        (
+            ("records",),
+            lambda: draw(
+                pictures.bars,
+                curves["records"]["name"],
+                [100 * share for share in curves["records"]["share"]],
+                "share of the gap's power, in per cent",
+                words="Share of the gap's power in each fit record",
+                height=0.6 + 0.2 * len(curves["records"]["name"]),
+            ),
+        ),
+    ]
+    drawn, missing = [], []
+    for keys, make in plans:
+        missing += [f"curves.json: no {key}" for key in keys if not curves.get(key)]
+        if any(curves.get(key) for key in keys):
+            drawn.append(make())
+    return drawn, missing

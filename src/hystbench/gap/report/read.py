@@ -1,0 +1,145 @@
+"""What the page is made of: gap.json, the hold-out tables and the curves."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.errors import InputError, nearest
+from hystbench.gap.schema import NAMES, NUMBER, OPTIONAL, SCHEMA
+from hystbench.record import FloatArray
+from hystbench.schema import check_against_schema
+
+COLUMNS = ("time_s", "measured", "before", "after")
+
+
+def _items(**properties: Any) -> dict[str, Any]:
+    each = {"type": "object", "required": list(properties), "properties": properties}
+    return {"type": "array", "items": each}
+
+
+WORD = {"type": "string"}
+#: What the page needs of the parts that the contract leaves open.
+OPEN_PARTS: dict[str, Any] = {
+    "properties": {
+        "records": _items(name=WORD, before=NUMBER, after=NUMBER),
+        "ladder": _items(name=WORD, rms=NUMBER),
+        "base_parameters": {"type": "object"},
+        "black_box": {
+            "properties": {
+                "explained_on_folds": OPTIONAL,
+                "after": NUMBER,
+                "records": _items(
+                    name=WORD, before=NUMBER, after=NUMBER, named=NUMBER, outside=NAMES
+                ),
+            }
+        },
+        "next_experiment": {
+            "properties": {
+                "excitation": WORD,
+                "sentence": WORD,
+                "sampling_interval_s": NUMBER,
+                "separation": NUMBER,
+                "existing_separation": NUMBER,
+                "parameters": {
+                    "type": "object",
+                    "additionalProperties": {
+                        "type": "object",
+                        "required": ["value", "unit"],
+                    },
+                },
+                "pairs": _items(
+                    names=NAMES, separation=NUMBER, existing_separation=NUMBER
+                ),
+            }
+        },
+    }
+}
+
+
+@dataclass(frozen=True, repr=False)
+class HoldOut:
+    """A hold-out record before and after, shape (n,) each, in output units."""
+
+    name: str
+    time_s: FloatArray
+    measured: FloatArray
+    before: FloatArray
+    after: FloatArray
+
+
+@dataclass(frozen=True, repr=False)
+class Content:
+    """All that a folder holds.
+
+    Parameters
+    ----------
+    gap : mapping
+        Of gap.json, checked.
+    hold_out : tuple of HoldOut
+    curves : mapping or None
+        Of curves.json; None where there is none.
+    """
+
+    gap: dict[str, Any]
+    hold_out: tuple[HoldOut, ...]
+    curves: dict[str, Any] | None
+
+
+def read_content(folder: Path) -> Content:
+    """Read and check the files of a folder that the gap workflow wrote.
+
+    Raises
+    ------
+    InputError
+        If gap.json is missing or not as its schema says, or a table or the curves
+        cannot be read.
+    """
+    place = folder / "gap.json"
+    gap = _json(place)
+    check_against_schema(gap, SCHEMA, str(place))
+    check_against_schema(gap, OPEN_PARTS, str(place))
+    order = [item["name"] for item in gap.get("records", [])]
+    tables = sorted(
+        (folder / "holdout").glob("*.csv"),
+        # in the order of gap.json; those that it does not name come last
+        key=lambda path: (
+            order.index(path.stem) if path.stem in order else len(order),
+            path.stem,
+        ),
+    )
+    curves = folder / "curves.json"
+    found = _json(curves) if curves.is_file() else None
+    if found is not None and not isinstance(found, dict):
+        raise InputError(f"{curves}: expected a mapping of curves")
+    return Content(gap, tuple(map(_hold_out, tables)), found)
+
+
+def _json(path: Path) -> Any:
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}; expected a JSON file") from error
+    except ValueError as error:
+        raise InputError(f"{path}: not JSON ({error})") from error
+
+
+def _hold_out(path: Path) -> HoldOut:
+    lines = path.read_text(encoding="utf-8").splitlines()
+    header = lines[0].split(",") if lines else []
+    for column in COLUMNS:
+        if column not in header:
+            near = nearest(column, header or COLUMNS)
+            raise InputError(f"{path}: no column {column!r}; {near}")
+    places = [header.index(column) for column in COLUMNS]
+    try:
+        table = np.loadtxt(lines[1:], delimiter=",", usecols=places, ndmin=2)
+    except ValueError as error:
+        raise InputError(f"{path}: {error}; expected numbers") from None
+    if len(table) < 2 or not np.isfinite(table).all():
+        raise InputError(f"{path}: expected at least 2 rows of finite numbers")
+    return HoldOut(path.stem, *(np.ascontiguousarray(column) for column in table.T))

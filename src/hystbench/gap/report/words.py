@@ -1,0 +1,110 @@
+"""The verdict and the numbers as they are said on the page."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from markupsafe import Markup
+
+from hystbench.figures.style import unit_text
+
+#: A narrow space that does not break.
+NARROW = "\u202f"
+
+VERDICTS = {
+    "named": "The simulator lacks {effects}.",
+    "parameters": "The simulator lacks no effect: other values of its parameters, "
+    "within their tolerances, close the gap.",
+    "no-gap": "There is no gap: what measurement and simulation differ by is noise.",
+    "unnamed": "Something is missing that the vocabulary has no name for.",
+}
+
+FLOORS = {
+    "repeats": "measured from repeated periods",
+    "declared": "declared by the dataset",
+    "upper-bound": "only an upper bound, read off the residual's spectrum",
+}
+
+
+def verdict_sentence(gap: dict[str, Any]) -> str:
+    """Say the verdict in plain words."""
+    names = [effect["name"].replace("-", " ") for effect in gap["effects"]]
+    sentence = VERDICTS[gap["verdict"]].format(effects=listed(names))
+    if gap["verdict"] == "unnamed" and names:
+        sentence += f" Beside it the simulator lacks {listed(names)}."
+    return sentence
+
+
+def listed(names: list[str]) -> str:
+    """Join names as in a sentence."""
+    if len(names) < 2:
+        return "".join(names)
+    return ", ".join(names[:-1]) + " and " + names[-1]
+
+
+def number(value: float | None, digits: int = 3) -> Markup:
+    """Print a number shortly; the page's source holds all of its digits."""
+    if value is None:
+        return Markup('<span class="none">none</span>')
+    text = f"{value:.{digits}g}"
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        shown = Markup("{}&thinsp;·&thinsp;10<sup>{}</sup>").format(
+            mantissa, _minus(str(int(exponent)))
+        )
+    else:
+        shown = Markup("{}").format(_minus(text))
+    return Markup('<data value="{}">{}</data>').format(repr(float(value)), shown)
+
+
+def with_error(value: Any, error: Any) -> Markup:
+    """Print a value and its standard error, rounded to two digits of the error."""
+    if isinstance(value, str):
+        return Markup("{}").format(value)
+    if isinstance(value, list):
+        errors = error if isinstance(error, list) else [None] * len(value)
+        pairs = zip(value, errors, strict=True)
+        return Markup(", ").join(with_error(*pair) for pair in pairs)
+    if error is None:
+        return number(value)
+    digits = 3
+    if error > 0 and value != 0:
+        size = math.floor(math.log10(abs(value))) - math.floor(math.log10(error))
+        digits = min(max(size + 2, 2), 12)
+    return number(value, digits) + Markup(" ± ") + number(error, 2)
+
+
+def percent(share: float | None, decimals: int = 0) -> Markup:
+    """Print a share in per cent."""
+    if share is None:
+        return number(None)
+    shown = _minus(f"{100 * share:.{decimals}f}") + NARROW + "%"
+    return Markup('<data value="{}">{}</data>').format(repr(float(share)), shown)
+
+
+def explained(share: Any) -> Markup:
+    """Print the share that is gone: a number, a range or none."""
+    if isinstance(share, list):
+        return percent(share[0], 1) + Markup(" to ") + percent(share[-1], 1)
+    return percent(share, 1)
+
+
+def p_value(value: float) -> Markup:
+    """Print a p-value; below 0.001 the exact one matters to nobody."""
+    shown = f"<{NARROW}0.001" if value < 0.001 else f"{value:.2g}"
+    return Markup('<data value="{}">{}</data>').format(repr(float(value)), shown)
+
+
+def unit(text: str) -> str:
+    """Print a unit; none for a plain number."""
+    return "" if text in ("", "-", "1") else unit_text(text)
+
+
+def bound(value: float | str) -> Markup:
+    """Print an end of a range, which may be a word."""
+    return Markup("{}").format(value) if isinstance(value, str) else number(value)
+
+
+def _minus(text: str) -> str:
+    return text.replace("-", "−")  # noqa: RUF001  (a minus sign, not a hyphen)

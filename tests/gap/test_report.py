@@ -1,0 +1,396 @@
+import json
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.gap.report import write_report
+from hystbench.gap.report.words import number, with_error
+from hystbench.gap.schema import SCHEMA
+from hystbench.schema import check_against_schema
+
+VALUE = {"value": 69.7123, "standard_error": 0.0456, "unit": "Hz"}
+GAP = {
+    "dataset": "bench",
+    "model": "rig.yaml",
+    "unit": "um",
+    "verdict": "named",
+    "reason": "The resonance pays on every fold, and what is left is at the floor.",
+    "effects": [
+        {
+            "name": "resonance",
+            "place": "mechanics",
+            "parameters": {
+                "frequency_hz": VALUE,
+                "damping_ratio": {
+                    "value": 0.0412,
+                    "standard_error": 0.0013,
+                    "unit": "-",
+                },
+            },
+            "confidence": 0.97,
+            "cannot_be_told_from": [],
+        },
+        {
+            "name": "creep",
+            "place": "mechanics",
+            "parameters": {
+                "magnitudes": {
+                    "value": [0.0213, 0.0117],
+                    "standard_error": [0.0011, 0.0019],
+                    "unit": "-",
+                }
+            },
+            "confidence": 0.61,
+            "cannot_be_told_from": ["thermal-drift", "drift"],
+        },
+    ],
+    "where": [
+        {
+            "view": "frequency",
+            "axis": "frequency",
+            "from": 60.5,
+            "to": 81.5,
+            "unit": "Hz",
+            "share_of_gap_power": 0.923,
+            "p_value": 2.5e-7,
+            "sentence": "Most of the gap lies between 60 and 82 Hz.",
+        },
+        {
+            "view": "record",
+            "axis": "record",
+            "from": "sine-060hz",
+            "to": "sine-080hz",
+            "unit": "",
+            "share_of_gap_power": 0.81,
+            "p_value": 0.012,
+            "sentence": "Two records hold it.",
+        },
+    ],
+    "gap": {
+        "before": 0.5123,
+        "after": 0.1034,
+        "noise_floor": 0.0911,
+        "floor_method": "repeats",
+        "explained": 0.9871,
+        "interval": [0.9765, 0.9912],
+    },
+    "ranking": [
+        {
+            "name": "resonance",
+            "place": "mechanics",
+            "form": "one mode",
+            "score": -812.5,
+            "gain": 301.5,
+            "explained": 0.942,
+        },
+        {"name": "creep", "place": "mechanics", "score": -620.1, "gain": 109.2},
+        {"name": "drive-lag", "place": "drive", "score": -500.3, "gain": -10.4},
+        {"name": "friction", "place": "mechanics", "declined": "u does not reverse"},
+    ],
+    "next_experiment": {
+        "excitation": "steps-with-holds",
+        "parameters": {
+            "levels": {"value": [0.0, 1.5, -1.5], "unit": "A"},
+            "hold_s": {"value": 12.5, "unit": "s"},
+        },
+        "sampling_interval_s": 0.0005,
+        "separation": 6.21,
+        "existing_separation": 0.42,
+        "pairs": [
+            {
+                "names": ["creep", "drift"],
+                "separation": 6.21,
+                "existing_separation": 0.42,
+            }
+        ],
+        "sentence": "Try steps with holds: it separates creep from drift.",
+    },
+    "records": [
+        {"name": "held-1", "before": 0.45, "after": 0.0987, "explained": 0.9931},
+        {"name": "held-2", "before": 0.56, "after": 0.1078, "explained": 0.9812},
+    ],
+    "ladder": [
+        {"name": "base", "rms": 0.5123},
+        {"name": "resonance", "rms": 0.2011},
+        {"name": "creep", "rms": 0.1034},
+    ],
+    "black_box": {
+        "explained_on_folds": 0.87,
+        "after": 0.213,
+        "explained": 0.853,
+        "records": [
+            {
+                "name": "held-1",
+                "before": 0.45,
+                "after": 0.123,
+                "explained": 0.96,
+                "named": 0.0987,
+                "outside": [],
+            },
+            {
+                "name": "held-2",
+                "before": 0.56,
+                "after": 0.477,
+                "explained": 0.28,
+                "named": 0.1078,
+                "outside": ["amplitude", "rate"],
+            },
+        ],
+    },
+}
+#: What the page says in pictures and words only.
+NOT_SAID = {0.96, 0.28}  # the black box's shares record by record
+
+
+def curves():
+    frequency = np.geomspace(1, 500, 60)
+    line = 0.01 + 0.2 / (1 + ((frequency - 70) / 5) ** 2)
+    cells = np.linspace(-1, 1, 20)
+    return {
+        "units": {"input": "A", "output": "um"},
+        "response": {
+            "frequency": frequency.tolist(),
+            "magnitude": (1 + line).tolist(),
+            "phase": (-20 * line).tolist(),
+            "coherence": np.ones(60).tolist(),
+        },
+        "spectrum": {
+            "frequency": frequency.tolist(),
+            "residual": line.tolist(),
+            "linear": (0.9 * line).tolist(),
+            "simulated": (5 / frequency).tolist(),
+            "floor": np.full(60, 0.01).tolist(),
+        },
+        "over_input": {
+            "input": cells.tolist(),
+            "rising": (0.1 * cells).tolist(),
+            "falling": [None, *(-0.1 * cells[1:])],
+            "rms": np.full(20, 0.2).tolist(),
+            "floor": 0.09,
+        },
+        "over_rate": {
+            "rate": (100 * cells).tolist(),
+            "mean": (0.1 * cells).tolist(),
+            "rms": np.full(20, 0.2).tolist(),
+        },
+        "slow": [
+            {"record": name, "time": [0.5, 1.5, 2.5], "residual": [0.1, 0.15, 0.17]}
+            for name in ("sine-010hz", "sine-070hz")
+        ],
+        "records": {
+            "name": ["sine-010hz", "sine-070hz"],
+            "share": [0.2, 0.8],
+            "rms": [0.2, 0.6],
+            "floor": [0.09, 0.09],
+            "loop_area": [0.01, 0.02],
+            "frequency": [10.0, 70.0],
+        },
+        "harmonics": None,
+    }
+
+
+def write_folder(folder, gap=GAP, with_curves=True, with_tables=True):
+    (folder / "gap.json").write_text(json.dumps(gap))
+    if with_curves:
+        (folder / "curves.json").write_text(json.dumps(curves()))
+    if with_tables:
+        (folder / "holdout").mkdir()
+        random = np.random.default_rng(0)
+        time = np.arange(4000) * 0.0005
+        for name, frequency in (("held-1", 5), ("held-2", 70)):
+            clean = 5 * np.sin(2 * np.pi * frequency * time)
+            ring = 0.6 * np.sin(2 * np.pi * 70 * time)
+            measured = clean + ring + 0.09 * random.standard_normal(4000)
+            table = np.column_stack([time, measured, clean, clean + 0.95 * ring])
+            np.savetxt(
+                folder / "holdout" / f"{name}.csv",
+                table,
+                delimiter=",",
+                header="time_s,measured,before,after",
+                comments="",
+            )
+    return folder
+
+
+class Reader(HTMLParser):
+    """Collect what a page says and what it asks for."""
+
+    def __init__(self):
+        super().__init__()
+        self.numbers, self.sources, self.tags, self.text = [], [], [], []
+
+    def handle_starttag(self, tag, attrs):
+        about = dict(attrs)
+        self.tags.append(tag)
+        if tag == "data":
+            self.numbers.append(float(about["value"]))
+        self.sources += [about[key] for key in ("src", "href") if key in about]
+        if tag == "img":
+            assert about["alt"]
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+def read(path):
+    reader = Reader()
+    text = path.read_text(encoding="utf-8")
+    reader.feed(text)
+    reader.said = re.sub(r"\s+", " ", " ".join(reader.text))
+    return reader
+
+
+def numbers_in(content):
+    if isinstance(content, dict):
+        return {x for each in content.values() for x in numbers_in(each)}
+    if isinstance(content, list):
+        return {x for each in content for x in numbers_in(each)}
+    return {float(content)} if isinstance(content, int | float) else set()
+
+
+def words_in(content):
+    if isinstance(content, dict):
+        return {x for each in content.values() for x in words_in(each)}
+    if isinstance(content, list):
+        return {x for each in content for x in words_in(each)}
+    return {content} if isinstance(content, str) else set()
+
+
+def test_the_example_is_what_the_contract_says():
+    check_against_schema(GAP, SCHEMA, "example")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    return read(write_report(write_folder(tmp_path_factory.mktemp("whole"))))
+
+
+def test_page_says_every_number_and_word_of_gap_json(page):
+    assert numbers_in(GAP) - NOT_SAID == set(page.numbers)
+    for word in words_in(GAP):
+        plain = {"um": "µm", "-": "", "repeats": "repeated", "named": "lacks"}
+        told = plain.get(word, word)
+        assert told in page.said or told.replace("-", " ") in page.said
+
+
+def test_page_stands_alone(page):
+    assert len(page.sources) >= 8
+    assert all(source.startswith("data:image/") for source in page.sources)
+    assert not {"script", "link", "iframe"} & set(page.tags)
+    assert "Not drawn" not in page.said
+
+
+def test_verdict_comes_first(page):
+    verdict = page.said.index("The simulator lacks resonance and creep.")
+    assert verdict < page.said.index("Effects")
+    assert page.said.index(GAP["reason"]) < page.said.index("Where the gap is")
+
+
+def test_same_input_same_page(tmp_path):
+    folder = write_folder(tmp_path, small(), with_curves=False)
+    path = write_report(folder)
+    assert path == tmp_path / "report.html"
+    first = path.read_bytes()
+    assert write_report(folder).read_bytes() == first
+
+
+def small(**change):
+    """What the contract asks for and no more."""
+    content = {key: GAP[key] for key in SCHEMA["required"]}
+    content |= {"effects": [], "where": [], "ranking": [], "next_experiment": None}
+    return content | {"verdict": "no-gap"} | change
+
+
+def test_what_is_not_there_is_said(tmp_path):
+    power = GAP["gap"] | {"explained": None, "floor_method": "upper-bound"}
+    folder = write_folder(
+        tmp_path, small(gap=power), with_curves=False, with_tables=False
+    )
+    said = read(write_report(folder)).said
+    assert "There is no gap" in said
+    assert "cannot be claimed from it alone" in said
+    assert "Not drawn: curves.json" in said
+    assert "the folder holds no hold-out tables" in said
+    assert "gap.json holds no ladder" in said
+    assert "gap.json holds no black box" in said
+
+
+@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate"])
+def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
+    folder = write_folder(tmp_path, small(), with_tables=False)
+    there = {"units": curves()["units"], key: curves()[key]}
+    (folder / "curves.json").write_text(json.dumps(there))
+    page = read(write_report(folder))
+    assert len(page.sources) == 1
+    for name in ("spectrum", "response", "over_input", "over_rate", "slow", "records"):
+        assert (f"Not drawn: curves.json: no {name}." in page.said) == (name != key)
+
+
+def test_a_range_is_printed_as_one(tmp_path):
+    gap = small(gap=GAP["gap"] | {"explained": [0.61, 0.97]})
+    page = read(write_report(write_folder(tmp_path, gap, False, False)))
+    assert {0.61, 0.97} <= set(page.numbers)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"verdict": "nmaed"}, r"gap\.json: verdict: 'nmaed' is unknown; "),
+        ({"gap": {}}, r"gap\.json: gap: expected the key 'before'"),
+        (
+            {"records": ["held-1"]},
+            r"gap\.json: records: 0: 'held-1'; expected a mapping",
+        ),
+        (
+            {"ladder": [{"name": "base"}]},
+            r"gap\.json: ladder: 0: expected the key 'rms'",
+        ),
+        ({"efects": []}, r"gap\.json: unknown key 'efects'; did you mean 'effects'"),
+    ],
+)
+def test_a_wrong_gap_json_is_one_line_and_no_page(tmp_path, change, message):
+    write_folder(tmp_path, GAP | change)
+    with pytest.raises(InputError, match=message) as caught:
+        write_report(tmp_path)
+    assert "\n" not in str(caught.value)
+    assert not (tmp_path / "report.html").exists()
+
+
+def test_missing_or_broken_files_are_one_line(tmp_path):
+    with pytest.raises(InputError, match=r"gap\.json: No such file"):
+        write_report(tmp_path)
+    write_folder(tmp_path)
+    (tmp_path / "holdout" / "held-1.csv").write_text("time_s,measured\n0,1\n")
+    with pytest.raises(InputError, match=r"held-1\.csv: no column 'before'"):
+        write_report(tmp_path)
+    (tmp_path / "gap.json").write_text("{")
+    with pytest.raises(InputError, match=r"gap\.json: not JSON"):
+        write_report(tmp_path)
+
+
+def test_text_from_outside_is_text(tmp_path):
+    gap = small(reason="<script>alert(1)</script>")
+    page = read(write_report(write_folder(tmp_path, gap, False, False)))
+    assert "script" not in page.tags
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "shown"),
+    [
+        (69.7123, 0.0456, "69.712 ± 0.046"),
+        (0.0412, 0.0013, "0.0412 ± 0.0013"),
+        (-3.0, None, "\u22123"),
+        ("slab", None, "slab"),
+        ([1.0, 2.0], [0.1, 0.2], "1 ± 0.1, 2 ± 0.2"),
+    ],
+)
+def test_values_are_rounded_to_their_errors(value, error, shown):
+    assert re.sub(r"<[^>]*>", "", str(with_error(value, error))) == shown
+
+
+def test_a_number_keeps_its_digits_in_the_source():
+    assert 'value="0.123456789"' in number(0.123456789)
+    assert "10<sup>\u22127</sup>" in number(2.5e-7)
