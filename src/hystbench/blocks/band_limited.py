@@ -38,7 +38,7 @@ class SineSeries(NamedTuple):
         return self.start + self.slope * places
 
     def sines(
-        self, count: int, response: ComplexArray | FloatArray, factor: int = 1
+        self, count: int, response: ComplexArray | FloatArray | float, factor: int = 1
     ) -> FloatArray:
         """Sample the sines after a frequency response, as if they always had been."""
         spectrum = self.spectrum * response
@@ -68,6 +68,19 @@ def sine_series(v: FloatArray) -> SineSeries:
     rest = v - (v[0] + slope * np.arange(half + 1))
     odd = np.concatenate([rest[:-1], -rest[:0:-1]])
     return SineSeries(float(v[0]), slope, np.fft.rfft(odd), half)
+
+
+def interpolate(v: FloatArray, factor: int) -> FloatArray:
+    """Sample the band-limited signal ``factor`` times finer.
+
+    Returns
+    -------
+    ndarray, shape ((n - 1) factor + 1,)
+        Equal to ``v`` at every ``factor``-th sample.
+    """
+    series = sine_series(v)
+    count = (len(v) - 1) * factor + 1
+    return series.line(count, 0.0, factor) + series.sines(count, 1.0, factor)
 
 
 def straight_lines(v: FloatArray, factor: int) -> FloatArray:

@@ -143,9 +143,7 @@ def fine(attempt: Attempt, start: Trial) -> Trial:
 
 def score_of(state: State, score: Score) -> float:
     """Score a model as it is; amplitudes of what lies beside are solved for."""
-    return score.amplitudes(
-        state.residual, state.beside_columns, state.freedom
-    ).score
+    return score.amplitudes(state.residual, state.beside_columns, state.freedom).score
 
 
 def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, float]:

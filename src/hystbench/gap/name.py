@@ -11,7 +11,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, Effect
 from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished, score_of
-from hystbench.gap.reshape import directions
+from hystbench.gap.reshape import directions, step_error
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, without_effect
 
@@ -25,6 +25,12 @@ TIE = 6.0
 """Effects whose score differs by less cannot be told apart."""
 MOST = 4
 """Effects that are added, at most."""
+
+WORSE = 0.1
+"""Share by which an effect may widen the gap, where a wrong shape hides what it does.
+
+Without this a gain near zero would leave all to the reshaping of the hysteresis.
+"""
 
 Say = Callable[[str], None]
 
@@ -101,8 +107,12 @@ class Named:
 
 
 def make_score(state: State, floor_rms: float) -> Score:
-    """Give the score for a model: what its hysteresis could do is spanned anew."""
-    return Score(state.sample, directions(state.scene, state.sample, state.other_forms), floor_rms**2)
+    """Give the score for a model: what could be wrong in its shape is spanned anew."""
+    wrong = [state.other_forms]
+    if state.hold == "band-limited":
+        wrong.append(step_error(state.scene, state.sample))
+    spanned = directions(state.scene, state.sample, np.hstack(wrong))
+    return Score(state.sample, spanned, floor_rms**2)
 
 
 def try_effect(
@@ -110,7 +120,9 @@ def try_effect(
 ) -> tuple[list[tuple[Attempt, Trial]], str]:
     """Score every variant of an effect over its grid; or say why it declines."""
     try:
-        attempts = [Attempt(state, item, score) for item in effect.variants(state.scene)]
+        attempts = [
+            Attempt(state, item, score) for item in effect.variants(state.scene)
+        ]
     except Declined as reason:
         return [], str(reason)
     return [(attempt, coarse(attempt)) for attempt in attempts], ""
@@ -157,55 +169,66 @@ def rank(
         own = (variant.effect, variant.place, variant.form)
         after = None
         value = trial.score
-        if number < FINALISTS and now - value > 0:
+        likely = number < FINALISTS or variant.effect == SHAPE
+        if likely and now - value > 0:
             try:
                 after, value = added(state, trial, score)
             except InputError as error:
-                declined.append(Candidate(*own[:2], declined=f"fits best where {error}"))
+                declined.append(
+                    Candidate(*own[:2], declined=f"fits best where {error}")
+                )
+                continue
+            power = state.power(score.floor)
+            if after.share(state, score.floor, power) < -WORSE:
+                declined.append(Candidate(*own[:2], declined="makes the gap wider"))
                 continue
         candidates.append(Candidate(*own, value, now - value, after))
     candidates.sort(key=lambda item: (item.state is None, item.score))
     return (*candidates, *declined)
 
 
-def in_order(
-    ranking: tuple[Candidate, ...], before: State, floor: float
-) -> tuple[Candidate, ...]:
-    """Let a wrong shape of the hysteresis go first where it is most of the gap.
+def name(state: State, floor_rms: float, say: Say = lambda line: None) -> Named:
+    """Add effects to a model for as long as one pays.
 
-    The score charges reshaping; where that is what is missing, an effect that takes
-    less than half as much of the gap away must not go before it.
+    Where a wrong shape of the hysteresis takes more of the gap away than the effect
+    that scores best, that effect may still be one of several that do without it. So
+    they are tried first; if the shape is needed after all, it goes first.
     """
-    shape = next((item for item in ranking if item.effect == SHAPE and item.state), None)
-    first = ranking[0]
-    if shape is None or first.state is None or shape.gain < PAYS or first is shape:
-        return ranking
-    gap = before.power(floor)
-    assert shape.state is not None  # noqa: S101  (for the type checker)
-    if first.state.share(before, floor, gap) > shape.state.share(before, floor, gap) / 2:
-        return ranking
-    return (shape, *(item for item in ranking if item is not shape))
+    found, deferred = _path(state, floor_rms, say, shape_first=False)
+    if deferred and any(item.effect == SHAPE for item in found.state.added):
+        say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
+        found, _ = _path(state, floor_rms, say, shape_first=True)
+    return found
 
 
 SHAPE = "hysteresis-shape"
+MATTERS = 0.01
+"""Share of the gap's power that makes a further effect matter."""
+CERTAIN = 250.0
+"""By how much one that matters less must lower the score."""
+BESIDE_SHAPE = 0.1
+"""Share that matters beside a hysteresis of the wrong shape."""
 
 
-def name(state: State, floor_rms: float, say: Say = lambda line: None) -> Named:
-    """Add effects to a model for as long as one pays and matters."""
+def _path(
+    state: State, floor_rms: float, say: Say, shape_first: bool
+) -> tuple[Named, bool]:
+    """Add effects one by one; tell whether a shape that takes more was put off."""
     floor = floor_rms**2
     gap = max(state.power(floor), floor * 1e-6)
     rounds: list[Round] = []
+    deferred = False
     while len(state.added) < MOST:
         score = make_score(state, floor_rms)
-        ranking = in_order(rank(state, score), state, floor)
+        ranking = rank(state, score)
+        if _shape_takes_more(ranking, state, floor):
+            deferred = True
+            if shape_first:
+                ranking = tuple(sorted(ranking, key=lambda x: x.effect != SHAPE))
         first = ranking[0]
         for item in ranking[:4]:
             say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
-        taken = (
-            first.state is not None
-            and first.gain > PAYS
-            and first.state.share(state, floor, gap) > MATTERS
-        )
+        taken = _pays(first, state, floor, gap)
         rounds.append(Round(state, first.score + first.gain, ranking, taken))
         if not taken:
             break
@@ -213,7 +236,43 @@ def name(state: State, floor_rms: float, say: Say = lambda line: None) -> Named:
         state, _ = finished(first.state, score)
         if len(state.added) > 1:
             state = reconsidered(state, rounds, floor_rms, say)
-    return Named(state, tuple(rounds))
+    return Named(state, tuple(rounds)), deferred
+
+
+def _shape_takes_more(
+    ranking: tuple[Candidate, ...], before: State, floor: float
+) -> bool:
+    """Tell whether a wrong shape pays and takes twice as much as the best effect."""
+    shape = next((x for x in ranking if x.effect == SHAPE and x.state), None)
+    first = ranking[0]
+    if shape is None or shape.state is None or first.state is None:
+        return False
+    if shape is first or shape.gain < PAYS:
+        return False
+    gap = before.power(floor)
+    most = shape.state.share(before, floor, gap)
+    return first.state.share(before, floor, gap) < most / 2
+
+
+def _pays(item: Candidate, state: State, floor: float, gap: float) -> bool:
+    """Tell whether an effect is to be added.
+
+    The first has only to pay. A further one must matter as well, or be beyond doubt:
+    what is left after the right effect is also what its form, or the simulation,
+    misses.
+    """
+    if item.state is None or item.gain < PAYS:
+        return False
+    if not state.added:
+        return True
+    beside_shape = any(other.effect == SHAPE for other in state.added)
+    matters = BESIDE_SHAPE if beside_shape else MATTERS
+    share = item.state.share(state, floor, gap)
+    return item.gain > CERTAIN or (item.gain > FURTHER and share > matters)
+
+
+FURTHER = 60.0
+"""By how much a further effect must lower the score."""
 
 
 def reconsidered(
@@ -225,6 +284,8 @@ def reconsidered(
     looked better for that.
     """
     for number, item in enumerate(state.added):
+        if item.effect == SHAPE:
+            continue
         score = make_score(state, floor_rms)
         now = score_of(state, score)
         short = without_effect(state, number)
@@ -241,8 +302,6 @@ def reconsidered(
 
 
 SWAP = 3.0
-MATTERS = 0.01
-"""Share of the gap's power that an effect must take away."""
 CLOSE = 0.6
 """Rivals are those with this share of the gain of the best of a round."""
 

@@ -40,9 +40,7 @@ class Sample:
             n = len(record)
             edges = np.linspace(0, n, min(count, n) + 1).astype(np.intp)
             place = rng.random(len(edges) - 1)
-            positions.append(
-                edges[:-1] + (place * np.diff(edges)).astype(np.intp)
-            )
+            positions.append(edges[:-1] + (place * np.diff(edges)).astype(np.intp))
         return cls(tuple(positions))
 
     @cached_property

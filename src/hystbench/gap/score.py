@@ -149,7 +149,9 @@ class Score:
         return outside + float(inside) + PARAMETER * freedom
 
 
-def _solve(matrix: FloatArray, vector: FloatArray, positive: Sequence[int]) -> FloatArray:
+def _solve(
+    matrix: FloatArray, vector: FloatArray, positive: Sequence[int]
+) -> FloatArray:
     """Solve normal equations; amplitudes that must not be negative are set to zero."""
     active = np.ones(len(vector), dtype=bool)
     for _ in range(len(vector) + 1):

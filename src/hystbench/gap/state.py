@@ -44,7 +44,7 @@ class Added(NamedTuple):
     """The chain's own block that it stands for."""
 
 
-FORMS = (0.5, 0.75, 1.3, 2.0)
+FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
 MANY = 4
 """An effect of more numbers has no other forms."""
@@ -98,8 +98,10 @@ class State:
     @cached_property
     def reference(self) -> FloatArray:
         """Scored samples that a quick simulation is taken off, to give a residual."""
-        return self.measured if self.correction is None else (
-            self.measured - self.correction
+        return (
+            self.measured
+            if self.correction is None
+            else (self.measured - self.correction)
         )
 
     @cached_property

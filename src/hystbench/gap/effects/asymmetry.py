@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant
+from hystbench.blocks import registry
+from hystbench.blocks.base import Block
+from hystbench.gap.effects.base import Effect, Values, Variant
 from hystbench.gap.scene import Scene
 
 
@@ -19,12 +21,24 @@ class Asymmetry(Effect):
         place = scene.behind_hysteresis
         small = 1e-3 / scene.largest(place)
         yield self.inserted(scene, place, form="square", unit={"coefficient": small})
-        if False and scene.hysteresis is not None:
-            small = 1e-3 * scene.largest(scene.hysteresis)
-            yield self.inserted(
-                scene,
-                place,
-                lambda given: {"form": "bias", "coefficient": given["coefficient"]},
-                form="bias",
-                unit={"coefficient": small},
+        if scene.hysteresis is not None:
+            start = scene.hysteresis
+            rest = scene.chain[start:]
+
+            def build(given: Values) -> tuple[Block, ...]:
+                offset = given["offset"]
+                return (
+                    registry()["gain"].from_mapping({"value": 1.0, "offset": offset}),
+                    *rest,
+                )
+
+            yield Variant(
+                self.name,
+                self.place,
+                "bias",
+                start,
+                build,
+                0,
+                unit={"offset": 1e-3 * scene.largest(start)},
+                free=("offset",),
             )

@@ -19,5 +19,7 @@ class Backlash(Effect):
         end = len(scene.chain)
         largest = scene.largest(end)
         yield self.inserted(
-            scene, end, grids={"half_width": logarithmic(3e-4 * largest, largest / 3, 4)}
+            scene,
+            end,
+            grids={"half_width": logarithmic(3e-4 * largest, largest / 3, 4)},
         )

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.scene import Scene
 
@@ -25,9 +26,11 @@ class RateDependentHysteresis(Effect):
             raise Declined("the chain has no hysteresis that could widen")
         amplitude = scene.largest(scene.hysteresis)
         sizes = {
-            "growing-thresholds": np.geomspace(0.01, 30, 9),
-            "excess-field": np.geomspace(1e-3, 1, 8) * amplitude,
+            "growing-thresholds": np.geomspace(0.02, 20, 7),
+            "excess-field": np.geomspace(2e-3, 0.5, 6) * amplitude,
         }
+        if not can_grow(scene):
+            del sizes["growing-thresholds"]
         for form, at_fastest in sizes.items():
             for exponent in (0.5, 1.0):
                 yield self.inserted(
@@ -42,3 +45,13 @@ class RateDependentHysteresis(Effect):
                     grids={"coefficient": at_fastest / scene.fastest**exponent},
                     free=("coefficient", "exponent"),
                 )
+
+
+def can_grow(scene: Scene) -> bool:
+    """Tell whether the hysteresis has thresholds that can grow."""
+    assert scene.hysteresis is not None  # noqa: S101  (the caller has looked)
+    try:
+        scene.chain[scene.hysteresis].check_growth()  # type: ignore[attr-defined]
+    except InputError:
+        return False
+    return True
