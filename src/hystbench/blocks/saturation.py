@@ -9,12 +9,16 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import number
+from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
 class Saturation(Block):
-    """Odd and soft saturation: ``y = level tanh(z / level)``.
+    """Odd and soft saturation.
+
+    Without a sharpness ``y = level tanh(z / level)``; with one, n, the algebraic law
+    ``y = z / (1 + |z / level|^n)^(1/n)``, a corner that is sharper the larger n is.
 
     References
     ----------
@@ -28,6 +32,21 @@ class Saturation(Block):
 
     level: float = number("Y", "output that is never reached", 1e-9, 1e9)
 
+    sharpness: float = number(
+        "-", "exponent n of the algebraic law; 0 for the tangent", 0.0, 100.0, default=0.0
+    )
+
+    def check(self) -> None:
+        """Refuse an exponent below one: its curve is not smooth at zero."""
+        if 0.0 < self.sharpness < 1.0:
+            raise InputError(
+                f"sharpness: {self.sharpness:g}; expected 0 or at least 1"
+            )
+
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the curve."""
-        return self.level * np.tanh(z / self.level)
+        ratio = z / self.level
+        if self.sharpness == 0.0:
+            return self.level * np.tanh(ratio)
+        size = 1.0 + np.abs(ratio) ** self.sharpness
+        return z / size ** (1.0 / self.sharpness)

@@ -271,7 +271,7 @@ def _pays(item: Candidate, state: State, floor: float, gap: float) -> bool:
     return item.gain > CERTAIN or (item.gain > FURTHER and share > matters)
 
 
-FURTHER = 60.0
+FURTHER = 100.0
 """By how much a further effect must lower the score."""
 
 

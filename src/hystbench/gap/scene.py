@@ -108,6 +108,11 @@ class Scene:
         """Longest record, in seconds."""
         return max(record.dt * len(record) for record in self.records)
 
+    @property
+    def shortest(self) -> float:
+        """Shortest record, in seconds."""
+        return min(record.dt * len(record) for record in self.records)
+
     def largest(self, place: int) -> float:
         """Largest size of the signal before a block."""
         return float(max(np.abs(z).max() for z in self.before[place]))

@@ -21,8 +21,8 @@ class Resonance(Effect):
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer modes between two periods in the longest record and 0.45 of its rate."""
-        low, high = 2 / scene.span, 0.45 / scene.step
+        """Offer modes from two periods in the shortest record to 0.45 of the rate."""
+        low, high = 2 / scene.shortest, 0.45 / scene.step
         yield self.inserted(
             scene,
             scene.behind_hysteresis,

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from hystbench.gap.effects.base import Effect, Variant, logarithmic
 from hystbench.gap.scene import Scene
 
 
 class Saturation(Effect):
-    """An odd, soft limit behind the hysteresis."""
+    """An odd, soft limit behind the hysteresis, of one sharpness or another."""
 
     name = "saturation"
     place = "material"
@@ -18,6 +20,11 @@ class Saturation(Effect):
         """Offer levels from half to thirty times the largest signal there."""
         place = scene.behind_hysteresis
         largest = scene.largest(place)
+        levels = logarithmic(0.5 * largest, 30 * largest, 4)
+        yield self.inserted(scene, place, grids={"level": levels})
         yield self.inserted(
-            scene, place, grids={"level": logarithmic(0.5 * largest, 30 * largest, 6)}
+            scene,
+            place,
+            form="algebraic",
+            grids={"level": levels, "sharpness": np.array([2.0, 4.0, 8.0])},
         )
