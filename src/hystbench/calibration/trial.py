@@ -32,12 +32,13 @@ def starts(structure: Structure, count: int, seed: int) -> list[dict[str, float]
     """
     rng = np.random.default_rng(seed)
     unknowns = structure.unknowns
+    base = [item.name for item in UNKNOWNS]
+    more = [item.name for item in unknowns if item.name not in base]
     # Those of the base first, whether free or not, so that each keeps its draws.
-    names = [item.name for item in UNKNOWNS]
-    names += [item.name for item in unknowns if item.name not in names]
+    draws = [rng.standard_normal((count, len(names))) for names in (base, more)]
     found = []
-    for number in range(count):
-        draw = dict(zip(names, rng.standard_normal(len(names)), strict=True))
+    for number, drawn in enumerate(np.hstack(draws)):
+        draw = dict(zip([*base, *more], drawn, strict=True))
         away = [SPREAD * draw[item.name] * (number > 0) for item in unknowns]
         point = to_values(np.clip(0.5 + np.array(away), 0.02, 0.98), unknowns)
         found.append(point | structure.starts[number % len(structure.starts)])
