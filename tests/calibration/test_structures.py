@@ -100,7 +100,7 @@ def test_envelopes_are_identified_on_the_twin_at_hand():
     found = make_objective(find_structure("identified-envelopes"), job())
     values = MIDDLE["identified-envelopes"]
     one, other = found.at(values), found.at(values | {"gain": values["gain"] / 2})
-    # Half the displacement: about half the weights, since the envelopes keep their scale.
+    # Half the displacement: about half the weights; the envelopes keep their scale.
     ratio = np.sum(one.identified["weights"]) / np.sum(other.identified["weights"])
     assert ratio == pytest.approx(2, rel=0.15)
     name = next(iter(found.signals))
