@@ -4,6 +4,7 @@ import pytest
 import yaml
 
 from hystbench.errors import InputError
+from hystbench.published import load
 from hystbench.settings import packaged_models, read_settings
 from tests.conftest import ROOT
 
@@ -200,9 +201,30 @@ def test_a_folder_without_twins_is_refused(tmp_path):
         read(changed("contest", "twins", ["gmo"]))
 
 
-def test_a_calibration_signal_that_is_not_defined_is_refused():
-    with pytest.raises(InputError, match="calibration: signals: no signal 'sine-10hz'"):
-        read(changed("calibration", "signals", ["sine-10hz"]))
+def test_a_signal_of_the_tables_that_is_not_defined_is_refused():
+    config = changed("excitations", "sine-020hz", None)
+    config["signals"].remove("sine-020hz")
+    config["rdgpi"]["fit_signals"].remove("sine-020hz")
+    with pytest.raises(InputError, match="excitations: no signal 'sine-020hz'"):
+        read(config)
+
+
+def test_the_calibration_and_the_held_out_job_share_no_signal():
+    settings = read(CONFIG)
+    seen = set(settings.structure_job["signals"])
+    held_out = set(settings.held_out_job["signals"])
+    assert not seen & held_out
+    assert seen | held_out == {pair.signal for pair in load()}
+    assert seen == set(settings.calibration_job["signals"])
+    assert sorted(seen) == sorted(settings.compare_job["calibrated"])
+
+
+def test_structures_are_all_or_those_named():
+    assert read(CONFIG).structures is None
+    assert read(changed("structures", "tried", ["base"])).structures == ["base"]
+    with pytest.raises(InputError, match="structures: tried: 'al'") as caught:
+        read(changed("structures", "tried", "al"))
+    assert "\n" not in str(caught.value)
 
 
 def test_a_misspelt_target_gets_the_nearest_name():

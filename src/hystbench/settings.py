@@ -16,6 +16,7 @@ from hystbench.dataset import Dataset, load_dataset
 from hystbench.envelope import fewest_samples
 from hystbench.errors import InputError, nearest
 from hystbench.published import load
+from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.schema import check_against_schema, load_yaml
 from hystbench.signals import Signal, make_signal
 
@@ -216,7 +217,7 @@ class Settings:
     @property
     def compare_job(self) -> dict[str, Any]:
         """Settings of the comparison: which signals the calibration saw."""
-        return {"calibrated": list(self.config["calibration"]["signals"])}
+        return {"calibrated": list(CALIBRATION_SIGNALS)}
 
     @property
     def calibration_job(self) -> dict[str, Any]:
@@ -233,7 +234,7 @@ class Settings:
         }
         filters["gpo"]["envelopes"] = "published"
         return {
-            "signals": {name: self.signal_job(name) for name in section["signals"]},
+            "signals": {name: self.signal_job(name) for name in CALIBRATION_SIGNALS},
             "filters": filters,
             "seed": self.config["twin"]["seed"],
             **{key: section[key] for key in ("starts", "search_seed", "twins")},
@@ -241,20 +242,28 @@ class Settings:
 
     @property
     def structure_job(self) -> dict[str, Any]:
-        """Settings of a structure's trial: it starts from what is committed."""
+        """Settings of a structure's trial; nothing in them was fitted."""
+        budget = {k: v for k, v in self.config["structures"].items() if k != "tried"}
+        loop = self.config["identification"]["signal"]
         return {
-            **self.calibration_job,
-            "convergence_factor": self.config["filters"]["convergence_factor"],
-            "input_zero_error": self.config["twin"]["input_zero_error"],
+            **{k: self.calibration_job[k] for k in ("signals", "filters", "seed")},
+            "identification": self.identification_job,
+            "loop": {loop: self.signal_job(loop)},
+            "budget": budget,
         }
+
+    @property
+    def structures(self) -> list[str] | None:
+        """Names of the structures to try; None for all."""
+        asked = self.config["structures"]["tried"]
+        return None if asked == "all" else list(asked)
 
     @property
     def held_out_job(self) -> dict[str, Any]:
         """Settings of the structures' trial on the signals that no fit has seen."""
-        calibrated = self.calibration_job
-        unseen = sorted({pair.signal for pair in load()} - set(calibrated["signals"]))
+        unseen = sorted({pair.signal for pair in load()} - set(CALIBRATION_SIGNALS))
         signals = {name: self.signal_job(name) for name in unseen}
-        return {**calibrated, "signals": signals}
+        return {**self.structure_job, "signals": signals}
 
     @property
     def error_job(self) -> dict[str, Any]:
@@ -325,13 +334,15 @@ def read_settings(
     }
     named = [
         *(("signals", name) for name in config["signals"]),
-        *(("calibration: signals", name) for name in config["calibration"]["signals"]),
         ("identification: signal", config["identification"]["signal"]),
         ("order_sweep: signal", config["order_sweep"]["signal"]),
         *(("rdgpi: fit_signals", name) for name in config["rdgpi"]["fit_signals"]),
     ]
     if config["source"] == "twin":
         _check_names(place, named, excitations)
+        # The calibration and the trial of structures run all signals of the tables.
+        for pair in load():
+            _check_names(place, [("excitations", pair.signal)], excitations)
         _check_lengths(place, config, excitations)
         _check_model(place, "twin: model", config["twin"]["model"])
         _check_twin(place, config)

@@ -13,9 +13,10 @@ from hystbench.calibration.crossvalidation import leave_one_out
 from hystbench.calibration.ensemble import equally_good
 from hystbench.calibration.fit import Fit, calibrate, descend, to_point, to_values
 from hystbench.calibration.objective import Objective, error_residual
-from hystbench.calibration.targets import CALIBRATION_SIGNALS, Target, targets
+from hystbench.calibration.targets import Target, targets
 from hystbench.calibration.twin import UNKNOWNS, make_twin, step_sizes, weights
 from hystbench.errors import InputError
+from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.signals import Signal, chirp, sine
 
 START = {item.name: item.start for item in UNKNOWNS}
@@ -213,11 +214,11 @@ def test_the_signal_left_out_is_not_fitted():
     aims = targets_of(problem, START)
     seen = []
 
-    def find(problem, others, start, evaluations):
+    def find(others):
         seen.append([item.signal for item in others])
         return Fit(dict(START), 0.0)
 
-    left = leave_one_out(problem, aims, Fit(dict(START), 0.0), find=find)
+    left = leave_one_out(problem, aims, find)
     assert seen == [["sine-100hz"], ["sine-040hz"]]
     assert [item.signal for item in left] == ["sine-040hz", "sine-100hz"]
     for item in left:  # the twin that made the targets has no deviation

@@ -8,7 +8,7 @@ import yaml
 from click.testing import CliRunner
 
 from hystbench.calibration import fit as fitting
-from hystbench.calibration.choice import CHOICE
+from hystbench.calibration.first_round import FIRST_ROUND
 from hystbench.calibration.fit import descend
 from hystbench.calibration.found import values_of
 from hystbench.calibration.twin import UNKNOWNS, make_twin
@@ -25,13 +25,13 @@ def job():
     """The project's own settings on short records of two signals."""
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
     config["excitation"]["duration_s"] = 0.1
-    config["calibration"] |= {
-        "signals": ["sine-080hz", "sine-100hz"],
-        "starts": 2,
-        "twins": 2,
-    }
+    config["calibration"] |= {"starts": 2, "twins": 2}
     schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
-    return read_settings(config, schema).calibration_job
+    job = read_settings(config, schema).calibration_job
+    job["signals"] = {
+        name: job["signals"][name] for name in ("sine-080hz", "sine-100hz")
+    }
+    return job
 
 
 @pytest.fixture
@@ -121,13 +121,13 @@ def test_the_job_holds_none_of_what_is_calibrated(job):
 def test_what_was_tried_has_a_row_each_and_one_that_was_chosen(tmp_path):
     make_twin(VALUES).save(tmp_path / "gma.yaml")
     rows, _ = tables(tmp_path, "gma.yaml")
-    choice = yaml.safe_load(CHOICE.read_text())
-    assert len(rows) == len(choice["tried"])
+    first = yaml.safe_load(FIRST_ROUND.read_text())
+    assert len(rows) == len(first["tried"])
     scores = [float(row["left_out_score"]) for row in rows]
     assert scores == sorted(scores)
     chosen = [row for row in rows if row["chosen"]]
-    assert [row["structure"] for row in chosen] == [choice["chosen"]["structure"]]
-    # What choice.yaml gives as the reason: least among those of the whole record.
+    assert [row["structure"] for row in chosen] == [first["chosen"]["structure"]]
+    # What first_round.yaml gives as the reason: least among those of the whole record.
     whole = [row for row in rows if float(row["window_start_s"]) == 0]
     assert chosen[0] == whole[0]
 

@@ -1,17 +1,21 @@
-from hystbench.calibration.structures import STRUCTURES
+from hystbench.calibration.structures import asked_structures
 
 # The twin itself. `snakemake calibrate` fits it to the published tables and puts it into
 # the package; it is committed there, so no other target makes it. The step sizes and
 # the zero error that belong to it are printed, for config.yaml.
 if TWIN:
     CALIBRATION = f"{RESULTS}/calibration"
+    try:
+        STRUCTURES = [item.name for item in asked_structures(SETTINGS.structures)]
+    except InputError as error:
+        sys.exit(f"hystbench: {PLACE}: structures: tried: {error}")
     # Found by name, so that no import tells of them.
     CALIBRATED_FILTERS = sorted(GRAPH.find_children("hystbench.filters"))
 
     # What the calibration tried and found, for docs/.
     rule tried:
         input:
-            choice=PACKAGE / "plants/choice.yaml",
+            first_round=PACKAGE / "calibration/first_round.yaml",
             twin=PACKAGE / "plants/gma.yaml",
             others=sorted(PACKAGE.glob("plants/uncertainty/gma-*.yaml")),
             code=code("hystbench.commands.tried"),
@@ -64,10 +68,9 @@ if TWIN:
             " && rm -f {params.folder:q}/uncertainty/gma-*.yaml"
             " && cp {input.uncertainty:q} {params.folder:q}/uncertainty; }} 2> {log:q}"
 
-    # Structures and readings beside the chosen one; `all` leaves them out for their time.
+    # Structures and readings beside one another; `all` leaves them out for their time.
     rule structure:
         input:
-            twin=PACKAGE / "plants/gma.yaml",
             published=PUBLISHED,
             code=code("hystbench.commands.structure", *CALIBRATED_FILTERS),
         output:
@@ -79,25 +82,28 @@ if TWIN:
         message:
             "structure {wildcards.structure}"
         shell:
-            "hystbench structure {wildcards.structure} --model {input.twin:q}"
+            "hystbench structure {wildcards.structure}"
             " --settings {params.settings:q} --out {output:q} 2> {log:q}"
 
     rule structures:
         input:
-            [f"{RESULTS}/structures/{item.name}.json" for item in STRUCTURES],
+            tried=[f"{RESULTS}/structures/{name}.json" for name in STRUCTURES],
+            code=code("hystbench.commands.structures"),
         output:
-            f"{RESULTS}/structures/tried.csv",
+            tried=f"{RESULTS}/structures/tried.csv",
+            choice=f"{RESULTS}/structures/choice.yaml",
         log:
             f"{RESULTS}/logs/structures/tried.log",
         message:
             "structures that were tried"
         shell:
-            "hystbench structures {input:q} --out {output:q} 2> {log:q}"
+            "hystbench structures {input.tried:q} --out {output.tried:q}"
+            " --choice {output.choice:q} 2> {log:q}"
 
     # After the choice: all structures on the held-out signals, by one rule.
     rule held_out:
         input:
-            tried=rules.structures.input,
+            tried=rules.structures.input.tried,
             choice=PACKAGE / "plants/choice.yaml",
             published=PUBLISHED,
             code=code("hystbench.commands.held_out", *CALIBRATED_FILTERS),

@@ -1,9 +1,11 @@
+from hystbench.published.split import CALIBRATION_SIGNALS
+
 # Twins with other hysteresis than the twin's own. `snakemake families` fits them and
 # puts them into the package; they are committed there, so no other target makes them.
 FAMILY_TWINS = [
     f"{RESULTS}/families/gma-{family}.yaml" for family in ("preisach", "jiles-atherton")
 ]
-FAMILY_SIGNALS = config["calibration"]["signals"]
+FAMILY_SIGNALS = CALIBRATION_SIGNALS
 
 
 rule family_twins:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hystbench.calibration.fit import Fit, Tell, descend
+from hystbench.calibration.fit import Fit, Tell
 from hystbench.calibration.objective import Objective
 from hystbench.calibration.targets import Target
 
@@ -33,22 +33,26 @@ class LeftOut:
 def leave_one_out(
     objective: Objective,
     targets: tuple[Target, ...],
-    start: Fit,
+    find: Callable[[tuple[Target, ...]], Fit],
     *,
-    evaluations: int = 12,
     tell: Tell = lambda line: None,
-    find: Callable[..., Fit] = descend,
 ) -> tuple[LeftOut, ...]:
-    """Refit without each signal in turn and look at the signal left out.
+    """Fit without each signal in turn and look at the signal left out.
 
-    The refits start from the twin of all signals: what they remember of the signal
-    left out is what the descent does not change, so the figures lean to the kind side.
+    Parameters
+    ----------
+    objective : Objective
+    targets : tuple of Target
+    find : callable
+        Fits a twin to the targets that it is given, and knows nothing of the others:
+        neither its starts nor anything else in it may come from a fit to them.
+    tell : callable
+        Told one line after each signal.
     """
     found = []
     for target in targets:
-        others = tuple(item for item in targets if item is not target)
-        fit = find(objective, others, start.values, evaluations)
-        cells = objective.cells(fit.values, [target.signal])
+        fit = find(tuple(item for item in targets if item is not target))
+        cells = objective.at(fit.values).cells(fit.values, [target.signal])
         ratios = {
             model: float(np.log10(mse / target.mse[model]))
             for model, mse in cells.mse[target.signal].items()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from hystbench.measurement import measure
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 from hystbench.signals import Signal
+from hystbench.slow_loop import identify_slow_loop
 
 LOG_SCALE = {"gpo": 0.06, "backlash": 0.10, "volterra": 0.08, "delayed": 0.08}
 """A deviation of log10 MSE that counts as one; beyond it a cell counts less."""
@@ -72,6 +73,13 @@ class Objective:
         What is free.
     make : callable
         The twin that values of the unknowns make.
+    loop : Signal, optional
+        A slow signal, where the GPO filter has the envelopes that Algorithm 1 finds on
+        it; otherwise they are the published ones.
+    identification : mapping
+        Settings of Algorithm 1, for a ``loop``.
+    identified : mapping, optional
+        What it found, as :meth:`at` puts it here.
     """
 
     signals: Mapping[str, Signal]
@@ -80,17 +88,43 @@ class Objective:
     window_start_s: float = 0.0
     unknowns: tuple[Unknown, ...] = UNKNOWNS
     make: Callable[[dict[str, float]], Model] = make_twin
+    loop: Signal | None = None
+    identification: Mapping[str, Any] = field(default_factory=dict)
+    identified: Mapping[str, Any] | None = None
     _records: dict[str, Record] = field(default_factory=dict, repr=False)
 
     def record(self, name: str, model: Model, input_zero: float) -> Record:
         """Measure a signal on the twin as ``hystbench measure`` does."""
-        settings = {"seed": self.seed, "input_zero_error": input_zero}
-        return measure(self.signals[name], model, settings, "calibration")
+        return self._measured(self.signals[name], model, {"input zero": input_zero})
+
+    def _measured(
+        self, signal: Signal, model: Model, values: Mapping[str, float]
+    ) -> Record:
+        zero = values.get("input zero", 0.0)
+        settings = {"seed": self.seed, "input_zero_error": zero}
+        record = measure(signal, model, settings, "calibration")
+        if "input noise" not in values:
+            return record
+        # A stream of its own beside the sensor noise's.
+        rng = np.random.default_rng([self.seed, *signal.name.encode(), 1])
+        noise = values["input noise"] * rng.standard_normal(len(record))
+        return replace(record, u=record.u + noise)
+
+    def at(self, values: Mapping[str, float]) -> Objective:
+        """Give the objective with the envelopes that Algorithm 1 finds on a twin.
+
+        Where the envelopes are the published ones, this is the objective itself.
+        """
+        if self.loop is None:
+            return self
+        slow = self._measured(self.loop, self.make(dict(values)), values)
+        found = identify_slow_loop(slow, self.identification)
+        return replace(self, identified=found.to_dict())
 
     def mse(self, model: str, record: Record, steps: Mapping[str, float]) -> float:
         """MSE of a filter on a record after the start of the window."""
         settings = {**self.filters[model], "convergence_factor": steps}
-        adaptive = make_filter(model, settings, record)
+        adaptive = make_filter(model, settings, record, self.identified)
         result = adaptive.run(record.u, record.y)
         if result.diverged_at is not None:
             return DIVERGED
@@ -102,7 +136,7 @@ class Objective:
         twin, steps = self.make(dict(values)), step_sizes(dict(values))
         mse, rms = {}, {}
         for name in names:
-            record = self.record(name, twin, values.get("input zero", 0.0))
+            record = self._measured(self.signals[name], twin, values)
             self._records[name] = record
             start = round(self.window_start_s / record.dt)
             rms[name] = float(np.sqrt(np.mean(record.y[start:] ** 2)))

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.calibration.constraints import check_stroke, turns
-from hystbench.calibration.crossvalidation import leave_one_out
 from hystbench.calibration.ensemble import equally_good
 from hystbench.calibration.fit import Fit, Tell, calibrate
 from hystbench.calibration.objective import Objective
-from hystbench.calibration.targets import CALIBRATION_SIGNALS, targets
+from hystbench.calibration.targets import targets
 from hystbench.calibration.twin import make_twin, step_sizes
 from hystbench.files import write_json
+from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.signals import make_signal
 
 
@@ -41,7 +41,7 @@ def run_calibration(
         Folder for the equally good twins' model files.
     report : Path
         JSON to write: values, step sizes, zero error of the recorded input, cost,
-        cells, the turns of the chirp and the signals left out.
+        cells and the turns of the chirp.
     state : Path, optional
         Where an interrupted search goes on.
     tell : callable
@@ -79,7 +79,6 @@ def run_calibration(
     ):
         name = f"{twin.name}-{number:02d}"
         replace(make_twin(other.values), name=name).save(uncertainty / f"{name}.yaml")
-    left_out = leave_one_out(objective, aims, best, tell=tell)
     write_json(
         report,
         {
@@ -90,7 +89,6 @@ def run_calibration(
             "cells": asdict(objective.cells(best.values, signals)),
             "targets": [asdict(aim) for aim in aims],
             "chirp": turns(twin)._asdict(),
-            "left_out": [asdict(item) for item in left_out],
         },
     )
     return best

@@ -7,13 +7,18 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.calibration.structures import write_structures
+from hystbench.calibration.choice import write_choice, write_structures
 from hystbench.files import read_json
 
 
 @click.command()
 @click.argument("tried", type=options.FILE, nargs=-1, required=True)
 @click.option("--out", type=options.NEW_FILE, required=True)
-def structures(tried: tuple[Path, ...], out: Path) -> None:
+@click.option(
+    "--choice", type=options.NEW_FILE, required=True, help="What the rule chooses."
+)
+def structures(tried: tuple[Path, ...], out: Path, choice: Path) -> None:
     """Write a row for each result in TRIED of ``hystbench structure``."""
-    write_structures(out, [read_json(path) for path in tried])
+    found = [read_json(path) for path in tried]
+    write_structures(out, found)
+    write_choice(choice, found)

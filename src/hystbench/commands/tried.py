@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.calibration.choice import write_tried
+from hystbench.calibration.first_round import write_tried
 from hystbench.calibration.found import write_found
 from hystbench.model import load_model
 
@@ -20,7 +20,7 @@ from hystbench.model import load_model
 def tried(
     twin: Path, others: tuple[Path, ...], tried_file: Path, found_file: Path
 ) -> None:
-    """Write the structures that were tried, and the values found in TWIN.
+    """Write what the first round tried, and the values found in TWIN.
 
     OTHERS are the equally good twins, for the spread of each value.
     """

@@ -76,6 +76,11 @@ class SignalCheck:
     removals: tuple[tuple[str, ...], ...]
     rms: tuple[Interval, ...]
 
+    @property
+    def implied_rms(self) -> float:
+        """RMS displacement (um) of the signal: the middle of what is left."""
+        return sum((each.low + each.high) / 2 for each in self.rms) / len(self.rms)
+
     def standing(self, model: str) -> Standing:
         """Tell whether a row agrees with the largest consistent set(s) of filters.
 
