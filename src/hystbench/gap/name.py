@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -184,7 +184,24 @@ def rank(
                 continue
         candidates.append(Candidate(*own, value, now - value, after))
     candidates.sort(key=lambda item: (item.state is None, item.score))
+    candidates = [
+        exactly(item, score, now) if place < EXACT else item
+        for place, item in enumerate(candidates)
+    ]
+    candidates.sort(key=lambda item: (item.state is None, item.score))
     return (*candidates, *declined)
+
+
+def exactly(item: Candidate, score: Score, now: float) -> Candidate:
+    """Simulate a candidate exactly: what steps of time miss may look like an effect."""
+    if item.state is None:
+        return item
+    after, value = finished(item.state, score)
+    return replace(item, state=after, score=value, gain=now - value)
+
+
+EXACT = 3
+"""Of the finalists, those that are simulated exactly before one is taken."""
 
 
 def name(state: State, floor_rms: float, say: Say = lambda line: None) -> Named:
@@ -233,7 +250,7 @@ def _path(
         if not taken:
             break
         assert first.state is not None  # noqa: S101  (for the type checker)
-        state, _ = finished(first.state, score)
+        state = first.state
         if len(state.added) > 1:
             state = reconsidered(state, rounds, floor_rms, say)
     return Named(state, tuple(rounds)), deferred
@@ -294,10 +311,9 @@ def reconsidered(
         ranking = rank(short, score, [effects()[name] for name in sorted(names)])
         best = ranking[0]
         if best.state is not None and best.effect != item.effect:
-            after, value = finished(best.state, score)
-            if value < now - SWAP:
-                say(f"{item.effect} gives way to {best.effect}: {now - value:.1f}")
-                return after
+            if best.score < now - SWAP:
+                say(f"{item.effect} gives way to {best.effect}: {now - best.score:.1f}")
+                return best.state
     return state
 
 

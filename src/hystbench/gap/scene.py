@@ -127,7 +127,9 @@ class Scene:
 
 @lru_cache(maxsize=1024)
 def _quick(block: Block) -> Block:
-    if isinstance(block, HeldBlock) and block.smooths and block.holding == LIMITED:
+    # The drive's blocks are the first: what they miss would pass for an effect.
+    behind = block.place != "drive" and isinstance(block, HeldBlock) and block.smooths
+    if behind and block.holding == LIMITED:
         return replace(block, hold="linear")
     return block
 

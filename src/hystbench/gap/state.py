@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -36,8 +36,8 @@ class Added(NamedTuple):
     effect: str
     place: str
     form: str
-    block: int | None
-    """Place of its block in the chain; None for a signal beside it."""
+    blocks: tuple[int, ...]
+    """Places of its blocks in the chain; none for a signal beside it."""
     values: dict[str, float]
     charge: float
     replaced: Block | None = None
@@ -132,7 +132,7 @@ class State:
         """
         columns = []
         for item in self.added:
-            own = [k for k, free in enumerate(self.free) if free.block == item.block]
+            own = [k for k, free in enumerate(self.free) if free.block in item.blocks]
             for k in own if len(own) <= MANY else ():
                 value = self.value(self.free[k])
                 for factor in FORMS:
@@ -265,69 +265,68 @@ def with_effect(state: State, variant: Variant, values: Values) -> State:
     note = dict(values)
     own = (variant.effect, variant.place, variant.form)
     if variant.beside is not None:
-        added = Added(*own, None, note, variant.freedom)
+        added = Added(*own, (), note, variant.freedom)
         return replace(
             state,
             added=(*state.added, added),
             beside=(*state.beside, (variant.beside, note)),
         )
-    tail = variant.build(values)
-    chain = (*state.chain[: variant.start], *tail)
-    position = variant.start + variant.position
-    longer = len(chain) - len(state.chain)
-
-    def shifted(block: int) -> int:
-        return block + longer if block >= position else block
-
-    kept = [
-        free._replace(block=shifted(free.block))
-        for free in state.free
-        if longer or free.block != position
+    chain = (*state.chain[: variant.start], *variant.build(values))
+    places = tuple(variant.start + k for k in variant.positions)
+    old = state.chain[variant.start] if variant.replaces else None
+    # The chain's own blocks stay in their order around those of the effect.
+    stays = [k for k in range(len(chain)) if k not in places]
+    came = [
+        k for k in range(len(state.chain)) if old is None or k != variant.start
     ]
-    old = None if longer else state.chain[position]
-    added = Added(*own, position, note, variant.freedom, old)
+    moved = dict(zip(came, stays, strict=True))
     return replace(
         state,
         chain=chain,
-        free=(*kept, *numbers_of(chain[position], position, variant)),
+        free=(
+            *_moved(state.free, moved),
+            *(f for k in places for f in numbers_of(chain[k], k, variant)),
+        ),
         added=(
-            *(
-                item if item.block is None else item._replace(block=shifted(item.block))
-                for item in state.added
-            ),
-            added,
+            *(_placed(item, moved) for item in state.added),
+            Added(*own, places, note, variant.freedom, old),
         ),
     )
+
+
+def _moved(free: Iterable[Free], moved: dict[int, int]) -> Iterator[Free]:
+    """Follow free numbers to where their blocks are now; drop those that went."""
+    for item in free:
+        if item.block in moved:
+            yield item._replace(block=moved[item.block])
+
+
+def _placed(item: Added, moved: dict[int, int]) -> Added:
+    places = tuple(moved[k] for k in item.blocks if k in moved)
+    return item._replace(blocks=places)
 
 
 def without_effect(state: State, number: int) -> State:
     """Take an added effect out again."""
     gone = state.added[number]
     rest = tuple(item for k, item in enumerate(state.added) if k != number)
-    if gone.block is None:
-        order = [item.block for item in state.added[:number]].count(None)
+    if not gone.blocks:
+        order = [item.blocks for item in state.added[:number]].count(())
         beside = tuple(x for k, x in enumerate(state.beside) if k != order)
         return replace(state, added=rest, beside=beside)
-    place = gone.block
-    own = () if gone.replaced is None else (gone.replaced,)
-    chain = (*state.chain[:place], *own, *state.chain[place + 1 :])
-    shorter = 1 - len(own)
-
-    def shifted(block: int) -> int:
-        return block - shorter if block > place else block
-
+    chain: list[Block] = []
+    moved = {}
+    for k, block in enumerate(state.chain):
+        if k not in gone.blocks:
+            moved[k] = len(chain)
+            chain.append(block)
+        elif gone.replaced is not None:
+            chain.append(gone.replaced)
     return replace(
         state,
-        chain=chain,
-        free=tuple(
-            free._replace(block=shifted(free.block))
-            for free in state.free
-            if free.block != place
-        ),
-        added=tuple(
-            item if item.block is None else item._replace(block=shifted(item.block))
-            for item in rest
-        ),
+        chain=tuple(chain),
+        free=tuple(_moved(state.free, moved)),
+        added=tuple(_placed(item, moved) for item in rest),
     )
 
 

@@ -22,23 +22,31 @@ class Asymmetry(Effect):
         small = 1e-3 / scene.largest(place)
         yield self.inserted(scene, place, form="square", unit={"coefficient": small})
         if scene.hysteresis is not None:
-            start = scene.hysteresis
-            rest = scene.chain[start:]
+            yield self._bias(scene, scene.hysteresis)
 
-            def build(given: Values) -> tuple[Block, ...]:
-                offset = given["offset"]
-                return (
-                    registry()["gain"].from_mapping({"value": 1.0, "offset": offset}),
-                    *rest,
-                )
+    def _bias(self, scene: Scene, start: int) -> Variant:
+        """A constant added to the field; the sensor is set to zero with it on."""
+        gain = registry()["gain"]
+        behind = scene.behind_hysteresis
+        loop, rest = scene.chain[start:behind], scene.chain[behind:]
 
-            yield Variant(
-                self.name,
-                self.place,
-                "bias",
-                start,
-                build,
-                0,
-                unit={"offset": 1e-3 * scene.largest(start)},
-                free=("offset",),
+        def build(given: Values) -> tuple[Block, ...]:
+            bias, zero = (
+                gain.from_mapping({"value": 1.0, "offset": given[name]})
+                for name in ("bias", "zero")
             )
+            return (bias, *loop, zero, *rest)
+
+        return Variant(
+            self.name,
+            self.place,
+            "bias",
+            start,
+            build,
+            (0, len(loop) + 1),
+            unit={
+                "bias": 1e-3 * scene.largest(start),
+                "zero": 1e-3 * scene.largest(behind),
+            },
+            free=("offset",),
+        )

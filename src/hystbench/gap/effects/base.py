@@ -59,8 +59,8 @@ class Variant:
         The first block of the chain that changes.
     build : callable
         Blocks from ``start`` on, from values of all parameters.
-    position : int
-        Where the effect's block stands in what ``build`` gives.
+    positions : tuple of int
+        Where the effect's own blocks stand in what ``build`` gives.
     grids : dict of str to ndarray
         Values to search, by parameter.
     unit : dict of str to float
@@ -73,6 +73,8 @@ class Variant:
         Added to the output of the chain, which stays as it is.
     charge : float, optional
         Parameters to be charged, where it is not the number of those searched.
+    replaces : bool
+        Whether the effect's block takes the place of the chain's at ``start``.
     neutral : bool
         Whether the chain is as before where all parameters solved for are zero.
     """
@@ -82,13 +84,14 @@ class Variant:
     form: str
     start: int
     build: Callable[[Values], tuple[Block, ...]]
-    position: int
+    positions: tuple[int, ...]
     grids: dict[str, FloatArray] = field(default_factory=dict)
     unit: dict[str, float] = field(default_factory=dict)
     positive: tuple[str, ...] = ()
     free: tuple[str, ...] = ()
     beside: Beside | None = None
     charge: float | None = None
+    replaces: bool = False
     neutral: bool = True
 
     @property
@@ -156,7 +159,7 @@ class Effect(ABC):
             form,
             start,
             build,
-            len(between),
+            (len(between),),
             grids or {},
             unit or {},
             positive,
@@ -181,7 +184,7 @@ class Effect(ABC):
             form,
             end,
             lambda given: (),
-            0,
+            (),
             grids or {},
             beside=beside,
             charge=charge,

@@ -40,9 +40,10 @@ class StiffnessHardening(Effect):
                 "",
                 k,
                 build,
-                0,
+                (0,),
                 unit={"coefficient": small},
                 free=("coefficient",),
+                replaces=True,
                 neutral=False,
             )
 
