@@ -174,7 +174,7 @@ class Model:
         """Return the names of all parameters in the chain's order."""
         return tuple(
             f"{label}.{parameter}"
-            for label, block in self._labelled()
+            for label, block in self.labelled()
             for parameter in block.parameters()
         )
 
@@ -266,7 +266,8 @@ class Model:
         """Write the model's YAML file, all of it or nothing."""
         write_text(path, self.to_yaml())
 
-    def _labelled(self) -> Iterator[tuple[str, Block]]:
+    def labelled(self) -> Iterator[tuple[str, Block]]:
+        """Give every block with its label: its name, and ``#2`` for the second one."""
         seen: dict[str, int] = {}
         for block in self.chain:
             seen[block.name] = seen.get(block.name, 0) + 1
@@ -275,7 +276,7 @@ class Model:
 
     def _find(self, name: str) -> tuple[int, str]:
         label, _, parameter = str(name).rpartition(".")
-        for position, (known, block) in enumerate(self._labelled()):
+        for position, (known, block) in enumerate(self.labelled()):
             if known == label and parameter in block.parameters():
                 return position, parameter
         raise InputError(

@@ -13,7 +13,7 @@ from hystbench.gap.effects.base import Declined, Effect
 from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished, score_of
 from hystbench.gap.reshape import directions, step_error
 from hystbench.gap.score import Score
-from hystbench.gap.state import State, without_effect
+from hystbench.gap.state import State, at_end, without_effect
 
 PAYS = 40.0
 """By how much an effect must lower the score to be named."""
@@ -177,6 +177,11 @@ def rank(
                 declined.append(
                     Candidate(*own[:2], declined=f"fits best where {error}")
                 )
+                continue
+            end = at_end(after, variant)
+            if end:
+                why = f"fits best at the end of what it can be: {end}"
+                declined.append(Candidate(*own[:2], declined=why))
                 continue
             power = state.power(score.floor)
             if after.share(state, score.floor, power) < -WORSE:

@@ -9,9 +9,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
-from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.held import Hold
 from hystbench.record import FloatArray, Record
 
 Signals = tuple[FloatArray, ...]

@@ -276,9 +276,7 @@ def with_effect(state: State, variant: Variant, values: Values) -> State:
     old = state.chain[variant.start] if variant.replaces else None
     # The chain's own blocks stay in their order around those of the effect.
     stays = [k for k in range(len(chain)) if k not in places]
-    came = [
-        k for k in range(len(state.chain)) if old is None or k != variant.start
-    ]
+    came = [k for k in range(len(state.chain)) if old is None or k != variant.start]
     moved = dict(zip(came, stays, strict=True))
     return replace(
         state,
@@ -332,3 +330,14 @@ def without_effect(state: State, number: int) -> State:
 
 def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:
     return np.column_stack(columns) if columns else np.zeros((rows, 0))
+
+
+def at_end(state: State, variant: Variant) -> str:
+    """Name a parameter of the effect added last that lies at an end of its range."""
+    own = state.added[-1].blocks
+    for free in state.free:
+        if free.block in own and free.parameter in variant.inside:
+            value, width = state.value(free), np.log(free.high / free.low)
+            if not 0.02 < np.log(value / free.low) / width < 0.98:
+                return f"{free.parameter} = {value:.3g}"
+    return ""

@@ -73,6 +73,9 @@ class Variant:
         Added to the output of the chain, which stays as it is.
     charge : float, optional
         Parameters to be charged, where it is not the number of those searched.
+    inside : tuple of str
+        Searched parameters that at an end of their range make another thing of the
+        effect: there it is not accepted.
     replaces : bool
         Whether the effect's block takes the place of the chain's at ``start``.
     neutral : bool
@@ -91,6 +94,7 @@ class Variant:
     free: tuple[str, ...] = ()
     beside: Beside | None = None
     charge: float | None = None
+    inside: tuple[str, ...] = ()
     replaces: bool = False
     neutral: bool = True
 
@@ -133,6 +137,7 @@ class Effect(ABC):
         unit: dict[str, float] | None = None,
         positive: tuple[str, ...] = (),
         free: tuple[str, ...] = (),
+        inside: tuple[str, ...] = (),
         neutral: bool = True,
     ) -> Variant:
         """Give the variant that puts the effect's block before the block at a place.
@@ -164,6 +169,7 @@ class Effect(ABC):
             unit or {},
             positive,
             free or (*(grids or {}), *(unit or {})),
+            inside=inside,
             neutral=neutral,
         )
 

@@ -21,7 +21,10 @@ class Friction(Effect):
             scene,
             end,
             grids={
-                "velocity_scale": logarithmic(1e-4 * scene.fastest, scene.fastest, 2)
+                "velocity_scale": logarithmic(
+                    1e-4 * scene.fastest, scene.fastest / 5, 2
+                )
             },
+            inside=("velocity_scale",),
             unit={"coulomb": 1e-3 * scene.largest(end)},
         )

@@ -30,8 +30,8 @@ class HysteresisShape(Effect):
         powers = [f"power {k}" for k in range(1, POWERS + 1)]
         size = 1e-3 * scene.largest(scene.behind_hysteresis)
         unit = (
-            {name: size / amplitude for name in weights}
-            | {name: size / amplitude**2 for name in squares}
+            dict.fromkeys(weights, size / amplitude)
+            | dict.fromkeys(squares, size / amplitude ** 2)
             | {name: size / amplitude**k for k, name in enumerate(powers, start=1)}
         )
         yield self.inserted(

@@ -1,0 +1,42 @@
+"""``hystbench gap``: find what a simulator lacks, add it, show the gap shrink."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("dataset", type=click.Path(path_type=Path))
+@click.option(
+    "--model",
+    required=True,
+    help="Model file, gpi, linear, column, or package.module:function.",
+)
+@click.option("--out", type=click.Path(path_type=Path), required=True)
+@click.option("--report/--no-report", default=True, help="Whether to write the page.")
+def gap(dataset: Path, model: str, out: Path, report: bool) -> None:
+    """Find what MODEL lacks beside the measurements in DATASET.
+
+    Writes OUT/gap.json, model.yaml, holdout/ and report.html.
+    """
+    from hystbench.gap.bases import load_base
+    from hystbench.gap.evidence import load_evidence
+    from hystbench.gap.run import close_gap
+
+    evidence = load_evidence(dataset)
+    base, note = load_base(model, evidence)
+    if note:
+        click.echo(note)
+    finding = close_gap(
+        evidence,
+        base,
+        out,
+        place=model,
+        report=report,
+        say=lambda line: click.echo(line, err=True),
+    )
+    effects = [item["name"] for item in finding.content["effects"]]
+    named = f": {', '.join(effects)}" if effects else ""
+    click.echo(f"{out / 'gap.json'}: {finding.content['verdict']}{named}")

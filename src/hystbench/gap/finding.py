@@ -1,0 +1,327 @@
+"""From a dataset and a base to a finding: what is decided on the fit records alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks import registry
+from hystbench.blocks.base import Block
+from hystbench.blocks.held import Hold
+from hystbench.errors import InputError
+from hystbench.gap.compared import Compared
+from hystbench.gap.effects import effects
+from hystbench.gap.experiment import next_experiment, parameter_tangents
+from hystbench.gap.floor import Floor
+from hystbench.gap.folds import make_folds
+from hystbench.gap.locate import curves, locate
+from hystbench.gap.name import Candidate, Named, make_score, name
+from hystbench.gap.scene import Scene
+from hystbench.gap.start import start_state
+from hystbench.gap.state import Added, State
+from hystbench.gap.uncertainty import on_more_samples, standard_errors
+from hystbench.gap.verdict import (
+    Left,
+    confidence,
+    judge,
+    rivals_by_effect,
+    what_is_left,
+)
+from hystbench.gap.yardstick import BlackBox
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+
+Say = Callable[[str], None]
+
+
+def _silent(line: str) -> None:
+    """Say nothing."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What the fit records decide; hold-out records have not been read.
+
+    Parameters
+    ----------
+    base : Model
+    model : Model
+        With the effects that were added.
+    state : State
+        The same on the fit records.
+    floor : Floor
+    left : Left
+    black_box : BlackBox
+        Fitted to what the base leaves.
+    content : mapping
+        What gap.json holds, but for what the hold-out records show.
+    curves : mapping
+        What the pictures of where the gap is are drawn from.
+    """
+
+    base: Model
+    model: Model
+    state: State
+    floor: Floor
+    left: Left
+    black_box: BlackBox
+    content: Mapping[str, Any]
+    curves: Mapping[str, Any]
+
+
+def find(
+    dataset: str,
+    records: tuple[Record, ...],
+    base: Model,
+    hold: Hold = "band-limited",
+    declared: float | None = None,
+    say: Say = _silent,
+) -> Finding:
+    """Locate the gap, name what is missing and add it.
+
+    Parameters
+    ----------
+    dataset : str
+        Its name.
+    records : tuple of Record
+        The fit records; no other are read.
+    base : Model
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
+    declared : float, optional
+        RMS noise, where it is known.
+    say : callable
+        Told a line of progress at a time.
+
+    Raises
+    ------
+    InputError
+        If the base does not run on the records.
+    """
+    start, floor = start_state(records, base, hold, declared)
+    compared = _compared(start.chain, start)
+    views = locate(compared, floor)
+    if views:
+        say(views[0].sentence)
+    named = name(start, floor.rms, say)
+    state = named.state
+    left = what_is_left(start, state, floor.rms)
+    folds = make_folds(records, whole=False)
+    box = BlackBox.fit(compared, folds, floor.rms)
+    rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
+    verdict, reason = judge(left, bool(state.added), rest.explained_on_folds)
+    say(f"{verdict}: {reason}")
+    finer = on_more_samples(state)
+    errors = standard_errors(finer, make_score(finer, floor.rms))
+    by_effect = rivals_by_effect(named)
+    model = augmented(base, state)
+    content = {
+        "dataset": dataset,
+        "model": base.name,
+        "unit": records[0].output.unit,
+        "verdict": verdict,
+        "reason": reason,
+        "effects": [
+            _effect(item, state, errors, by_effect.get(item.effect, ()), left)
+            for item in state.added
+        ],
+        "where": [view.to_mapping() for view in views],
+        "ranking": _ranking(named),
+        "next_experiment": _experiment(base, named, by_effect, records, floor),
+        "black_box": {"explained_on_folds": box.explained_on_folds},
+    }
+    return Finding(
+        base, model, state, floor, left, box, content, curves(compared, floor)
+    )
+
+
+def augmented(base: Model, state: State) -> Model:
+    """Give the base with the effects that were added, as a model that runs anywhere.
+
+    What is new in every record has the mean amplitude and the first record's phase.
+    """
+    chain = [*state.chain, *(block for block in beside_blocks(state))]
+    model = Model(f"{base.name}-augmented", base.input, base.output, tuple(chain))
+    names = list(model.parameter_names())
+    own = [k for item in state.added for k in item.blocks]
+    labels = [label for label, _ in model.labelled()]
+    free = tuple(n for n in names if n.rpartition(".")[0] in {labels[k] for k in own})
+    return replace(model, free=tuple(f for f in free if _numeric(model, f)))
+
+
+def beside_blocks(state: State) -> list[Block]:
+    """Give the blocks of what lies beside the chain."""
+    if not state.beside:
+        return []
+    columns = state.beside_columns
+    amplitudes = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
+    blocks, first = [], 0
+    for beside, values in state.beside:
+        shape = beside.columns(state.records[0], values, beside.order).shape[1]
+        count = shape * len(state.records)
+        own = amplitudes[first : first + count].reshape(len(state.records), shape)
+        described = effects()[beside.effect].describe(values, own)
+        blocks.append(registry()[beside.effect].from_mapping(described))
+        first += count
+    return blocks
+
+
+def _numeric(model: Model, name: str) -> bool:
+    return not isinstance(model.value(name), str)
+
+
+def _compared(chain: Sequence[Block], state: State) -> list[Compared]:
+    outputs = Scene(tuple(chain), state.records, state.hold).output
+    offsets = _beside_signals(state) if state.beside else None
+    return [
+        Compared(record, y if offsets is None else y + offsets[k])
+        for k, (record, y) in enumerate(zip(state.records, outputs, strict=True))
+    ]
+
+
+def _beside_signals(state: State) -> list[FloatArray]:
+    """Give what lies beside, over whole records, as the scored samples fit it."""
+    columns = state.beside_columns
+    amplitudes = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
+    signals = [np.zeros(len(record)) for record in state.records]
+    first = 0
+    for beside, values in state.beside:
+        for k, record in enumerate(state.records):
+            shapes = beside.columns(record, values, beside.order)
+            count = shapes.shape[1]
+            signals[k] += shapes @ amplitudes[first : first + count]
+            first += count
+    return signals
+
+
+def _effect(
+    item: Added,
+    state: State,
+    errors: FloatArray,
+    ranking: Sequence[Candidate],
+    left: Left,
+) -> dict[str, Any]:
+    own = next((x for x in ranking if x.effect == item.effect), None)
+    return {
+        "name": item.effect,
+        "place": item.place,
+        "parameters": _parameters(item, state, errors),
+        "confidence": 0.0 if own is None else confidence(own, ranking, left),
+        "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
+    }
+
+
+def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
+    """Give the effects that score within the tie of one that was added."""
+    from hystbench.gap.name import TIE
+
+    return tuple(
+        item.effect
+        for item in ranking
+        if item.effect != first.effect
+        and item.state is not None
+        and item.score < first.score + TIE
+    )
+
+
+def _parameters(item: Added, state: State, errors: FloatArray) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    if not item.blocks:
+        blocks = {beside.effect: k for k, (beside, _) in enumerate(state.beside)}
+        block = beside_blocks(state)[blocks[item.effect]]
+        for key, about in block.parameters().items():
+            value = about.plain(getattr(block, key))
+            if value is not None and value != ():
+                found[key] = {
+                    "value": value,
+                    "standard_error": None,
+                    "unit": _unit(about.unit, state),
+                }
+        return found
+    for place in item.blocks:
+        block = state.chain[place]
+        for key, about in block.parameters().items():
+            value = getattr(block, key)
+            if key == "hold" or value == ():
+                continue
+            error = _errors_of(place, key, value, state, errors)
+            label = key if key not in found else f"{key}#2"
+            found[label] = {
+                "value": list(value) if isinstance(value, tuple) else value,
+                "standard_error": error,
+                "unit": _unit(about.unit, state),
+            }
+    return found
+
+
+def _errors_of(
+    place: int, key: str, value: object, state: State, errors: FloatArray
+) -> float | list[float | None] | None:
+    own = {
+        free.element: float(errors[k]) if np.isfinite(errors[k]) else None
+        for k, free in enumerate(state.free)
+        if free.block == place and free.parameter == key
+    }
+    if isinstance(value, tuple):
+        each = [own.get(k) for k in range(len(value))]
+        return each if any(x is not None for x in each) else None
+    return own.get(None)
+
+
+def _unit(text: str, state: State) -> str:
+    """Write the model's units for U and Y."""
+    record = state.records[0]
+    parts = []
+    for word in _words(text):
+        parts.append({"U": record.input.unit, "Y": record.output.unit}.get(word, word))
+    return "".join(parts)
+
+
+def _words(text: str) -> list[str]:
+    import re
+
+    return re.findall(r"[A-Za-z]+|[^A-Za-z]+", text)
+
+
+def _ranking(named: Named) -> list[dict[str, Any]]:
+    """Give every candidate of the first round, best first."""
+    one = named.rounds[0]
+    rows = []
+    for item in one.ranking:
+        row: dict[str, Any] = {"name": item.effect, "place": item.place}
+        if item.form:
+            row["form"] = item.form
+        if item.declined:
+            row["declined"] = item.declined
+        elif np.isfinite(item.score):
+            row |= {"score": item.score, "gain": item.gain}
+        rows.append(row)
+    return rows
+
+
+def _experiment(
+    base: Model,
+    named: Named,
+    by_effect: Mapping[str, Sequence[Candidate]],
+    records: Sequence[Record],
+    floor: Floor,
+) -> dict[str, Any] | None:
+    """Look for the excitation that tells a set of likely effects apart."""
+    for effect, ranking in by_effect.items():
+        first = next(x for x in ranking if x.effect == effect)
+        names = near(first, ranking)
+        rivals = [x for x in ranking if x.effect in (effect, *names) and x.state]
+        usable = [x for x in rivals if x.state is not None and not x.state.beside]
+        if len(usable) < 2:
+            continue
+        models = [(x.effect, augmented(base, x.state)) for x in usable[:3] if x.state]
+        tangents = parameter_tangents([(model, model.free) for _, model in models])
+        try:
+            found = next_experiment(models, records, floor.rms, tangents=tangents)
+        except InputError as error:
+            return {"sentence": f"no excitation tells them apart: {error}"}
+        return found.mapping()
+    return None

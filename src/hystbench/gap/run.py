@@ -1,0 +1,159 @@
+"""``hystbench gap``: decide on the fit records, then read the hold-out records once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.files import write_csv, write_json
+from hystbench.gap.beside import black_box_mapping
+from hystbench.gap.evidence import Evidence, check_units
+from hystbench.gap.finding import Finding, Say, _silent, find
+from hystbench.gap.nuisance import Nuisance, left_over, offset_and_mains
+from hystbench.gap.scene import Scene
+from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink
+from hystbench.gap.state import State, without_effect
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+
+
+def close_gap(
+    evidence: Evidence,
+    base: Model,
+    folder: Path,
+    *,
+    place: str = "model",
+    report: bool = True,
+    say: Say = _silent,
+) -> Finding:
+    """Find what the base lacks, show on hold-out records how the gap shrinks, write it.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    base : Model
+    folder : Path
+        Gets gap.json, model.yaml, curves.json, holdout/ and report.html.
+    place : str
+        Where the base came from, for messages.
+    report : bool
+        Whether to write the page.
+    say : callable
+        Told a line of progress at a time.
+
+    Raises
+    ------
+    InputError
+        If units do not match or the base does not run; nothing is written then.
+    """
+    check_units(evidence, base, place)
+    finding = find(
+        evidence.name,
+        evidence.fit,
+        base,
+        evidence.hold,
+        evidence.noise_rms,
+        say,
+    )
+    # From here on the hold-out records are read; nothing is decided any more.
+    shown = show(finding, evidence.hold_out)
+    content = {**finding.content, **shown.content}
+    folder.mkdir(parents=True, exist_ok=True)
+    finding.model.save(folder / "model.yaml")
+    write_json(folder / "curves.json", finding.curves)
+    for record, (before, after) in zip(evidence.hold_out, shown.outputs, strict=True):
+        _write_hold_out(
+            folder / "holdout" / f"{record.name}.csv", record, before, after
+        )
+    write_json(folder / "gap.json", content)
+    if report:
+        from hystbench.gap.report import write_report  # late: it draws
+
+        write_report(folder)
+    return finding
+
+
+class Shown:
+    """What the hold-out records show."""
+
+    def __init__(
+        self, content: dict[str, Any], outputs: list[tuple[FloatArray, FloatArray]]
+    ) -> None:
+        self.content, self.outputs = content, outputs
+
+
+def show(finding: Finding, records: tuple[Record, ...]) -> Shown:
+    """Compare base and model on hold-out records.
+
+    Returns
+    -------
+    Shown
+        ``gap``, ``records``, ``ladder`` and ``black_box`` of gap.json, and the outputs
+        before and after of each record, with what is new in it as estimated.
+    """
+    state, floor = finding.state, finding.floor
+    hold = state.hold
+    nuisance = what_is_new(state)
+    base = finding.base.with_hold(hold).chain
+    before = _run(base, records, state)
+    after = _run(state.chain, records, state)
+    found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
+    stages = [("base", before)]
+    for count in range(1, len(state.added) + 1):
+        short = state
+        for number in reversed(range(count, len(state.added))):
+            short = without_effect(short, number)
+        stages.append(
+            (state.added[count - 1].effect, _run(short.chain, records, state))
+        )
+    content = {
+        "gap": mapping(found),
+        "records": records_mapping(found),
+        "ladder": [
+            {"name": name, "rms": value}
+            for name, value in ladder(records, stages, nuisance)
+        ],
+        "black_box": black_box_mapping(
+            finding.black_box, records, before, found, nuisance
+        ),
+    }
+    outputs = [
+        (
+            record.y - left_over(record, old, nuisance)[0],
+            record.y - left_over(record, new, nuisance)[0],
+        )
+        for record, old, new in zip(records, before, after, strict=True)
+    ]
+    return Shown(content, outputs)
+
+
+def what_is_new(state: State) -> Nuisance | None:
+    """Give regressors of what is new in every record, if an effect says so."""
+    if not state.beside:
+        return None
+    tones = [
+        order * values["frequency_hz"]
+        for beside, values in state.beside
+        if "frequency_hz" in values
+        for order in range(1, beside.order + 1)
+    ]
+    path = any("frequency_hz" not in values for _, values in state.beside)
+    return offset_and_mains(tones, offset=path)
+
+
+def _run(
+    chain: Sequence[Block], records: tuple[Record, ...], state: State
+) -> tuple[FloatArray, ...]:
+    return Scene(tuple(chain), records, state.hold).output
+
+
+def _write_hold_out(
+    path: Path, record: Record, before: FloatArray, after: FloatArray
+) -> None:
+    table = np.column_stack([record.time, record.y, before, after])
+    rows = ([f"{value:.9g}" for value in row] for row in table.tolist())
+    write_csv(path, ["time_s", "measured", "before", "after"], rows)

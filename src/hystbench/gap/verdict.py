@@ -1,0 +1,133 @@
+"""The verdict: what the named effects leave, and how sure the names are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from hystbench.gap.name import Candidate, Named, make_score
+from hystbench.gap.score import Score
+from hystbench.gap.state import State
+
+Word = Literal["named", "parameters", "no-gap", "unnamed"]
+
+LOOSE = 0.3
+"""Share of the gap, beyond what reshaping could leave, that no effect takes away."""
+ABOVE = 0.5
+"""Power above the floor, in floors, that makes what is left worth a word."""
+BOX = 0.5
+"""Share of what is left that a black box takes away on folds, to be clearly more."""
+SCALE = 4.0
+"""Difference in score that makes one name e times likelier than another."""
+DOUBT = 0.02
+"""That none of the vocabulary is right though one fits well."""
+
+
+@dataclass(frozen=True)
+class Left:
+    """What a model leaves, in mean squares over the records.
+
+    Parameters
+    ----------
+    before, after : float
+        Above the floor and beyond what a wrong shape of the hysteresis could leave,
+        of the base and of the model with its effects, in floors.
+    all_before, all_after : float
+        Above the floor, of the whole residual, in floors.
+    """
+
+    before: float
+    after: float
+    all_before: float
+    all_after: float
+
+    @property
+    def loose(self) -> float:
+        """Share of the gap that no effect takes away.
+
+        The lesser of two: of the whole residual, which a wrong base fills too, and of
+        what lies beyond a wrong shape of the base, which may be little of an effect
+        that looks like one.
+        """
+        beyond = max(self.after, 0.0) / max(self.before, self.after, 1e-9)
+        whole = max(self.all_after, 0.0) / max(self.all_before, self.all_after, 1e-9)
+        return min(beyond, whole)
+
+
+def what_is_left(base: State, state: State, floor_rms: float) -> Left:
+    """Measure what the base and what a model leaves, each beside its directions."""
+    floor = floor_rms**2
+    return Left(
+        *(_beyond(each, make_score(each, floor_rms)) for each in (base, state)),
+        *(each.power(floor) / floor for each in (base, state)),
+    )
+
+
+def judge(left: Left, named: bool, explained_by_box: float | None) -> tuple[Word, str]:
+    """Choose the word and say why.
+
+    Parameters
+    ----------
+    left : Left
+    named : bool
+        Whether an effect was added.
+    explained_by_box : float or None
+        Share of what is left, above the floor, that a black box takes away on folds of
+        the fit records.
+    """
+    box = explained_by_box or 0.0
+    there = left.after > ABOVE
+    if not named:
+        if not there:
+            return "no-gap", (
+                "what is left is noise, or no more than a slightly wrong shape of the "
+                "base could leave"
+            )
+        return "unnamed", (
+            f"a gap of {left.after:.2g} times the noise power is there and no effect "
+            f"of the vocabulary pays; a black box takes {100 * max(box, 0):.0f} % of "
+            "it away on folds"
+        )
+    if left.loose > LOOSE or box * left.loose > BOX * LOOSE:
+        return "unnamed", (
+            f"{100 * left.loose:.0f} % of the gap stays with the best named effects; a "
+            f"black box takes {100 * max(box, 0):.0f} % of that away on folds"
+        )
+    return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
+
+
+def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> float:
+    """Give the probability that an effect is the one, among those that were tried.
+
+    Each rival counts by how much worse it scores; what stays unexplained speaks
+    against any name.
+    """
+    odds = sum(
+        float(np.exp(-(item.score - first.score) / SCALE))
+        for item in ranking
+        if item.effect != first.effect and np.isfinite(item.score)
+    )
+    trust = max(0.0, 1.0 - left.loose / (2 * LOOSE))
+    return (1.0 - DOUBT) * trust / (1.0 + odds)
+
+
+def _beyond(model: State, score: Score) -> float:
+    columns = np.hstack([model.beside_columns, score.directions])
+    residual = model.residual
+    rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
+    squares = [float(np.mean(rest[part] ** 2)) for part in model.sample.slices]
+    return float(np.mean(squares)) / score.floor - 1.0
+
+
+def rivals_by_effect(named: Named) -> dict[str, tuple[Candidate, ...]]:
+    """Give the ranking in which each added effect was last the first."""
+    found: dict[str, tuple[Candidate, ...]] = {}
+    for one in named.rounds:
+        for item in named.state.added:
+            near = [x for x in one.ranking if x.effect == item.effect]
+            if near and near[0].state is not None and item.effect not in found:
+                found[item.effect] = one.ranking
+    return found
