@@ -65,8 +65,8 @@ def load_evidence(path: str | Path) -> Evidence:
     hold_out = tuple(record for record in records if record.use == "hold-out")
     if not hold_out:
         raise InputError(
-            f"{dataset.path}: records: none has 'use: hold-out'; expected at least one, "
-            "to show by how much the gap shrinks"
+            f"{dataset.path}: records: none has 'use: hold-out'; expected one or "
+            "more, to show by how much the gap shrinks"
         )
     for record in records:
         _check_usable(dataset, record)

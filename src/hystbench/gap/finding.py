@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -162,8 +163,9 @@ def beside_blocks(state: State) -> list[Block]:
     for beside, values in state.beside:
         shape = beside.columns(state.records[0], values, beside.order).shape[1]
         count = shape * len(state.records)
-        own = amplitudes[first : first + count].reshape(len(state.records), shape)
-        described = effects()[beside.effect].describe(values, own)
+        own = np.asarray(amplitudes[first : first + count], dtype=np.float64)
+        rows = own.reshape(len(state.records), shape)
+        described = effects()[beside.effect].describe(values, rows)
         blocks.append(registry()[beside.effect].from_mapping(described))
         first += count
     return blocks
@@ -274,16 +276,9 @@ def _errors_of(
 def _unit(text: str, state: State) -> str:
     """Write the model's units for U and Y."""
     record = state.records[0]
-    parts = []
-    for word in _words(text):
-        parts.append({"U": record.input.unit, "Y": record.output.unit}.get(word, word))
-    return "".join(parts)
-
-
-def _words(text: str) -> list[str]:
-    import re
-
-    return re.findall(r"[A-Za-z]+|[^A-Za-z]+", text)
+    units = {"U": record.input.unit, "Y": record.output.unit}
+    words = re.findall(r"[A-Za-z]+|[^A-Za-z]+", text)
+    return "".join(units.get(word, word) for word in words)
 
 
 def _ranking(named: Named) -> list[dict[str, Any]]:

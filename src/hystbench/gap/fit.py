@@ -129,7 +129,8 @@ def fine(attempt: Attempt, start: Trial) -> Trial:
             for sign in (1, -1):
                 here = {key: best.values[key] for key in grids}
                 here[name] *= float(np.exp(sign * step))
-                if not grids[name].min() <= here[name] <= grids[name].max():
+                low, high = attempt.variant.ends(name)
+                if not low <= here[name] <= high:
                     continue
                 try:
                     trial = attempt.at(tuple(here.values()))

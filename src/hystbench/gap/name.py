@@ -315,10 +315,11 @@ def reconsidered(
         names = _rivals(item.effect, rounds) - have
         ranking = rank(short, score, [effects()[name] for name in sorted(names)])
         best = ranking[0]
-        if best.state is not None and best.effect != item.effect:
-            if best.score < now - SWAP:
-                say(f"{item.effect} gives way to {best.effect}: {now - best.score:.1f}")
-                return best.state
+        other = best.state is not None and best.effect != item.effect
+        if other and best.score < now - SWAP:
+            gain = now - best.score
+            say(f"{item.effect} gives way to {best.effect}: {gain:.1f}")
+            return best.state or state
     return state
 
 

@@ -6,6 +6,7 @@ refit cheap. Simulation always runs over the whole record.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,7 +48,7 @@ class Sample:
     def slices(self) -> tuple[slice, ...]:
         """Where each record's samples lie in a vector of all of them."""
         ends = np.cumsum([0, *map(len, self.positions)])
-        return tuple(slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
+        return tuple(slice(a, b) for a, b in itertools.pairwise(ends.tolist()))
 
     def __len__(self) -> int:
         """Count the scored samples of all records."""

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from typing import cast
 
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock, Hold
-from hystbench.blocks.wrapping import Wrapped, WrappingBlock
+from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
 from hystbench.record import FloatArray, Record
 
 Signals = tuple[FloatArray, ...]
@@ -127,10 +128,9 @@ class Scene:
 @lru_cache(maxsize=1024)
 def _quick(block: Block) -> Block:
     # The drive's blocks are the first: what they miss would pass for an effect.
-    behind = block.place != "drive" and isinstance(block, HeldBlock) and block.smooths
-    if behind and block.holding == LIMITED:
-        return replace(block, hold="linear")
-    return block
+    if not isinstance(block, HeldBlock) or block.place == "drive" or not block.smooths:
+        return block
+    return replace(block, hold="linear") if block.holding == LIMITED else block
 
 
 LIMITED = "band-limited"
@@ -141,7 +141,7 @@ def joined(blocks: Sequence[Block]) -> list[Block | Wrapped]:
     steps: list[Block | Wrapped] = []
     for block in blocks:
         if isinstance(block, WrappingBlock):
-            steps[-1] = Wrapped(steps[-1], block)
+            steps[-1] = Wrapped(cast(Hysteresis, steps[-1]), block)
         else:
             steps.append(block)
     return steps

@@ -1,9 +1,9 @@
 """One number for how much of a gap is left, and the amplitudes that make it least.
 
 The residual of a candidate is split, by an orthonormal basis of what a wrong shape of
-the hysteresis could do, into ``a`` (inside, ``d`` directions) and ``c`` (the rest). With
-``s_i`` the mean square of ``c`` in record ``i``, ``f`` the noise floor's mean square and
-``p`` the number of fitted parameters the score is
+the hysteresis could do, into ``a`` (inside, ``d`` directions) and ``c`` (the rest).
+With ``s_i`` the mean square of ``c`` in record ``i``, ``f`` the noise floor's mean
+square and ``p`` the number of fitted parameters the score is
 
     sum_i W log(max(s_i, f)) + d log(max(|a|^2 / d, f)) + P p
 

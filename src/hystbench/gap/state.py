@@ -204,7 +204,7 @@ class State:
                 own = list(getattr(block, free.parameter))
                 own[free.element] = value
                 new = tuple(own)
-            chain[free.block] = replace(block, **{free.parameter: new})  # type: ignore[arg-type]
+            chain[free.block] = replace(block, **{free.parameter: new})
         return tuple(chain)
 
     def with_chain(self, chain: tuple[Block, ...]) -> State:
@@ -254,8 +254,7 @@ def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
             for element in range(len(value)):
                 yield Free(position, name, element)
         elif name in variant.grids:
-            axis = variant.grids[name]
-            yield Free(position, name, None, None, axis.min(), axis.max())
+            yield Free(position, name, None, None, *variant.ends(name))
         else:
             yield Free(position, name)
 

@@ -1,9 +1,9 @@
 """What an effect must say so that the search can try it.
 
-An effect offers variants: a place in the chain and a form. A variant says how the blocks
-from that place on look for given values of its parameters. Parameters that the output
-depends on in a curved way (a time constant, a limit) are searched on a grid; those that
-scale a contribution (a magnitude) are solved for.
+An effect offers variants: a place in the chain and a form. A variant says how the
+blocks from that place on look for given values of its parameters. Parameters that the
+output depends on in a curved way (a time constant, a limit) are searched on a grid;
+those that scale a contribution (a magnitude) are solved for.
 """
 
 from __future__ import annotations
@@ -63,6 +63,8 @@ class Variant:
         Where the effect's own blocks stand in what ``build`` gives.
     grids : dict of str to ndarray
         Values to search, by parameter.
+    limits : dict of str to (float, float)
+        Ends of the range of searched parameters, where they are not the grid's.
     unit : dict of str to float
         Parameters that are solved for, and a small step of each.
     positive : tuple of str
@@ -96,7 +98,13 @@ class Variant:
     charge: float | None = None
     inside: tuple[str, ...] = ()
     replaces: bool = False
+    limits: dict[str, tuple[float, float]] = field(default_factory=dict)
     neutral: bool = True
+
+    def ends(self, name: str) -> tuple[float, float]:
+        """Give the ends of a searched parameter's range."""
+        axis = self.grids[name]
+        return self.limits.get(name, (float(axis.min()), float(axis.max())))
 
     @property
     def freedom(self) -> float:
@@ -138,6 +146,7 @@ class Effect(ABC):
         positive: tuple[str, ...] = (),
         free: tuple[str, ...] = (),
         inside: tuple[str, ...] = (),
+        limits: dict[str, tuple[float, float]] | None = None,
         neutral: bool = True,
     ) -> Variant:
         """Give the variant that puts the effect's block before the block at a place.
@@ -170,6 +179,7 @@ class Effect(ABC):
             positive,
             free or (*(grids or {}), *(unit or {})),
             inside=inside,
+            limits=limits or {},
             neutral=neutral,
         )
 

@@ -31,7 +31,7 @@ class Drift(Effect):
             )
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, float]:
-        """Give the block's slope: the mean one; a path's is that of its straight part."""
+        """Give the block's slope: the mean one, of a path that of its ramp."""
         return {"slope": float(np.mean(amplitudes[:, 0]))}
 
 

@@ -19,5 +19,5 @@ class DriveLag(Effect):
         yield self.inserted(
             scene,
             0,
-            grids={"time_constant_s": logarithmic(scene.step / 20, scene.span / 20)},
+            grids={"time_constant_s": logarithmic(scene.step / 20, scene.span / 20, 2)},
         )

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
+from typing import Any
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.base import Effect, Values, Variant, logarithmic
 from hystbench.gap.scene import Scene
 
 
@@ -20,7 +22,13 @@ class EddyDiffusion(Effect):
             yield self.inserted(
                 scene,
                 0,
-                lambda given, geometry=geometry: {**given, "geometry": geometry},
+                partial(_values, geometry),
                 form=geometry,
-                grids={"time_constant_s": logarithmic(scene.step / 5, scene.span / 5)},
+                grids={
+                    "time_constant_s": logarithmic(scene.step / 5, scene.span / 5, 1.5)
+                },
             )
+
+
+def _values(geometry: str, given: Values) -> dict[str, Any]:
+    return {**given, "geometry": geometry}

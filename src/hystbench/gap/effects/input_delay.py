@@ -19,5 +19,5 @@ class InputDelay(Effect):
         yield self.inserted(
             scene,
             0,
-            grids={"delay_s": logarithmic(scene.step / 20, scene.span / 20)},
+            grids={"delay_s": logarithmic(scene.step / 20, scene.span / 20, 2)},
         )

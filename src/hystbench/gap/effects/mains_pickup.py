@@ -17,7 +17,7 @@ HARMONICS = 3
 
 
 class MainsPickup(Effect):
-    """A tone near a mains frequency, of one amplitude and a new phase in every record."""
+    """A tone near a mains frequency, with a new phase in every record."""
 
     name = "mains-pickup"
     place = "sensor"
@@ -34,7 +34,7 @@ class MainsPickup(Effect):
                 form="fundamental" if harmonics == 1 else f"{harmonics} harmonics",
                 grids={
                     "frequency_hz": np.concatenate(
-                        [f * np.linspace(0.99, 1.01, 5) for f in usable]
+                        [f * np.array([0.995, 1.0, 1.005]) for f in usable]
                     )
                 },
                 charge=1 + harmonics * (1 + 0.25 * len(scene.records)),

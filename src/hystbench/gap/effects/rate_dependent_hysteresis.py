@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Declined, Effect, Variant
+from hystbench.gap.effects.base import Declined, Effect, Values, Variant
 from hystbench.gap.scene import Scene
 
 
@@ -26,8 +28,8 @@ class RateDependentHysteresis(Effect):
             raise Declined("the chain has no hysteresis that could widen")
         amplitude = scene.largest(scene.hysteresis)
         sizes = {
-            "growing-thresholds": np.geomspace(0.02, 20, 7),
-            "excess-field": np.geomspace(2e-3, 0.5, 6) * amplitude,
+            "growing-thresholds": np.geomspace(0.03, 20, 5),
+            "excess-field": np.geomspace(3e-3, 0.5, 4) * amplitude,
         }
         if not can_grow(scene):
             del sizes["growing-thresholds"]
@@ -36,15 +38,15 @@ class RateDependentHysteresis(Effect):
                 yield self.inserted(
                     scene,
                     scene.hysteresis + 1,
-                    lambda given, form=form, exponent=exponent: {
-                        "exponent": exponent,
-                        **given,
-                        "form": form,
-                    },
+                    partial(_values, form, exponent),
                     form=f"{form}, {exponent:g}",
                     grids={"coefficient": at_fastest / scene.fastest**exponent},
                     free=("coefficient", "exponent"),
                 )
+
+
+def _values(form: str, exponent: float, given: Values) -> dict[str, Any]:
+    return {"exponent": exponent, **given, "form": form}
 
 
 def can_grow(scene: Scene) -> bool:

@@ -28,8 +28,9 @@ class Resonance(Effect):
             scene.behind_hysteresis,
             grids={
                 "frequency_hz": logarithmic(low, high, 6),
-                "damping_ratio": np.array([0.005, 0.05, 0.3]),
+                "damping_ratio": np.array([0.01, 0.15]),
             },
             unit={"participation": 0.01},
             inside=("frequency_hz", "damping_ratio"),
+            limits={"damping_ratio": (0.001, 0.33)},
         )

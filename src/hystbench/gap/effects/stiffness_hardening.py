@@ -1,4 +1,4 @@
-"""``stiffness-hardening``: a mode whose spring grows stiffer, or softer, with stroke."""
+"""``stiffness-hardening``: a spring that grows stiffer, or softer, with stroke."""
 
 from __future__ import annotations
 
