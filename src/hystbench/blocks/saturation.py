@@ -33,15 +33,17 @@ class Saturation(Block):
     level: float = number("Y", "output that is never reached", 1e-9, 1e9)
 
     sharpness: float = number(
-        "-", "exponent n of the algebraic law; 0 for the tangent", 0.0, 100.0, default=0.0
+        "-",
+        "exponent n of the algebraic law; 0 for the tangent",
+        0.0,
+        100.0,
+        default=0.0,
     )
 
     def check(self) -> None:
         """Refuse an exponent below one: its curve is not smooth at zero."""
         if 0.0 < self.sharpness < 1.0:
-            raise InputError(
-                f"sharpness: {self.sharpness:g}; expected 0 or at least 1"
-            )
+            raise InputError(f"sharpness: {self.sharpness:g}; expected 0 or at least 1")
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the curve."""
