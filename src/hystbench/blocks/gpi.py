@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from hystbench.blocks.base import Place
-from hystbench.blocks.parameter import numbers
+from hystbench.blocks.parameter import choice, numbers
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
@@ -14,6 +16,7 @@ from hystbench.operators import (
     generalized_prandtl_ishlinskii,
     growing_prandtl_ishlinskii,
 )
+from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
 
 
@@ -24,7 +27,8 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     ``y(t) = sum_i w_i F_{r_i}[z](t)`` with the envelope functions
     ``gamma_l(z) = a0 tanh(a1 z + a2) + a3`` and
     ``gamma_r(z) = a4 tanh(a5 z + a6) + a7``. Each operator starts from Eq. 3 with
-    w(0) = 0. Rate-independent.
+    w(0) = 0, or with ``start: settled`` as the same input leaves it once it has passed:
+    a loop that was repeated shows no virgin curve. Rate-independent.
 
     References
     ----------
@@ -51,6 +55,7 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         "-", "r_i, in the unit of the envelope functions", 0.0, 1e9
     )
     weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -1e9, 1e9)
+    start: str = choice("operators before the first sample", STARTS, "rest")
 
     def check(self) -> None:
         """Refuse as many weights as there are no thresholds for."""
@@ -68,16 +73,19 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
+        rounds = 2 if self.start == "settled" else 1
         envelope = Envelope(*self.envelope)
-        left, right = envelope.left(v), envelope.right(v)
+        left = np.tile(envelope.left(v), rounds)
+        right = np.tile(envelope.right(v), rounds)
         if growth is None:
             y, _ = generalized_prandtl_ishlinskii(
                 left, right, self.thresholds, self.weights
             )
-            return y
-        return growing_prandtl_ishlinskii(
-            left, right, self.thresholds, self.weights, growth
-        )
+        else:
+            y = growing_prandtl_ishlinskii(
+                left, right, self.thresholds, self.weights, np.tile(growth, rounds)
+            )
+        return y[-len(v) :] if rounds > 1 else y
 
     def check_growth(self) -> None:
         """Accept: the thresholds of play operators can grow."""

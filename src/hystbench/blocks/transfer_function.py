@@ -8,15 +8,19 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock, StateSpace
-from hystbench.blocks.parameter import numbers
+from hystbench.blocks.parameter import choice, numbers
 from hystbench.errors import InputError
+from hystbench.rdgpi.model import STARTS
+from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
 class TransferFunction(LinearBlock):
     """Proper, stable transfer function in descending powers of s.
 
-    ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k.
+    ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k. With
+    ``start: settled`` the input had its first value for ever before the record: a
+    record that begins in the middle of a motion shows no jump from zero.
 
     References
     ----------
@@ -34,6 +38,14 @@ class TransferFunction(LinearBlock):
     denominator: tuple[float, ...] = numbers(
         "powers of s", "d_0 to d_k, descending", -1e30, 1e30
     )
+    start: str = choice("state before the first sample", STARTS, "rest")
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the response to ``z``."""
+        if self.start == "rest" or len(z) == 0:
+            return super().simulate(z, u, dt)
+        static = self.numerator[-1] / self.denominator[-1]
+        return super().simulate(z - z[0], u, dt) + static * z[0]
 
     def check(self) -> None:
         """Refuse an improper or unstable transfer function."""

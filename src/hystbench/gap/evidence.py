@@ -32,6 +32,9 @@ class Evidence:
         How the input moves between samples.
     noise_rms : float, optional
         As declared, in the output's unit.
+    identification : str, optional
+        Name of the fit record that a hysteretic base is identified from; by default
+        the slowest.
     """
 
     name: str
@@ -39,6 +42,7 @@ class Evidence:
     hold_out: tuple[Record, ...]
     hold: Hold = "band-limited"
     noise_rms: float | None = None
+    identification: str | None = None
 
     @property
     def input(self) -> Channel:
@@ -49,6 +53,13 @@ class Evidence:
     def output(self) -> Channel:
         """Name and unit of the output."""
         return self.fit[0].output
+
+    @property
+    def slowest(self) -> Record:
+        """The record for identification: the one named, or the slowest to fit."""
+        if self.identification is None:
+            return min(self.fit, key=lambda record: record.rate)
+        return next(item for item in self.fit if item.name == self.identification)
 
 
 def load_evidence(path: str | Path) -> Evidence:

@@ -1,0 +1,171 @@
+"""The best linear base: a transfer function of an order that the folds ask for."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
+from hystbench.gap.bases.output_error import OutputError
+from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
+from hystbench.gap.evidence import Evidence
+from hystbench.gap.folds import Fold, Mask, make_folds
+from hystbench.model import Model
+from hystbench.record import FloatArray
+
+#: Highest order that is tried.
+HIGHEST = 6
+#: An order is needed if it lowers the error on the folds by more than this share.
+MATTERS = 0.005
+#: Orders above are not tried once so many in a row have not mattered.
+IN_VAIN = 2
+#: Steps of least squares on simulation: of all records, then of each fold.
+ROUNDS = 20
+FOLD_ROUNDS = 4
+
+
+class Linear(NamedTuple):
+    """A linear base, and how it was found.
+
+    Parameters
+    ----------
+    model : Model
+    note : str
+        One sentence.
+    fit_rms, fold_rms : float
+        Error on the fit records, and on the folds of them that did not fit it, in
+        units of the output.
+    """
+
+    model: Model
+    note: str
+    fit_rms: float
+    fold_rms: float
+
+
+class _Found(NamedTuple):
+    task: OutputError
+    ratio: Ratio
+    fit: float
+    folds: float
+
+
+def identified_linear(evidence: Evidence) -> Linear:
+    """Find the linear model that simulates the fit records best.
+
+    A ratio of polynomials in s and a constant, in output error. Orders from 0 (a gain)
+    to 6 are fitted to the spectra first, then by least squares on simulation with the
+    dataset's hold. The order is the lowest whose error on folds of the fit records is
+    within half a percent of the best; then the numerator is shortened by the same rule.
+    Deterministic.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Only its fit records are looked at.
+
+    Raises
+    ------
+    InputError
+        If a record is too short for folds.
+    """
+    records = evidence.fit
+    folds = make_folds(records)
+    whole = tuple(np.ones(len(record), dtype=bool) for record in records)
+    static_fit, static_folds, gain = _static(evidence, whole, folds)
+    spectra = Spectra.of([Stretch(r.u, r.y, r.dt) for r in records], evidence.hold)
+
+    def dynamic(order: int, zeros: int) -> _Found:
+        return _dynamic(evidence, spectra, order, zeros, whole, folds)
+
+    found: list[_Found] = []
+    best, in_vain = static_folds, 0
+    for order in range(1, HIGHEST + 1):
+        found.append(dynamic(order, order))
+        in_vain = 0 if found[-1].folds < (1 - MATTERS) * best else in_vain + 1
+        best = min(best, found[-1].folds)
+        if in_vain > IN_VAIN:
+            break
+    enough = best / (1 - MATTERS)
+    chosen = next((item for item in found if item.folds <= enough), None)
+    if static_folds <= enough or chosen is None:
+        chain: tuple[Block, ...] = (gain,)
+        fit, fold, what = static_fit, static_folds, "order 0 (a gain and an offset)"
+    else:
+        order = len(chosen.ratio.a)
+        for zeros in range(order - 1, -1, -1):
+            shorter = dynamic(order, zeros)
+            if shorter.folds > enough:
+                break
+            chosen = shorter
+        block = chosen.task.block(chosen.ratio)
+        chain = (block, Gain(value=1.0, offset=float(chosen.ratio.offset)))
+        fit, fold = chosen.fit, chosen.folds
+        zeros = len(chosen.ratio.b) - 1
+        what = f"order {order}, {zeros} zero{'s' * (zeros != 1)}, from {block.start}"
+    unit = evidence.output.unit
+    note = (
+        f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
+        f"{fold:.4g} {unit} on folds of them"
+    )
+    model = Model("linear", evidence.input, evidence.output, chain)
+    return Linear(model, note, fit, fold)
+
+
+def _static(
+    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
+) -> tuple[float, float, Gain]:
+    """Fit a gain and an offset: error on all records, on the folds, and the block."""
+    u = [record.u for record in evidence.fit]
+    y = [record.y for record in evidence.fit]
+
+    def line(masks: tuple[Mask, ...]) -> FloatArray:
+        left = np.concatenate([x[mask] for x, mask in zip(u, masks, strict=True)])
+        right = np.concatenate([x[mask] for x, mask in zip(y, masks, strict=True)])
+        columns = np.column_stack([left, np.ones(len(left))])
+        found: FloatArray = np.linalg.lstsq(columns, right, rcond=None)[0]
+        return found
+
+    def squares(of: FloatArray, masks: tuple[Mask, ...]) -> float:
+        return sum(
+            float(np.sum((b - of[0] * a - of[1])[mask] ** 2))
+            for a, b, mask in zip(u, y, masks, strict=True)
+        )
+
+    best = line(whole)
+    judged = sum(squares(line(fold.train), fold.validation) for fold in folds)
+    count = sum(map(len, u))
+    return (
+        float(np.sqrt(squares(best, whole) / count)),
+        float(np.sqrt(judged / count)),
+        Gain(value=float(best[0]), offset=float(best[1])),
+    )
+
+
+def _dynamic(
+    evidence: Evidence,
+    spectra: Spectra,
+    order: int,
+    zeros: int,
+    whole: tuple[Mask, ...],
+    folds: tuple[Fold, ...],
+) -> _Found:
+    """Fit one order to all records, and from there to each fold's."""
+    count = sum(map(len, evidence.fit))
+    first = fit_ratio(spectra, order, zeros)
+    rest, settled = (
+        OutputError(evidence.fit, evidence.hold, spectra.scale, start)
+        for start in ("rest", "settled")
+    )
+    clearly = settled.squares(first, whole) < 0.99 * rest.squares(first, whole)
+    task = settled if clearly else rest
+    ratio = task.refined(first, whole, ROUNDS)
+    judged = sum(
+        task.squares(task.refined(ratio, fold.train, FOLD_ROUNDS), fold.validation)
+        for fold in folds
+    )
+    return _Found(
+        task, ratio, float(np.sqrt(ratio.cost / count)), float(np.sqrt(judged / count))
+    )

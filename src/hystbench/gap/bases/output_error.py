@@ -1,0 +1,162 @@
+"""Least squares of the free-run output of a transfer function and an offset."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hystbench.blocks.band_limited import ComplexArray
+from hystbench.blocks.held import Hold
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.errors import InputError
+from hystbench.gap.bases.spectral import Ratio, stable
+from hystbench.gap.folds import Mask
+from hystbench.record import FloatArray, Record
+
+#: A step is damped so many times before a descent ends.
+TRIALS = 8
+
+
+@dataclass(frozen=True)
+class OutputError:
+    """Records that a ratio is fitted to by its simulation, as the block gives it.
+
+    Parameters
+    ----------
+    records : tuple of Record
+    hold : {"zero-order", "linear", "band-limited"}
+    scale : float
+        Unit of the ratio's s, in rad/s.
+    start : {"rest", "settled"}
+        As of the block.
+    """
+
+    records: tuple[Record, ...]
+    hold: Hold
+    scale: float
+    start: str = "rest"
+
+    def block(self, ratio: Ratio) -> TransferFunction:
+        """Give the block of a ratio; its constant is left out."""
+        numerator, denominator = ratio.coefficients(self.scale)
+        return TransferFunction(
+            numerator=tuple(numerator.tolist()),
+            denominator=tuple(denominator.tolist()),
+            hold=self.hold,
+            start=self.start,
+        )
+
+    def simulate(self, ratio: Ratio) -> list[FloatArray]:
+        """Simulate a ratio with its constant, one output a record."""
+        block = self.block(ratio)
+        return [
+            block.simulate(record.u, record.u, record.dt) + ratio.offset
+            for record in self.records
+        ]
+
+    def squares(self, ratio: Ratio, masks: Sequence[Mask]) -> float:
+        """Sum of squares of the error over the masked samples."""
+        simulated = self.simulate(ratio)
+        error = [
+            (record.y - y)[mask]
+            for record, y, mask in zip(self.records, simulated, masks, strict=True)
+        ]
+        return float(sum(part @ part for part in error))
+
+    def refined(
+        self, ratio: Ratio, masks: Sequence[Mask], rounds: int, least_gain: float = 1e-4
+    ) -> Ratio:
+        """Go down the sum of squares of the masked samples.
+
+        Steps of Levenberg and Marquardt [1]_. The derivatives are those of a response
+        from rest to the input followed by zeros.
+
+        Parameters
+        ----------
+        ratio : Ratio
+            Where to start; returned as it is if no step pays.
+        masks : sequence of ndarray of bool
+        rounds : int
+            Most steps.
+        least_gain : float
+            Share of the sum that a step must win for another to follow.
+
+        References
+        ----------
+        .. [1] D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear
+           parameters", J. SIAM 11(2), 431-441, 1963, doi:10.1137/0111030.
+        """
+        cost = self.squares(ratio, masks)
+        damping = 1e-6
+        for _ in range(rounds):
+            triangle = self._triangle(ratio, masks)
+            for _ in range(TRIALS):
+                moved = self._moved(ratio, _step(triangle, damping))
+                after = self._squares_or_none(moved, masks)
+                if after is not None and after < cost:
+                    break
+                damping *= 10.0
+            else:
+                break
+            small = after > (1 - least_gain) * cost
+            ratio, cost, damping = moved, after, max(damping / 10.0, 1e-9)
+            if small:
+                break
+        return Ratio(ratio.a, ratio.b, ratio.offset, cost)
+
+    def _squares_or_none(self, ratio: Ratio, masks: Sequence[Mask]) -> float | None:
+        """Sum of squares; None where the block refuses so far a step."""
+        try:
+            value = self.squares(ratio, masks)
+        except InputError:
+            return None
+        return value if np.isfinite(value) else None
+
+    def _moved(self, ratio: Ratio, step: FloatArray) -> Ratio:
+        k = len(ratio.a)
+        a = stable(ratio.a + step[:k])
+        return Ratio(a, ratio.b + step[k:-1], ratio.offset + step[-1], 0.0)
+
+    def _triangle(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
+        """Triangle of the derivatives, and of the error as its last column."""
+        triangles = []
+        simulated = self.simulate(ratio)
+        for record, y, mask in zip(self.records, simulated, masks, strict=True):
+            columns = [*self._derivatives(ratio, record, y), record.y - y]
+            own = np.column_stack(columns)[mask]
+            triangles.append(np.linalg.qr(own, mode="r"))
+        return np.linalg.qr(np.vstack(triangles), mode="r")
+
+    def _derivatives(
+        self, ratio: Ratio, record: Record, y: FloatArray
+    ) -> list[FloatArray]:
+        """Change of the output with each a, each b and the constant."""
+        a, b = ratio.a, ratio.b
+        settled = self.start == "settled"
+        u0 = float(record.u[0]) if settled else 0.0
+        y0 = ratio.offset + u0 * float(b[0] / a[0])
+        n = len(record)
+        s = 2j * np.pi * np.fft.rfftfreq(2 * n, record.dt) / self.scale
+        weight = 1 / np.polyval(np.append(a, 1.0)[::-1], s)
+
+        def moves(spectrum: ComplexArray, power: int) -> FloatArray:
+            return np.fft.irfft(spectrum * weight * s**power, 2 * n)[:n]
+
+        out, given = np.fft.rfft(y - y0, 2 * n), np.fft.rfft(record.u - u0, 2 * n)
+        by_a = [-moves(out, power) for power in range(len(a))]
+        by_b = [moves(given, power) for power in range(len(b))]
+        by_a[0] = by_a[0] - u0 * b[0] / a[0] ** 2
+        by_b[0] = by_b[0] + u0 / a[0]
+        return [*by_a, *by_b, np.ones(n)]
+
+
+def _step(triangle: FloatArray, damping: float) -> FloatArray:
+    left, right = triangle[:, :-1], triangle[:, -1]
+    size = np.linalg.norm(left, axis=0)
+    size[size == 0] = 1.0
+    damped = np.vstack([left / size, np.sqrt(damping) * np.eye(len(size))])
+    wanted = np.concatenate([right, np.zeros(len(size))])
+    step: FloatArray = np.linalg.lstsq(damped, wanted, rcond=None)[0] / size
+    return step

@@ -1,0 +1,265 @@
+"""A rational transfer function from spectra, in output error, with free transients.
+
+Over a finite record the spectra obey ``Y = (B U + T) / A``: T is a polynomial that
+stands for the state at both ends of the record [1]_. So a stretch out of the middle of
+a motion needs no start from rest, and by Parseval's theorem the sum of squares is that
+of the free-run simulation.
+
+References
+----------
+.. [1] R. Pintelon, J. Schoukens, System Identification: A Frequency Domain Approach,
+   2nd ed., Wiley, 2012, sections 2.6 and 6.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, cast
+
+import numpy as np
+
+from hystbench.blocks.band_limited import ComplexArray
+from hystbench.blocks.held import Hold
+from hystbench.record import FloatArray
+
+#: Highest order that is fitted.
+MOST = 8
+#: Share of a channel's power that may lie beyond the last line that is used.
+BEYOND = 1e-5
+#: Fewest lines that are used.
+FEWEST = 100
+#: Rounds of Sanathanan and Koerner, then of Gauss and Newton.
+ROUNDS = 12
+REFINED = 25
+#: Share of the cost that a round must win for another one to follow.
+LEAST_GAIN = 1e-5
+#: A pole is kept off the imaginary axis by this share of its size.
+MARGIN = 1e-5
+
+
+class Stretch(NamedTuple):
+    """Contiguous samples of a record."""
+
+    u: FloatArray
+    y: FloatArray
+    dt: float
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Spectral lines of one stretch.
+
+    Parameters
+    ----------
+    s : ndarray of complex, shape (l,)
+        ``j w`` over the scale.
+    u, y : ndarray of complex, shape (l,)
+        Input as its hold shapes it, and output; the sum of ``|y|^2`` is the sum of
+        squares of the samples.
+    constant : ndarray, shape (l,)
+        Spectrum of a constant of one.
+    """
+
+    s: ComplexArray
+    u: ComplexArray
+    y: ComplexArray
+    constant: FloatArray
+
+    @cached_property
+    def powers(self) -> ComplexArray:
+        """Powers of s from zero on, shape (l, MOST + 1)."""
+        return np.vander(self.s, MOST + 1, increasing=True)
+
+
+@dataclass(frozen=True)
+class Spectra:
+    """Lines of all stretches, over one scale of frequency in rad/s."""
+
+    lines: tuple[Lines, ...]
+    scale: float
+
+    @classmethod
+    def of(cls, stretches: Sequence[Stretch], hold: Hold) -> Spectra:
+        """Transform stretches.
+
+        The images of the input that a staircase or straight lines leave above half
+        the sampling rate are not seen.
+        """
+        raw = [_transformed(item, hold) for item in stretches]
+        power = sum(float(np.sum(np.abs(y[1:]) ** 2)) for _, _, y, _ in raw)
+        moment = sum(float(np.sum((w * np.abs(y)) ** 2)) for w, _, y, _ in raw)
+        scale = float(np.sqrt(moment / power))
+        lines = []
+        for w, u, y, constant in raw:
+            cut = slice(0, max(_lines_that_matter(u), _lines_that_matter(y)))
+            lines.append(Lines(1j * w[cut] / scale, u[cut], y[cut], constant[cut]))
+        return cls(tuple(lines), scale)
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """``(b_0 + .. + b_m s^m) / (a_0 + .. + a_{k-1} s^{k-1} + s^k)`` and a constant.
+
+    Coefficients ascend; s is in units of the spectra's scale.
+    """
+
+    a: FloatArray
+    b: FloatArray
+    offset: float
+    cost: float
+
+    def coefficients(self, scale: float) -> tuple[FloatArray, FloatArray]:
+        """Numerator and denominator in descending powers of s, the last of it one."""
+        down = np.append(self.a, 1.0) / scale ** np.arange(len(self.a) + 1)
+        up = self.b / scale ** np.arange(len(self.b))
+        return up[::-1] / down[0], down[::-1] / down[0]
+
+
+def fit_ratio(spectra: Spectra, order: int, zeros: int) -> Ratio:
+    """Find the stable ratio with the least squares of output error.
+
+    Sanathanan and Koerner's rounds [1]_ give a start; Gauss and Newton's steps on the
+    denominator alone follow, with numerator, constant and transients solved for each
+    time (variable projection). Poles that cross the axis are reflected.
+
+    Parameters
+    ----------
+    spectra : Spectra
+    order, zeros : int
+        Degrees of denominator and numerator, ``zeros <= order``, ``order >= 1``.
+
+    References
+    ----------
+    .. [1] C. K. Sanathanan, J. Koerner, "Transfer function synthesis as a ratio of
+       two complex polynomials", IEEE Trans. Automatic Control 8 (1963) 56-58.
+    """
+    problem = _Problem(spectra, order, zeros)
+    best = problem.solved(np.poly(-np.ones(order))[:0:-1])
+    a = best.a
+    for _ in range(ROUNDS):
+        a = stable(problem.denominator(a))
+        found = problem.solved(a)
+        if found.cost < best.cost:
+            small = found.cost > (1 - 1e-3) * best.cost
+            best = found
+            if small:
+                break
+    for _ in range(REFINED):
+        step = problem.denominator(best.a, best) - best.a
+        for share in (1.0, 0.5, 0.25, 0.1, 0.02):
+            found = problem.solved(stable(best.a + share * step))
+            if found.cost < best.cost:
+                break
+        else:
+            return best
+        small = found.cost > (1 - LEAST_GAIN) * best.cost
+        best = found
+        if small:
+            break
+    return best
+
+
+def stable(a: FloatArray) -> FloatArray:
+    """Reflect the poles of ``s^k + a_{k-1} s^{k-1} + .. + a_0`` to the left."""
+    poles = np.roots(np.append(a, 1.0)[::-1])
+    damping = np.maximum(np.abs(poles.real), MARGIN * np.abs(poles) + 1e-9)
+    return cast(FloatArray, np.poly(-damping + 1j * poles.imag).real[:0:-1].copy())
+
+
+@dataclass(frozen=True)
+class _Problem:
+    spectra: Spectra
+    order: int
+    zeros: int
+
+    def solved(self, a: FloatArray) -> Ratio:
+        """Give the best numerator and constant for a denominator."""
+        triangles = [
+            _triangle(*self._linear(lines, a), lines.y) for lines in self.spectra.lines
+        ]
+        found, cost = _least(triangles)
+        b, moved = found[: self.zeros + 1], found[-1]
+        return Ratio(a, b, float(moved / a[0]), cost)
+
+    def denominator(self, a: FloatArray, now: Ratio | None = None) -> FloatArray:
+        """Take a round of Sanathanan and Koerner, or of Gauss and Newton from there."""
+        triangles = []
+        for lines in self.spectra.lines:
+            linear, transients = self._linear(lines, a)
+            weight = 1 / _polynomial(a, lines.s)
+            powers = lines.powers[:, : self.order]
+            if now is None:
+                moved = powers * (weight * lines.y)[:, None]
+                target = lines.powers[:, self.order] * weight * lines.y
+            else:
+                modelled = linear @ np.append(now.b, now.offset * a[0])
+                basis, triangle = np.linalg.qr(_real(transients))
+                inside = basis.T @ _real(lines.y - modelled)
+                modelled = modelled + transients @ np.linalg.solve(triangle, inside)
+                moved = powers * (weight * modelled)[:, None]
+                target = -(lines.y - modelled)
+            columns = np.column_stack([-moved, linear])
+            triangles.append(_triangle(columns, transients, target))
+        found, _ = _least(triangles)
+        change = found[: self.order]
+        return change if now is None else a - change
+
+    def _linear(self, lines: Lines, a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """Columns of numerator and constant, and those of the transient."""
+        weight = 1 / _polynomial(a, lines.s)
+        weighted = lines.powers[:, : self.order + 1] * weight[:, None]
+        own = weighted[:, : self.zeros + 1] * lines.u[:, None]
+        return np.column_stack([own, weighted[:, 0] * lines.constant]), weighted
+
+
+def _polynomial(a: FloatArray, s: ComplexArray) -> ComplexArray:
+    return cast(ComplexArray, np.polyval(np.append(a, 1.0)[::-1], s))
+
+
+def _transformed(
+    item: Stretch, hold: Hold
+) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray]:
+    n = len(item.u)
+    f = np.fft.rfftfreq(n, item.dt)
+    # every line but the first stands for itself and its mirror image
+    size = np.sqrt(np.where(f > 0, 2.0, 1.0) / n)
+    shaped = np.ones(len(f), dtype=np.complex128)
+    if hold == "linear":
+        shaped *= np.sinc(f * item.dt) ** 2
+    elif hold == "zero-order":
+        shaped *= np.sinc(f * item.dt) * np.exp(-1j * np.pi * f * item.dt)
+    constant = np.where(f > 0, 0.0, n * size)
+    u, y = np.fft.rfft(item.u), np.fft.rfft(item.y)
+    return 2 * np.pi * f, u * shaped * size, y * size, constant
+
+
+def _lines_that_matter(spectrum: ComplexArray) -> int:
+    tail = np.cumsum((np.abs(spectrum[1:]) ** 2)[::-1])[::-1]
+    return 1 + max(int(np.sum(tail > BEYOND * tail[0])), FEWEST)
+
+
+def _real(values: ComplexArray) -> FloatArray:
+    return np.concatenate([values.real, values.imag])
+
+
+def _triangle(
+    columns: ComplexArray, transients: ComplexArray, target: ComplexArray
+) -> FloatArray:
+    """Triangle of a stretch's equations, without what its transient can do."""
+    both = _real(np.column_stack([columns, target]))
+    basis, _ = np.linalg.qr(_real(transients))
+    both -= basis @ (basis.T @ both)
+    return np.linalg.qr(both, mode="r")
+
+
+def _least(triangles: Sequence[FloatArray]) -> tuple[FloatArray, float]:
+    """Least squares over all stretches: the solution, and what is left."""
+    all_of_them = np.linalg.qr(np.vstack(triangles), mode="r")
+    left, right = all_of_them[:, :-1], all_of_them[:, -1]
+    size = np.linalg.norm(left, axis=0)
+    size[size == 0] = 1.0
+    found = np.linalg.lstsq(left / size, right, rcond=1e-13)[0] / size
+    rest = right - left @ found
+    return found, float(rest @ rest)
