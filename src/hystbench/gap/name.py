@@ -19,6 +19,8 @@ PAYS = 40.0
 """By how much an effect must lower the score to be named."""
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
+STILL = 0.25
+"""The same as a share of the best's gain: a grid's step may miss much of a gain."""
 FINALISTS = 6
 """Effects that are added and refitted jointly before one is taken."""
 TIE = 6.0
@@ -156,7 +158,7 @@ def rank(
     best = min(trial.score for _, trial in found)
     refined = []
     for attempt, trial in found:
-        if trial.score < best + NEAR:
+        if trial.score < best + max(NEAR, (now - best) * STILL):
             trial = fine(attempt, trial)
         refined.append(trial)
     refined.sort(key=lambda trial: trial.score)

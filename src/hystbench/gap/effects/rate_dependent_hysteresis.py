@@ -29,7 +29,7 @@ class RateDependentHysteresis(Effect):
         amplitude = scene.largest(scene.hysteresis)
         sizes = {
             "growing-thresholds": np.geomspace(0.03, 20, 5),
-            "excess-field": np.geomspace(3e-3, 0.5, 4) * amplitude,
+            "excess-field": np.geomspace(2e-3, 0.5, 5) * amplitude,
         }
         if not can_grow(scene):
             del sizes["growing-thresholds"]
