@@ -13,6 +13,7 @@ import numpy as np
 from hystbench.errors import InputError, nearest
 from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.schema import check_against_schema, load_yaml
+from hystbench.units import check_same_unit
 
 #: Steps may differ from their mean by this share where dataset.yaml does not say:
 #: printed times are rounded, and a clock that is off by more is no uniform clock.
@@ -20,6 +21,10 @@ UNIFORM_TOLERANCE = 0.01
 
 #: The smallest range of a channel; the largest value is one over it.
 SMALLEST = 1e-30
+
+#: An input repeats itself if it differs one period later by no more than this share
+#: of its standard deviation, rms.
+UNLIKE = 0.2
 
 _CHANNEL = {
     "type": "object",
@@ -57,6 +62,12 @@ SCHEMA: dict[str, Any] = {
             }
         },
         "output": _CHANNEL,
+        "simulated": {
+            "type": "object",
+            "required": ["column", "unit"],
+            "additionalProperties": False,
+            "properties": {"column": {"type": "string"}, "unit": {"type": "string"}},
+        },
         "noise_rms": {"type": "number", "exclusiveMinimum": 0},
         "identification": {"type": "string"},
         "records": {
@@ -125,7 +136,9 @@ class Dataset:
         time_about = self.about["time"]
         channels = [self.about["input"], self.about["output"]]
         columns = [time_about["column"], *(item["column"] for item in channels)]
-        time, u, y = _read_columns(file, columns)
+        if self.simulated_column is not None:
+            columns.append(self.simulated_column)
+        time, u, y, *others = _read_columns(file, columns)
         dt = _sampling_interval(
             file,
             time * _seconds(self.path, time_about["unit"]),
@@ -134,7 +147,10 @@ class Dataset:
         for item, values in zip(channels, (u, y), strict=True):
             _check_moves(file, item, values)
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
-        entry = self._entry(name)
+        period = self._entry(name).get("period_samples")
+        if period is not None:
+            period = int(period)
+            _check_period(f"{self.path}: records: {file.name}", period, u)
         return Record(
             name,
             dt,
@@ -144,8 +160,15 @@ class Dataset:
             measured,
             "measured",
             self.use(name),
-            entry.get("period_samples"),
+            period,
+            others[0] if others else None,
         )
+
+    @property
+    def simulated_column(self) -> str | None:
+        """Column of the output that a simulator gave elsewhere, if records have one."""
+        about = self.about.get("simulated")
+        return None if about is None else str(about["column"])
 
     @property
     def identification(self) -> str:
@@ -197,13 +220,17 @@ def load_dataset(path: str | Path) -> Dataset:
         )
     if not any(dataset.use(name) == "fit" for name in files):
         raise InputError(f"{file}: records: expected at least one with 'use: fit'")
-    columns = [about[channel]["column"] for channel in ("time", "input", "output")]
+    channels = [key for key in ("time", "input", "output", "simulated") if key in about]
+    columns = [about[channel]["column"] for channel in channels]
     for column in columns:
         if columns.count(column) > 1:
             raise InputError(
                 f"{file}: column {column!r} is named twice; "
-                "expected one each for time, input and output"
+                f"expected one each for {', '.join(channels[:-1])} and {channels[-1]}"
             )
+    if "simulated" in about:
+        ours, measured = about["simulated"]["unit"], about["output"]["unit"]
+        check_same_unit(f"{file}: simulated: unit", ours, "the output", measured)
     _seconds(file, about["time"]["unit"])
     return dataset
 
@@ -270,6 +297,22 @@ def _check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> Non
         raise InputError(
             f"{where}: a range of {span:g} and values up to {largest:g} "
             f"{item['unit']}; expected {SMALLEST:g} to {1 / SMALLEST:g} in some unit"
+        )
+
+
+def _check_period(place: str, period: int, u: FloatArray) -> None:
+    """Refuse a period that does not fit twice, or with which no input repeats."""
+    if 2 * period > len(u):
+        raise InputError(
+            f"{place}: period_samples: {period}; expected at most {len(u) // 2}, "
+            f"half of its {len(u)} samples"
+        )
+    away = float(np.sqrt(np.mean((u[period:] - u[:-period]) ** 2)) / np.std(u))
+    if away > UNLIKE:
+        raise InputError(
+            f"{place}: period_samples: {period}; the input differs from itself so many "
+            f"samples later by {away:.2g} of its standard deviation; expected at most "
+            f"{UNLIKE:g}"
         )
 
 

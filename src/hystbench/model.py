@@ -18,10 +18,11 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block, RandomBlock
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
+from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.wrapping import HystereticBlock, Wrapped, WrappingBlock
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_text
-from hystbench.record import Channel, FloatArray
+from hystbench.record import Channel, FloatArray, Record
 from hystbench.schema import load_yaml
 
 Source = Literal["published", "derived", "calibrated"]
@@ -69,6 +70,9 @@ class Model:
         In the order of the signal's way.
     free : tuple of str
         Names of the parameters that identification may change.
+    tolerances : mapping of str to float
+        By how much some of them are expected to change at most, as a share of their
+        value; the others are free altogether.
     provenance : mapping of str to Provenance
         By parameter name.
     """
@@ -79,6 +83,7 @@ class Model:
     chain: tuple[Block, ...]
     free: tuple[str, ...] = ()
     provenance: Mapping[str, Provenance] = field(default_factory=dict)
+    tolerances: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse a chain that does not fit together and names that it lacks."""
@@ -91,6 +96,18 @@ class Model:
                     self._find(name)
                 except InputError as error:
                     raise InputError(f"{key}: {error}") from None
+        for name, share in self.tolerances.items():
+            if name not in self.free:
+                raise InputError(
+                    f"free: a tolerance for {name!r}, which is not free; "
+                    f"{nearest(name, self.free)}"
+                )
+            number = isinstance(share, int | float) and not isinstance(share, bool)
+            if not (number and 0 < share < np.inf):
+                raise InputError(
+                    f"free: {name}: expected a tolerance above 0, as a share of the "
+                    f"value, got {share!r}"
+                )
 
     def simulate(
         self, u: FloatArray, dt: float, rng: np.random.Generator | None = None
@@ -170,6 +187,30 @@ class Model:
             chain.append(block)
         return replace(self, chain=tuple(chain))
 
+    def with_records(
+        self, records: Sequence[Record], column: str | None = None
+    ) -> Model:
+        """Return the model with the records that hold a block's simulated output.
+
+        Parameters
+        ----------
+        records : sequence of Record
+        column : str, optional
+            Where their simulated output was read, if that is known.
+
+        Raises
+        ------
+        InputError
+            If the chain has a ``simulated-column`` and a record has none, or another.
+        """
+        chain = tuple(
+            block.bound(records, column)
+            if isinstance(block, SimulatedColumn)
+            else block
+            for block in self.chain
+        )
+        return replace(self, chain=chain)
+
     def parameter_names(self) -> tuple[str, ...]:
         """Return the names of all parameters in the chain's order."""
         return tuple(
@@ -239,7 +280,9 @@ class Model:
             "input": {"name": self.input.name, "unit": self.input.unit},
             "output": {"name": self.output.name, "unit": self.output.unit},
         }
-        if self.free:
+        if self.tolerances:
+            content["free"] = {name: self.tolerances.get(name) for name in self.free}
+        elif self.free:
             content["free"] = list(self.free)
         content["chain"] = [{block.name: block.to_mapping()} for block in self.chain]
         if self.provenance:
@@ -308,8 +351,12 @@ def _read(content: object) -> dict[str, Any]:
     if not isinstance(chain, list):
         raise InputError(f"chain: expected a list of blocks, got {chain!r}")
     free = content.get("free", [])
-    if not isinstance(free, list):
-        raise InputError(f"free: expected a list of parameters, got {free!r}")
+    if not isinstance(free, list | dict):
+        raise InputError(
+            "free: expected a list of parameters, or a mapping of each to its "
+            f"tolerance, got {free!r}"
+        )
+    shares = free if isinstance(free, dict) else {}
     provenance = _mapping(content.get("provenance", {}), "provenance: ")
     return {
         "name": name,
@@ -317,6 +364,7 @@ def _read(content: object) -> dict[str, Any]:
         "output": _channel(content["output"], "output: "),
         "chain": tuple(_block(item, position) for position, item in enumerate(chain)),
         "free": tuple(free),
+        "tolerances": {key: item for key, item in shares.items() if item is not None},
         "provenance": {
             key: _provenance(item, f"provenance: {key}: ")
             for key, item in provenance.items()

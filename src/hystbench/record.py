@@ -51,6 +51,8 @@ class Record:
         Whether models may be fitted to the record.
     period_samples : int, optional
         Samples of a period, where the input repeats itself.
+    simulated : ndarray, shape (n,), optional
+        What a simulator that ran elsewhere says of ``y``.
     """
 
     name: str
@@ -62,11 +64,13 @@ class Record:
     origin: Origin
     use: Use = "fit"
     period_samples: int | None = None
+    simulated: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays: a record is evidence."""
-        for array in (self.u, self.y):
-            array.setflags(write=False)
+        for array in (self.u, self.y, self.simulated):
+            if array is not None:
+                array.setflags(write=False)
 
     def __len__(self) -> int:
         """Count the samples."""
@@ -102,7 +106,10 @@ class Record:
             "period_samples": self.period_samples,
         }
         with atomic_path(path) as temporary, temporary.open("wb") as stream:
-            np.savez(stream, u=self.u, y=self.y, about=np.array(json.dumps(about)))
+            arrays = {"u": self.u, "y": self.y}
+            if self.simulated is not None:
+                arrays["simulated"] = self.simulated
+            np.savez(stream, **arrays, about=np.array(json.dumps(about)))  # type: ignore[arg-type]
 
 
 def load_record(path: str | Path) -> Record:
@@ -117,6 +124,7 @@ def load_record(path: str | Path) -> Record:
         with np.load(path, allow_pickle=False) as archive:
             about = json.loads(str(archive["about"]))
             u, y = archive["u"], archive["y"]
+            simulated = archive.get("simulated")
     except (OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: not a record of hystbench ({error})") from error
     return Record(
@@ -129,4 +137,5 @@ def load_record(path: str | Path) -> Record:
         origin=about["origin"],
         use=about["use"],
         period_samples=about["period_samples"],
+        simulated=simulated,
     )

@@ -81,8 +81,15 @@ EXAMPLES = {
         "participation": 0.4,
     },
     "thermal-drift": {"coefficient": 0.3, "time_constant_s": 2.0},
+    "external": {"function": "tests.blocks.examples:twice"},
+    "simulated-column": {"column": "simulated_um"},
     "transfer-function": {
         "numerator": [1.0e3, 4.0e5],
         "denominator": [1.0, 1.2e3, 4.0e5],
     },
 }
+
+
+def twice(u, dt):
+    """Stand for a simulator that a user brings."""
+    return 2 * u

@@ -20,6 +20,8 @@ INPUT = 0.6 * np.sin(2 * np.pi * 40 * TIME)
 BLOCKS = sorted(registry())
 #: Blocks that add a signal whatever the input is.
 UNASKED = {"drift", "mains-pickup"}
+#: A stored output answers to the inputs of its records alone.
+STORED = {"simulated-column"}
 
 
 def example(name):
@@ -28,6 +30,8 @@ def example(name):
 
 def runnable(name):
     """Return the example, around a hysteresis where it has to wrap one."""
+    if name in STORED:
+        pytest.skip("answers to the input of a record alone; tested as such")
     block = example(name)
     return Wrapped(example("gpi"), block) if isinstance(block, WrappingBlock) else block
 
@@ -51,7 +55,7 @@ class TestContract:
         for about in parameters.values():
             assert about.unit
             assert about.meaning
-            if about.kind != "choice":
+            if about.kind in {"number", "numbers"}:
                 assert np.isfinite([about.low, about.high]).all()
                 assert about.low < about.high
 
@@ -104,13 +108,15 @@ class TestContract:
     def test_a_value_that_is_no_number_is_refused(self, name, wrong):
         values = dict(EXAMPLES[name])
         first = next(iter(values))
+        if isinstance(wrong, str) and name in STORED:
+            pytest.skip("any text may name a column")
         with pytest.raises(InputError, match=f"{first}: expected"):
             registry()[name].from_mapping({**values, first: wrong})
 
     def test_a_value_out_of_bounds_is_refused(self, name):
         block = registry()[name]
         for key, about in block.parameters().items():
-            if about.kind == "choice":
+            if about.kind not in {"number", "numbers"}:
                 continue
             beyond = 2 * about.high + 1
             old = EXAMPLES[name].get(key, 0.0)

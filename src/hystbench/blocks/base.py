@@ -30,11 +30,14 @@ class Block(ABC):
     reference: ClassVar[str]
     hysteretic: ClassVar[bool] = False
     """Whether a block that wraps hysteresis may follow."""
+    reruns: ClassVar[bool] = True
+    """Whether the block takes any input, or only one whose output is stored."""
 
     @classmethod
     def parameters(cls) -> dict[str, Parameter]:
         """Return the declared parameters by name, those with a default last."""
-        declared = sorted(fields(cls), key=lambda item: item.default is not MISSING)
+        own = [item for item in fields(cls) if "parameter" in item.metadata]
+        declared = sorted(own, key=lambda item: item.default is not MISSING)
         return {item.name: item.metadata["parameter"] for item in declared}
 
     @classmethod

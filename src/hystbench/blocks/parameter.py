@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from hystbench.errors import InputError, nearest
 
-Kind = Literal["number", "numbers", "choice"]
+Kind = Literal["number", "numbers", "choice", "text"]
 Value = float | tuple[float, ...] | str
 
 
@@ -19,8 +19,8 @@ class Parameter:
 
     Parameters
     ----------
-    kind : {"number", "numbers", "choice"}
-        One number, a sequence of numbers, or a word out of ``options``.
+    kind : {"number", "numbers", "choice", "text"}
+        One number, a sequence of numbers, a word out of ``options``, or any text.
     unit : str
         Unit; ``U`` and ``Y`` stand for the units of the model's input and of the
         block's output, ``-`` for none.
@@ -46,7 +46,7 @@ class Parameter:
     may_be_empty: bool = False
 
     def check(self, name: str, value: object) -> Value:
-        """Return the value as float, tuple of float or word.
+        """Return the value as float, tuple of float or text.
 
         Raises
         ------
@@ -59,6 +59,10 @@ class Parameter:
                     f"{name}: {value!r} is unknown; {nearest(value, self.options)}"
                 )
             return str(value)
+        if self.kind == "text":
+            if not isinstance(value, str) or not value.strip():
+                raise InputError(f"{name}: expected {self.meaning}, got {value!r}")
+            return value
         if self.kind == "number":
             return self._number(name, value)
         if self.names and isinstance(value, Mapping):
@@ -132,6 +136,11 @@ def numbers(
 def choice(meaning: str, options: tuple[str, ...], default: str) -> Any:
     """Declare a parameter that is one word out of several."""
     return _declare(Parameter("choice", "-", meaning, options=options), default)
+
+
+def text(meaning: str) -> Any:
+    """Declare a parameter that is any text."""
+    return _declare(Parameter("text", "-", meaning), MISSING)
 
 
 def _declare(parameter: Parameter, default: object) -> Any:

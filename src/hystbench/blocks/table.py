@@ -26,6 +26,8 @@ def markdown_table() -> str:
 def _values(about: Parameter) -> str:
     if about.kind == "choice":
         return ", ".join(f"`{option}`" for option in about.options)
+    if about.kind == "text":
+        return "text"
     bounds = f"{about.low:g} to {about.high:g}"
     if about.kind == "number":
         return bounds

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import zipfile
 from pathlib import Path
 from typing import NamedTuple, cast
@@ -16,8 +15,9 @@ from hystbench.dataset import load_dataset
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_csv
 from hystbench.model import load_model
-from hystbench.record import Channel, FloatArray, load_record
+from hystbench.record import Channel, FloatArray, Record, load_record
 from hystbench.signals import load_signal
+from hystbench.units import check_same_unit
 
 
 class Run(NamedTuple):
@@ -29,6 +29,8 @@ class Run(NamedTuple):
     y: FloatArray | None
     output: Channel | None
     hold: Hold | None
+    record: Record | None = None
+    column: str | None = None
 
 
 @click.command()
@@ -57,10 +59,13 @@ def simulate(
     pairs = [("input", system.input, run.input), ("output", system.output, run.output)]
     for side, ours, theirs in pairs:
         if theirs is not None:
-            _check_unit(f"{model}: {side}", ours, str(record), theirs)
+            place = f"{model}: {side}: unit"
+            check_same_unit(place, ours.unit, str(record), theirs.unit)
     taken = hold or run.hold
     if taken is not None:
         system = system.with_hold(taken)
+    if run.record is not None:
+        system = system.with_records([run.record], run.column)
     y = system.simulate(run.u, run.dt)
     lost = np.flatnonzero(~np.isfinite(y))
     if len(lost):
@@ -92,7 +97,7 @@ def _read(record: Path, dataset: Path | None) -> Run:
         given = Channel("input", signal.unit)
         return Run(signal.dt, signal.u, given, None, None, None)
     found = load_record(record)
-    return Run(found.dt, found.u, found.input, found.y, found.output, None)
+    return Run(found.dt, found.u, found.input, found.y, found.output, None, found)
 
 
 def _read_csv(record: Path, dataset: Path | None) -> Run:
@@ -106,7 +111,8 @@ def _read_csv(record: Path, dataset: Path | None) -> Run:
         if file.resolve() == record.resolve():
             found = about.read(name)
             hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
-            return Run(found.dt, found.u, found.input, found.y, found.output, hold)
+            own = found.dt, found.u, found.input, found.y, found.output
+            return Run(*own, hold, found, about.simulated_column)
     files = [file.name for file in about.record_files.values()]
     raise InputError(
         f"{about.path}: records: {record} is none of them; "
@@ -121,29 +127,6 @@ def _names(archive: Path) -> set[str]:
             return {Path(name).stem for name in content.namelist()}
     except (OSError, zipfile.BadZipFile) as error:
         raise InputError(f"{archive}: not an archive of NumPy ({error})") from error
-
-
-def _check_unit(place: str, ours: Channel, record: str, theirs: Channel) -> None:
-    """Refuse a unit of the record that is not the model's."""
-    if ours.unit == theirs.unit:
-        return
-    import pint  # late: a fifth of a second, and rarely needed
-
-    where = f"{place}: unit {ours.unit!r}, but {record} has {theirs.unit!r}"
-    try:
-        # Files write cm2 where pint wants cm**2.
-        given, wanted = (
-            re.sub(r"(?<=[^\W\d_])(?=\d)", "**", unit)
-            for unit in (theirs.unit, ours.unit)
-        )
-        factor = float(pint.Quantity(1, given).to(wanted).magnitude)
-    except (pint.UndefinedUnitError, pint.DimensionalityError) as error:
-        raise InputError(f"{where}: {error}; expected the same unit") from None
-    if abs(factor - 1) > 1e-12:
-        raise InputError(
-            f"{where}; nothing is converted silently: multiply the record's column "
-            f"by {factor:g} and say {ours.unit!r} in its dataset.yaml"
-        )
 
 
 def _column(name: str, unit: str) -> str:

@@ -12,6 +12,7 @@ from hystbench.dataset import Dataset, load_dataset
 from hystbench.errors import InputError
 from hystbench.model import Model
 from hystbench.record import Channel, Record
+from hystbench.units import check_same_unit
 
 STUCK = 0.05
 """Share of a record, and of the input's range, over which no output stands still."""
@@ -35,6 +36,8 @@ class Evidence:
     identification : str, optional
         Name of the fit record that a hysteretic base is identified from; by default
         the slowest.
+    simulated_column : str, optional
+        Column of the output that a simulator gave elsewhere, if the records have one.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Evidence:
     hold: Hold = "band-limited"
     noise_rms: float | None = None
     identification: str | None = None
+    simulated_column: str | None = None
 
     @property
     def input(self) -> Channel:
@@ -76,18 +80,32 @@ def load_evidence(path: str | Path) -> Evidence:
     hold_out = tuple(record for record in records if record.use == "hold-out")
     if not hold_out:
         raise InputError(
-            f"{dataset.path}: records: none has 'use: hold-out'; expected one or "
-            "more, to show by how much the gap shrinks"
+            f"{dataset.path}: records: none has 'use: hold-out'; expected at least "
+            "one, to show by how much the gap shrinks"
         )
     for record in records:
         _check_usable(dataset, record)
     about = dataset.about
     hold: Hold = about["input"].get("hold", "band-limited")
-    return Evidence(dataset.name, fit, hold_out, hold, about.get("noise_rms"))
+    named = about.get("identification")
+    if named is not None and dataset.use(named) != "fit":
+        raise InputError(
+            f"{dataset.path}: identification: {named!r} is held out; expected a record "
+            "with 'use: fit'"
+        )
+    return Evidence(
+        dataset.name,
+        fit,
+        hold_out,
+        hold,
+        about.get("noise_rms"),
+        named,
+        dataset.simulated_column,
+    )
 
 
 def check_units(evidence: Evidence, model: Model, place: str) -> None:
-    """Refuse a model whose units are not those of the records.
+    """Refuse a model whose units are not those of the records, in some spelling.
 
     Raises
     ------
@@ -98,11 +116,9 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
         ("input", model.input, evidence.input),
         ("output", model.output, evidence.output),
     ):
-        if model_has.unit != data_have.unit:
-            raise InputError(
-                f"{place}: {key}: unit: {model_has.unit!r}; expected "
-                f"{data_have.unit!r}, the unit of {evidence.name}'s {data_have.name}"
-            )
+        whose = f"the {data_have.name} of {evidence.name}"
+        where = f"{place}: {key}: unit"
+        check_same_unit(where, model_has.unit, whose, data_have.unit)
 
 
 def _check_usable(dataset: Dataset, record: Record) -> None:

@@ -1,6 +1,144 @@
 """Bases: the simulator that disagrees with the measurements, given or identified."""
 
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.blocks.external import FORM, External
+from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.errors import InputError, nearest
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
+from hystbench.gap.evidence import Evidence, check_units
+from hystbench.model import Model, load_model
 
-__all__ = ["Linear", "identified_gpi", "identified_linear"]
+__all__ = [
+    "Linear",
+    "function_base",
+    "identified_gpi",
+    "identified_linear",
+    "load_base",
+    "simulated_column",
+]
+
+WORDS = ("gpi", "linear", "column")
+"""What may stand in the place of a model file."""
+
+
+def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
+    """Give the base that ``--model`` asks for.
+
+    Parameters
+    ----------
+    text : str
+        A model file; ``gpi`` or ``linear`` to identify one from the fit records;
+        ``column`` for the simulated output beside them; or ``package.module:function``.
+    evidence : Evidence
+
+    Returns
+    -------
+    Model
+    str
+        One sentence: where it comes from.
+
+    Raises
+    ------
+    InputError
+        If the text is none of these, units differ, or the base cannot be had.
+    """
+    if text == "gpi":
+        return identified_gpi(evidence)
+    if text == "linear":
+        found = identified_linear(evidence)
+        return found.model, found.note
+    if text == "column":
+        return simulated_column(evidence)
+    if Path(text).is_file() or text.endswith((".yaml", ".yml")):
+        model = load_model(text)
+        check_units(evidence, model, text)
+        try:
+            model = model.with_records(
+                (*evidence.fit, *evidence.hold_out), evidence.simulated_column
+            )
+        except InputError as error:
+            raise InputError(f"{text}: {error}") from None
+        return model, f"base {model.name} from {text}"
+    if FORM.fullmatch(text):
+        return function_base(text, evidence)
+    files = [str(item) for item in Path(text).parent.glob("*.yaml")]
+    raise InputError(
+        f"--model: {text!r} is no model file, none of {', '.join(WORDS)}, and no "
+        f"package.module:function; {nearest(text, [*WORDS, *files])}"
+    )
+
+
+def function_base(function: str, evidence: Evidence) -> tuple[Model, str]:
+    """Take a Python function as the base, and try it on the fit records.
+
+    Parameters
+    ----------
+    function : str
+        ``package.module:function``, called as ``function(u, dt)``, which gives y.
+    evidence : Evidence
+        Its units are taken to be the function's.
+
+    Returns
+    -------
+    Model
+        One ``external`` block.
+    str
+        One sentence.
+
+    Raises
+    ------
+    InputError
+        If it cannot be imported, raises, gives anything but finite numbers, one a
+        sample, or something else when it is called again.
+    """
+    block = External(function=function)
+    first = evidence.fit[0]
+    outputs = [block.simulate(item.u, item.u, item.dt) for item in evidence.fit]
+    if not np.array_equal(block.simulate(first.u, first.u, first.dt), outputs[0]):
+        raise InputError(
+            f"{function}: called again with record {first.name} it gave another "
+            "output; expected the same one every time"
+        )
+    model = Model("external", evidence.input, evidence.output, (block,))
+    units = f"from {evidence.input.unit} to {evidence.output.unit}"
+    return model, f"base {function}, taken to be {units}"
+
+
+def simulated_column(evidence: Evidence) -> tuple[Model, str]:
+    """Take the simulated output beside the records as the base.
+
+    Parameters
+    ----------
+    evidence : Evidence
+
+    Returns
+    -------
+    Model
+        One ``simulated-column`` block, which holds the records.
+    str
+        One sentence.
+
+    Raises
+    ------
+    InputError
+        If the dataset names no such column.
+    """
+    column = evidence.simulated_column
+    if column is None:
+        raise InputError(
+            f"--model: column: {evidence.name} has no simulated output; expected "
+            "'simulated: {column: .., unit: ..}' in its dataset.yaml"
+        )
+    block = SimulatedColumn(column=column, records=(*evidence.fit, *evidence.hold_out))
+    model = Model("simulated-column", evidence.input, evidence.output, (block,))
+    note = (
+        f"base from the column {column!r}; what acts before it declines, since it "
+        "needs a simulator that can be run again"
+    )
+    return model, note

@@ -1,0 +1,124 @@
+"""Block ``external``: a simulator that a user brings as a Python function."""
+
+from __future__ import annotations
+
+import importlib
+import re
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import text
+from hystbench.errors import InputError, nearest
+from hystbench.record import FloatArray
+
+FORM = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
+"""``package.module:function``."""
+
+
+@dataclass(frozen=True)
+class External(Block):
+    """A Python function ``y = function(u, dt)`` as a block.
+
+    ``u`` is a copy of the samples that enter, shape (n,), ``dt`` the sampling interval
+    in seconds; ``y`` must have as many samples, all finite. The function must give the
+    same output every time. It is imported when the block first simulates, from the
+    folder that the program was started in or from what is installed. A model file that
+    names a function is a program: run only those that you trust.
+
+    References
+    ----------
+    By definition.
+    """
+
+    name: ClassVar = "external"
+    place: ClassVar = "base"
+    reference: ClassVar = "by definition"
+
+    function: str = text("package.module:function of u and dt, which gives y")
+
+    def check(self) -> None:
+        """Refuse what cannot be the name of a function."""
+        if not FORM.fullmatch(self.function):
+            raise InputError(
+                f"function: expected package.module:function, got {self.function!r}"
+            )
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Call the function.
+
+        Raises
+        ------
+        InputError
+            If it cannot be imported, raises, or gives anything but n finite numbers.
+        """
+        called = f"{self.function}: called with {len(z)} samples and dt = {dt:g} s"
+        function = imported(self.function)
+        try:
+            given = function(np.array(z), dt)
+        except (Exception, SystemExit) as error:
+            # Whatever a user's program raises is to be told in one line.
+            said = " ".join(f"{type(error).__name__}: {error}".split())
+            raise InputError(f"{called}, it raised {said}") from error
+        try:
+            y = np.array(given, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(
+                f"{called}, it gave {type(given).__name__}; expected {len(z)} numbers"
+            ) from None
+        if y.shape != z.shape:
+            raise InputError(
+                f"{called}, it gave an array of shape {y.shape}; expected ({len(z)},)"
+            )
+        lost = np.flatnonzero(~np.isfinite(y))
+        if len(lost):
+            raise InputError(
+                f"{called}, it gave {y[lost[0]]} at sample {lost[0]}; "
+                "expected finite numbers"
+            )
+        return y
+
+
+@cache
+def imported(name: str) -> Callable[[FloatArray, float], Any]:
+    """Import a function by its name, ``package.module:function``.
+
+    The folder that the program was started in is looked at last.
+
+    Raises
+    ------
+    InputError
+        If there is no such module or function, or importing it fails.
+    """
+    module_name, _, path = name.partition(":")
+    here = str(Path.cwd())
+    if here not in sys.path:
+        sys.path.append(here)
+    try:
+        found: Any = importlib.import_module(module_name)
+    except (Exception, SystemExit) as error:
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        raise InputError(
+            f"{name}: cannot import {module_name!r} ({said}); expected a module that "
+            f"is installed or lies in {here}"
+        ) from error
+    for part in path.split("."):
+        known = [item for item in dir(found) if not item.startswith("_")]
+        if not hasattr(found, part):
+            raise InputError(
+                f"{name}: {module_name!r} has no function {path!r}; "
+                f"{nearest(part, known)}"
+            )
+        found = getattr(found, part)
+    if not callable(found):
+        raise InputError(
+            f"{name}: expected a function, got {type(found).__name__} {path!r}"
+        )
+    function: Callable[[FloatArray, float], Any] = found
+    return function
