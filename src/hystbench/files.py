@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import os
 from collections.abc import Iterable, Iterator, Sequence
@@ -54,3 +55,15 @@ def write_csv(
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(columns)
         writer.writerows(rows)
+
+
+def digest(folder: str | Path, pattern: str = "*") -> str:
+    """SHA-256 of all files below a folder that match: their names and contents."""
+    whole = hashlib.sha256()
+    folder = Path(folder)
+    for file in sorted(folder.rglob(pattern)):
+        if file.is_file():
+            content = file.read_bytes()
+            name = file.relative_to(folder).as_posix()
+            whole.update(f"{name} {len(content)}\n".encode() + content)
+    return whole.hexdigest()

@@ -34,11 +34,23 @@ def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
     """
     folder, truth_file = Path(folder), Path(truth_file)
     check_places(folder, truth_file)
+    write_folder(case, folder)
+    write_json(truth_file, case.truth)
+
+
+def write_folder(case: Case, folder: Path) -> None:
+    """Write what a solver gets, and nothing else: ``dataset/`` and ``model.yaml``.
+
+    Parameters
+    ----------
+    case : Case
+    folder : Path
+        New or empty.
+    """
     for record in case.records:
         write_text(folder / "dataset" / f"{record.name}.csv", _csv(record))
     write_text(folder / "model.yaml", case.model.to_yaml())
     write_text(folder / "dataset" / "dataset.yaml", _dataset(case))
-    write_json(truth_file, case.truth)
 
 
 def check_places(folder: Path, truth_file: Path) -> None:

@@ -1,0 +1,1 @@
+"""The contest: which cases are held, and how answers to them are judged."""

@@ -1,0 +1,131 @@
+"""Parameters that a solver recovers, where the hidden form is the vocabulary's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from statistics import NormalDist, median
+from typing import Any
+
+#: Forms whose parameters mean what the block of the same name means by them. Of the
+#: others (a field bias, an algebraic saturation, a gap law) the block is another
+#: function, and its parameters have no true value.
+COMPARABLE: dict[str, dict[str, tuple[str, ...]]] = {
+    "input-delay": {"pure": ("delay_s",)},
+    "drive-lag": {"first-order": ("time_constant_s",)},
+    "eddy-diffusion": {
+        "slab": ("time_constant_s",),
+        "rod": ("time_constant_s",),
+    },
+    "drive-saturation": {"clip": ("limit",)},
+    "slew-limit": {"rate": ("rate",)},
+    "dead-zone": {"crossover": ("half_width",)},
+    "asymmetry": {"even-term": ("coefficient",)},
+    "saturation": {"tanh": ("level",)},
+    "rate-dependent-hysteresis": {
+        "growing-thresholds": ("coefficient", "exponent"),
+        "excess-field": ("coefficient", "exponent"),
+    },
+    "resonance": {"mode": ("frequency_hz", "damping_ratio", "participation")},
+    "stiffness-hardening": {"duffing": ("coefficient",)},
+    "friction": {"tanh": ("coulomb", "velocity_scale")},
+    "backlash": {"pin-in-slot": ("half_width",)},
+    "creep": {"one-element": ("magnitudes", "time_constants_s")},
+    "thermal-drift": {"joule": ("coefficient", "time_constant_s")},
+    "sensor-lag": {"first-order": ("time_constant_s",)},
+    "sensor-nonlinearity": {"polynomial": ("quadratic", "cubic")},
+    "mains-pickup": {"three-harmonics": ("frequency_hz",)},
+    "drift": {"ramp": ("slope",)},
+    "calibration-error": {"gain-and-offset": ("gain", "offset")},
+}
+#: Half the width of a 95 % interval, in standard errors.
+WIDTH = NormalDist().inv_cdf(0.975)
+
+
+@dataclass(frozen=True)
+class Recovered:
+    """Numbers of a case that have a true value.
+
+    Parameters
+    ----------
+    errors : tuple of float
+        Relative errors.
+    intervals, covered : int
+        Numbers with a standard error, and those whose 95 % interval holds the truth.
+    """
+
+    errors: tuple[float, ...]
+    intervals: int
+    covered: int
+
+    @property
+    def compared(self) -> int:
+        """How many numbers there are."""
+        return len(self.errors)
+
+    @property
+    def median_error(self) -> float | None:
+        """Median of the relative errors."""
+        return median(self.errors) if self.errors else None
+
+
+def recovered(
+    hidden: Sequence[Mapping[str, Any]], named: Sequence[Mapping[str, Any]]
+) -> Recovered:
+    """Compare the parameters of effects that are hidden and named.
+
+    Parameters
+    ----------
+    hidden : sequence of mapping
+        The truth's effects.
+    named : sequence of mapping
+        The effects of gap.json.
+    """
+    errors, intervals, covered = [], 0, 0
+    by_name = {effect["name"]: effect for effect in named}
+    for effect in hidden:
+        answer = by_name.get(effect["name"])
+        if answer is None:
+            continue
+        # diffusion into a slab and into a rod of one time constant differ
+        if _word("geometry", answer) not in (None, effect["form"]):
+            continue
+        if _word("form", answer) not in (None, effect["form"]):
+            continue
+        for name in COMPARABLE.get(effect["name"], {}).get(effect["form"], ()):
+            for true, value, error in _pairs(name, effect, answer):
+                errors.append(abs(value - true) / abs(true))
+                if error is not None:
+                    intervals += 1
+                    covered += abs(value - true) <= WIDTH * error
+    return Recovered(tuple(errors), intervals, covered)
+
+
+def _word(name: str, answer: Mapping[str, Any]) -> str | None:
+    """Give the word that an answer has for a choice; None where it has none."""
+    said = answer["parameters"].get(name)
+    return None if said is None else str(said["value"])
+
+
+def _pairs(
+    name: str, effect: Mapping[str, Any], answer: Mapping[str, Any]
+) -> list[tuple[float, float, float | None]]:
+    """Give true value, value and standard error of each number of a parameter."""
+    if name not in answer["parameters"] or name not in effect["parameters"]:
+        return []
+    said = answer["parameters"][name]
+    true = _list(effect["parameters"][name])
+    values = _list(said["value"])
+    errors = _list(said["standard_error"])
+    if len(values) != len(true) or any(isinstance(value, str) for value in values):
+        return []
+    if len(errors) != len(values):
+        errors = [None] * len(values)
+    rows = zip(true, values, errors, strict=True)
+    return [
+        (float(t), float(v), None if e is None else float(e)) for t, v, e in rows if t
+    ]
+
+
+def _list(value: Any) -> list[Any]:
+    return list(value) if isinstance(value, list | tuple) else [value]

@@ -1,0 +1,187 @@
+"""Which cases a contest holds: sets of strata, each with seeds of its own."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY
+from hystbench.challenge.spec import GPI_ONLY, CaseSpec, draw_spec
+from hystbench.errors import InputError, nearest
+
+#: Seeds from which each set counts up. Those of the development set, and of the small
+#: one of the tests, lie below 200,000; nothing else that a solver was mended on may
+#: lie above.
+DEVELOPMENT_SEEDS = range(100_000, 200_000)
+FIRST_SEED = {
+    "development": 100_000,
+    "small": 195_000,
+    "published": 1_000_000,
+    "transfer": 2_000_000,
+}
+#: Seeds set aside for a stratum, so that a larger contest holds the smaller one.
+PER_STRATUM = {"development": 5_000, "small": 100, "published": 5_000, "transfer": 5_000}
+
+
+@dataclass(frozen=True)
+class Stratum:
+    """Cases that are alike but for what the seed draws."""
+
+    kind: str
+    family: str
+    ratio_db: float
+    cases: int
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A case of a contest.
+
+    Parameters
+    ----------
+    name : str
+        Tells nothing of what is hidden: a hash, in whose order the cases stand.
+    spec : CaseSpec
+    """
+
+    name: str
+    spec: CaseSpec
+
+
+def _mixed(kind: str, gpi: int, other: int) -> tuple[Stratum, ...]:
+    """Strata of 20 dB on all three families."""
+    sizes = {"gpi": gpi, "preisach": other, "jiles-atherton": other}
+    return tuple(Stratum(kind, family, 20.0, n) for family, n in sizes.items())
+
+
+def _singles(ratio_db: float, gpi: int, other: int) -> tuple[Stratum, ...]:
+    sizes = {"gpi": gpi, "preisach": other, "jiles-atherton": other}
+    return tuple(Stratum("single", family, ratio_db, n) for family, n in sizes.items())
+
+
+STRATA: dict[str, tuple[Stratum, ...]] = {
+    "small": (
+        Stratum("single", "gpi", 20.0, 4),
+        Stratum("single", "preisach", 20.0, 1),
+        Stratum("single", "jiles-atherton", 20.0, 1),
+        Stratum("single", "gpi", 10.0, 1),
+        Stratum("none", "gpi", 20.0, 1),
+        Stratum("none", "preisach", 20.0, 1),
+        Stratum("pair", "gpi", 20.0, 1),
+        Stratum("triple", "gpi", 20.0, 1),
+        Stratum("unlisted", "gpi", 20.0, 1),
+    ),
+    "development": (
+        *_singles(20.0, 88, 42),
+        *_singles(10.0, 44, 21),
+        *_mixed("none", 30, 15),
+        *_mixed("pair", 20, 10),
+        *_mixed("triple", 6, 3),
+        *_mixed("unlisted", 16, 7),
+    ),
+    # Item by item what the published score is asked to hold; beside it singles at
+    # 30 and 3 dB, two of each effect, for the power curve alone.
+    "published": (
+        *_singles(20.0, 200, 100),
+        *_singles(10.0, 100, 50),
+        *_mixed("none", 100, 50),
+        *_mixed("pair", 50, 25),
+        *_mixed("triple", 26, 12),
+        *_mixed("unlisted", 50, 25),
+        Stratum("single", "gpi", 30.0, 44),
+        Stratum("single", "gpi", 3.0, 44),
+    ),
+    "transfer": (
+        *_singles(20.0, 100, 50),
+        *_singles(10.0, 50, 25),
+        *_mixed("none", 50, 25),
+        *_mixed("pair", 26, 12),
+        *_mixed("triple", 12, 6),
+        *_mixed("unlisted", 26, 12),
+    ),
+}
+SETS = tuple(STRATA)
+
+
+def plan(name: str, scale: float = 1.0) -> tuple[Entry, ...]:
+    """List the cases of a set.
+
+    Singles, and effects outside the vocabulary, are balanced over the effects: each is
+    hidden as often as any other, or once more. Several effects are drawn.
+
+    Parameters
+    ----------
+    name : {"small", "development", "published", "transfer"}
+        The set ``transfer`` has ranges shifted by 3, other records and those unlisted
+        effects that no other set holds.
+    scale : float
+        Factor on the number of cases of each stratum; at least one is left.
+
+    Returns
+    -------
+    tuple of Entry
+        In the order of their names.
+
+    Raises
+    ------
+    InputError
+        If there is no such set, or the scale asks for more seeds than there are.
+    """
+    if name not in STRATA:
+        raise InputError(f"blind: set: no set {name!r}; {nearest(name, SETS)}")
+    entries = []
+    for number, stratum in enumerate(STRATA[name]):
+        cases = max(1, round(stratum.cases * scale))
+        most = PER_STRATUM[name]
+        if cases > most:
+            raise InputError(
+                f"blind: scale: {scale:g} asks for {cases} cases of one sort; expected "
+                f"at most {most / stratum.cases:g}"
+            )
+        first = FIRST_SEED[name] + number * most
+        for k in range(cases):
+            spec = _spec(name, stratum, first + k, number + k)
+            entries.append(Entry(_hash(name, spec.seed), spec))
+    return tuple(sorted(entries, key=lambda entry: entry.name))
+
+
+def chunks(entries: tuple[Entry, ...], size: int) -> dict[str, tuple[Entry, ...]]:
+    """Cut a set into jobs of so many cases, by number."""
+    return {
+        f"{start // size:04d}": entries[start : start + size]
+        for start in range(0, len(entries), size)
+    }
+
+
+def _spec(name: str, stratum: Stratum, seed: int, place: int) -> CaseSpec:
+    transfer = name == "transfer"
+    spread, campaign = (3.0, "other") if transfer else (1.0, "standard")
+    use: Literal["transfer", "development"] = "transfer" if transfer else "development"
+    known: list[str] = []
+    if stratum.kind == "single":
+        known = [
+            effect
+            for effect in VOCABULARY
+            if stratum.family == "gpi" or effect not in GPI_ONLY
+        ]
+    if stratum.kind == "unlisted":
+        known = [effect for effect in UNLISTED if KINDS[effect].use == use]
+    shared: dict[str, Any] = {"spread": spread, "campaign": campaign}
+    if known:
+        # a stride that shares no factor with the count: few cases are mixed too
+        effect = known[_STRIDE * place % len(known)]
+        return CaseSpec(
+            seed, stratum.kind, (effect,), stratum.family, stratum.ratio_db, **shared
+        )
+    return draw_spec(seed, stratum.kind, stratum.family, stratum.ratio_db, **shared)
+
+
+#: A prime above the number of effects.
+_STRIDE = 31
+
+
+def _hash(name: str, seed: int) -> str:
+    return "case-" + hashlib.sha256(f"{name} {seed}".encode()).hexdigest()[:10]
+
+

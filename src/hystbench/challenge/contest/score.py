@@ -1,0 +1,249 @@
+"""One case judged: an answer against the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from hystbench.challenge.contest.parameters import recovered
+from hystbench.challenge.contest.place import where_hit
+from hystbench.challenge.plant.effects import VOCABULARY
+from hystbench.errors import InputError
+from hystbench.schema import check_against_schema
+
+SHAPE = "hysteresis-shape"
+#: Says which members of a set the judge's own fits find within the noise.
+Confirm = Callable[[tuple[str, ...]], tuple[str, ...]]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A case in the table; None where a figure means nothing for the case.
+
+    ``hysteresis-shape`` beside a plant of another family than the base's is neither
+    required nor spurious: it is taken out before anything is judged. ``strict``
+    figures are those without this.
+
+    Parameters
+    ----------
+    solver, case : str
+    kind, family : str
+    ratio_db, ratio_retuned_db : float or None
+        Of the effect that shows least; the second after the best re-tuning of gain
+        and offset.
+    truth, named : str
+        Names with a space between, in the order hidden and named.
+    verdict : str
+        Empty where the case is lost.
+    lost : str
+        Why there is no answer; empty where there is one.
+    confidence : float or None
+        Of the first effect named.
+    confidences : str
+        Of each effect named, ``name=confidence``.
+    top1, top1_strict : bool or None
+        Of single effects: named, and named first.
+    in_set, in_set_raw : bool or None
+        Of single effects: in the set of the first effect named; the first figure
+        counts only what the judge's own fits find within the noise.
+    set_size, set_size_raw : int or None
+        Names in that set, likewise.
+    exact, exact_strict : bool
+        What is hidden is named and nothing beside it; with nothing hidden: no-gap;
+        outside the vocabulary: unnamed.
+    all_named : bool or None
+        All hidden effects of the vocabulary are named.
+    false_alarm, false_alarm_strict : bool or None
+        With nothing hidden: any answer but no-gap.
+    unnamed : bool or None
+        Outside the vocabulary: the verdict is unnamed.
+    where_hit : bool or None
+    shrink : float or None
+        Share of the power above the noise and the base's own error that is gone from
+        the hold-out records.
+    parameters, covered, intervals : int
+        Numbers that can be compared; of them those inside their 95 % interval; and
+        those with an interval.
+    parameter_error : float or None
+        Median relative error of those numbers.
+    seconds, cpu_seconds : float
+    """
+
+    solver: str
+    case: str
+    seed: int
+    kind: str
+    family: str
+    ratio_db: float | None
+    ratio_retuned_db: float | None
+    truth: str
+    form: str
+    verdict: str
+    named: str
+    lost: str
+    confidence: float | None
+    confidences: str
+    top1: bool | None
+    top1_strict: bool | None
+    in_set: bool | None
+    in_set_raw: bool | None
+    set_size: int | None
+    set_size_raw: int | None
+    exact: bool
+    exact_strict: bool
+    all_named: bool | None
+    false_alarm: bool | None
+    false_alarm_strict: bool | None
+    unnamed: bool | None
+    where_hit: bool | None
+    shrink: float | None
+    parameters: int
+    intervals: int
+    covered: int
+    parameter_error: float | None
+    seconds: float
+    cpu_seconds: float
+
+
+COLUMNS = tuple(item.name for item in fields(Row))
+
+
+def judge(
+    solver: str,
+    case: str,
+    truth: Mapping[str, Any],
+    answer: Mapping[str, Any],
+    schema: Mapping[str, Any],
+    confirm: Confirm,
+) -> Row:
+    """Judge an answer.
+
+    Parameters
+    ----------
+    solver, case : str
+    truth : mapping
+        As docs/challenge.md tells.
+    answer : mapping
+        An entry of a solver's answers.
+    schema : mapping
+        Of gap.json; an answer that does not keep it loses the case.
+    confirm : callable
+        Gives the members of a set that fit within the noise; asked only where a set
+        has more than one.
+    """
+    lost = _why_lost(answer, schema)
+    gap: Mapping[str, Any] = _NOTHING if lost else answer["gap"]
+    kind, foreign = truth["kind"], truth["family"] != "gpi"
+    hidden = [effect["name"] for effect in truth["effects"]]
+    strict = [effect["name"] for effect in gap["effects"]]
+    tolerated = foreign and SHAPE not in hidden
+    effects = [e for e in gap["effects"] if not (tolerated and e["name"] == SHAPE)]
+    named = [effect["name"] for effect in effects]
+    single, one = kind == "single", effects[0] if effects else None
+    members = tuple(dict.fromkeys([one["name"], *one["cannot_be_told_from"]])) if one else ()
+    if tolerated:
+        members = tuple(name for name in members if name != SHAPE)
+    confirmed = confirm(members) if single and len(members) > 1 else members
+    found = recovered(truth["effects"], effects)
+    # An effect outside the vocabulary has no name to be called by.
+    right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
+    views = gap["where"]
+    return Row(
+        solver=solver,
+        case=case,
+        seed=truth["seed"],
+        kind=kind,
+        family=truth["family"],
+        ratio_db=truth["ratio_db"],
+        ratio_retuned_db=min(
+            (e["ratio_retuned_db"] for e in truth["effects"] if _known(e)),
+            default=None,
+        ),
+        truth=" ".join(hidden),
+        form=" ".join(effect["form"] for effect in truth["effects"]),
+        verdict=gap["verdict"],
+        named=" ".join(strict),
+        lost=lost,
+        confidence=one["confidence"] if one else None,
+        confidences=" ".join(f"{e['name']}={e['confidence']:g}" for e in effects),
+        top1=named[:1] == hidden if single else None,
+        top1_strict=strict[:1] == hidden if single else None,
+        in_set=hidden[0] in confirmed if single else None,
+        in_set_raw=hidden[0] in members if single else None,
+        set_size=len(confirmed) if single and one else None,
+        set_size_raw=len(members) if single and one else None,
+        exact=right,
+        exact_strict=right_strict,
+        all_named=set(hidden) <= set(named) if set(hidden) <= set(VOCABULARY) and hidden else None,
+        false_alarm=not right if kind == "none" else None,
+        false_alarm_strict=not right_strict if kind == "none" else None,
+        unnamed=gap["verdict"] == "unnamed" if kind == "unlisted" else None,
+        where_hit=where_hit(views[0] if views else None, truth["effects"])
+        if hidden
+        else None,
+        shrink=_shrink(truth, gap["gap"]) if hidden else None,
+        parameters=found.compared,
+        intervals=found.intervals,
+        covered=found.covered,
+        parameter_error=found.median_error,
+        seconds=answer["seconds"],
+        cpu_seconds=answer["cpu_seconds"],
+    )
+
+
+_NOTHING: dict[str, Any] = {"verdict": "", "effects": [], "where": [], "gap": None}
+
+
+def _why_lost(answer: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
+    if answer["status"] != "answered":
+        return str(answer["status"])
+    try:
+        check_against_schema(answer["gap"], schema, "gap.json")
+    except InputError as error:
+        return str(error)[:300]
+    names = [effect["name"] for effect in answer["gap"]["effects"]]
+    if answer["gap"]["verdict"] == "named" and not names:
+        return "gap.json: verdict named without an effect"
+    if answer["gap"]["verdict"] in ("no-gap", "parameters") and names:
+        return f"gap.json: verdict {answer['gap']['verdict']} with effects named"
+    return ""
+
+
+def _right(
+    kind: str, hidden: list[str], verdict: str, named: list[str], strict: list[str]
+) -> tuple[bool, bool]:
+    """Tell whether all is right, with the shape let pass and without."""
+    if kind == "none":
+        shape_alone = verdict == "named" and bool(strict) and not named
+        return verdict == "no-gap" or shape_alone, verdict == "no-gap"
+    if kind == "unlisted":
+        return (
+            verdict == "unnamed" and not named,
+            verdict == "unnamed" and not strict,
+        )
+    exactly = verdict == "named"
+    return exactly and sorted(named) == sorted(hidden), exactly and sorted(
+        strict
+    ) == sorted(hidden)
+
+
+def _known(effect: Mapping[str, Any]) -> bool:
+    return effect["ratio_retuned_db"] is not None
+
+
+def _shrink(truth: Mapping[str, Any], gap: Mapping[str, Any] | None) -> float | None:
+    """Share of the explainable power that is gone; 0 where there is no answer.
+
+    What can be explained is what the solver itself measures before, less the noise
+    and the base's own error, of which the judge knows the true size. Nothing can be
+    said where that leaves less than a tenth of the effects' power.
+    """
+    if gap is None:
+        return 0.0
+    hold_out = truth["hold_out"]
+    below = truth["noise_rms_um"] ** 2 + hold_out["base_error_rms_um"] ** 2
+    explainable = gap["before"] ** 2 - below
+    if explainable <= 0.1 * hold_out["explainable_rms_um"] ** 2:
+        return None
+    return float((gap["before"] ** 2 - gap["after"] ** 2) / explainable)

@@ -1,0 +1,150 @@
+"""What many judged cases say together: tables, one row a group."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from hystbench.challenge.contest.score import SHAPE, Row
+from hystbench.challenge.contest.wilson import Share, share, wilson
+
+#: Edges of the bins of stated confidence.
+CONFIDENCES = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)
+#: Columns of the confusion matrix that are no effect.
+OTHERS = ("no-gap", "unnamed", "parameters", "lost")
+
+
+def confusion(rows: Iterable[Row]) -> list[tuple[str, str, int]]:
+    """Count what was answered first for each single hidden effect and none.
+
+    Returns
+    -------
+    list of (hidden, answered, cases)
+        An effect outside the vocabulary stands under its own name.
+    """
+    counts = Counter(
+        (row.truth or "none", _first(row))
+        for row in rows
+        if row.kind in ("single", "none", "unlisted")
+    )
+    return [(*key, count) for key, count in sorted(counts.items())]
+
+
+def _first(row: Row) -> str:
+    if row.lost:
+        return "lost"
+    names = row.named.split()
+    if row.family != "gpi" and row.truth != SHAPE and len(names) > 1:
+        names = [name for name in names if name != SHAPE] or [SHAPE]
+    return names[0] if names else row.verdict
+
+
+def by_effect(rows: Iterable[Row], ratio_db: float = 20.0) -> list[tuple[Any, ...]]:
+    """Give for each single effect at one ratio the shares that matter.
+
+    Returns
+    -------
+    list of tuple
+        ``effect, family, figure, share, low, high, cases``.
+    """
+    chosen = [row for row in rows if row.kind == "single" and row.ratio_db == ratio_db]
+    out: list[tuple[Any, ...]] = []
+    for effect in sorted({row.truth for row in chosen}):
+        mine = [row for row in chosen if row.truth == effect]
+        for family in ("all", *sorted({row.family for row in mine})):
+            group = [row for row in mine if family in ("all", row.family)]
+            for figure in ("top1", "in_set", "exact", "where_hit"):
+                found = shares(group, figure)
+                out.append((effect, family, figure, *found))
+    return out
+
+
+def power(rows: Iterable[Row]) -> list[tuple[Any, ...]]:
+    """Give the share of cases in which an effect was named, by the hidden ratio.
+
+    Returns
+    -------
+    list of tuple
+        ``effect, family, ratio_db, share, low, high, cases``; effect and family may
+        be ``all``.
+    """
+    chosen = [row for row in rows if row.kind == "single"]
+    effects = ("all", *sorted({row.truth for row in chosen}))
+    families = ("all", *sorted({row.family for row in chosen}))
+    out: list[tuple[Any, ...]] = []
+    for effect in effects:
+        for family in families:
+            group = [
+                row
+                for row in chosen
+                if effect in ("all", row.truth) and family in ("all", row.family)
+            ]
+            for ratio in sorted({float(row.ratio_db or 0.0) for row in group}):
+                same = [row for row in group if row.ratio_db == ratio]
+                out.append((effect, family, ratio, *shares(same, "all_named")))
+    return out
+
+
+def stated(rows: Iterable[Row]) -> list[tuple[float, bool]]:
+    """Give the stated confidence of each effect named, and whether it is hidden."""
+    out = []
+    for row in rows:
+        hidden = row.truth.split()
+        for told in row.confidences.split():
+            name, _, confidence = told.rpartition("=")
+            out.append((float(confidence), name in hidden))
+    return out
+
+
+def reliability(rows: Iterable[Row]) -> list[tuple[Any, ...]]:
+    """Hold stated confidence against what happened.
+
+    Returns
+    -------
+    list of tuple
+        ``from, to, stated, share, low, high, effects`` of each bin that holds any;
+        ``stated`` is the mean.
+    """
+    pairs = stated(rows)
+    edges = list(zip(CONFIDENCES[:-1], CONFIDENCES[1:], strict=True))
+    out: list[tuple[Any, ...]] = []
+    for low, high in edges:
+        inside = [
+            (said, right)
+            for said, right in pairs
+            if low <= said < high or (said == high == 1.0)
+        ]
+        if inside:
+            mean = float(np.mean([said for said, _ in inside]))
+            out.append((low, high, mean, *share([right for _, right in inside])))
+    return out
+
+
+def brier(rows: Iterable[Row]) -> float | None:
+    """Mean square of stated confidence minus what happened (1 or 0)."""
+    pairs = stated(rows)
+    if not pairs:
+        return None
+    return float(np.mean([(said - right) ** 2 for said, right in pairs]))
+
+
+def shares(rows: Sequence[Row], figure: str) -> Share:
+    """Share of rows of which a figure is true; rows without it are left out."""
+    return share([value for row in rows if (value := getattr(row, figure)) is not None])
+
+
+def middle(rows: Iterable[Row], figure: Callable[[Row], float | None]) -> float | None:
+    """Median of a figure; None where no row has it."""
+    values = [value for row in rows if (value := figure(row)) is not None]
+    return float(np.median(values)) if values else None
+
+
+def coverage(rows: Sequence[Row]) -> Share:
+    """Share of the 95 % intervals that hold the true value.
+
+    Numbers of one case are not independent; the interval takes them so.
+    """
+    return wilson(sum(row.covered for row in rows), sum(row.intervals for row in rows))

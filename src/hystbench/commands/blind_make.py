@@ -1,0 +1,21 @@
+"""``hystbench blind-make``: the cases of a chunk, as solvers get them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from hystbench import options
+from hystbench.challenge.contest.chunk import make_chunk
+from hystbench.challenge.contest.plan import chunks, plan
+
+
+@click.command()
+@options.settings
+@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+def blind_make(settings: dict[str, Any], out: Path) -> None:
+    """Write a folder a case; no truth is written anywhere."""
+    entries = chunks(plan(settings["set"], settings["scale"]), settings["size"])
+    make_chunk(entries[settings["chunk"]], out)

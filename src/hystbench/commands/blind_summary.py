@@ -1,0 +1,43 @@
+"""``hystbench blind-summary``: the score of a solver, and its rivals'."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from hystbench import options
+from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, plan
+from hystbench.challenge.contest.rows import read_rows
+from hystbench.challenge.contest.writing import write_score
+
+
+@click.command()
+@click.argument("judged", type=options.FILE, nargs=-1, required=True)
+@click.option("--transfer", type=options.FILE, multiple=True, help="Judged elsewhere.")
+@options.settings
+@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+def blind_summary(
+    judged: tuple[Path, ...],
+    transfer: tuple[Path, ...],
+    settings: dict[str, Any],
+    out: Path,
+) -> None:
+    """Sum up the JUDGED chunks of a set."""
+    seeds = [entry.spec.seed for entry in plan(settings["set"], settings["scale"])]
+    mended = [DEVELOPMENT_SEEDS.start, DEVELOPMENT_SEEDS.stop - 1]
+    about = {
+        "set": settings["set"],
+        "scale": settings["scale"],
+        "seeds": [min(seeds), max(seeds)],
+        "seeds_used_while_mending": mended,
+    }
+    write_score(
+        read_rows(judged),
+        read_rows(transfer),
+        settings["solver"],
+        about,
+        settings["skipped"],
+        out,
+    )

@@ -1,0 +1,38 @@
+"""``hystbench rival``: a rival of the gap's solver, on a dataset."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.errors import InputError, nearest
+
+#: Modules of hystbench.entrants by the rivals' names.
+RIVALS = {
+    "naive": "naive",
+    "random": "random_namer",
+    "gaussian-process": "gaussian_process",
+    "sindy": "sindy",
+    "narx": "narx",
+}
+
+
+@click.command()
+@click.argument("name")
+@click.argument("dataset", type=click.Path(exists=True, path_type=Path))
+@click.option("--model", type=options.FILE, required=True, help="Model file (YAML).")
+@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+def rival(name: str, dataset: Path, model: Path, out: Path) -> None:
+    """Let the rival NAME write a gap.json for DATASET.
+
+    naive and random name effects; gaussian-process, sindy and narx name nothing and
+    shrink the gap by a black box.
+    """
+    if name not in RIVALS:
+        raise InputError(f"rival: no {name!r}; {nearest(name, RIVALS)}")
+    importlib.import_module(f"hystbench.entrants.{RIVALS[name]}").solve(
+        dataset, model, out
+    )

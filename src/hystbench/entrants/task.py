@@ -1,0 +1,154 @@
+"""What a solver gets, read; and gap.json, written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.dataset import load_dataset
+from hystbench.files import write_json
+from hystbench.model import Model, load_model
+from hystbench.record import FloatArray, Record
+
+#: Predicts the output of a record.
+Predict = Callable[[Record], FloatArray]
+
+
+@dataclass(frozen=True)
+class Given:
+    """A dataset and the model it is held against.
+
+    Parameters
+    ----------
+    name : str
+    model : Model
+    fit, hold_out : tuple of Record
+    periods : mapping of str to int
+        Samples a period, of periodic records.
+    """
+
+    name: str
+    model: Model
+    fit: tuple[Record, ...]
+    hold_out: tuple[Record, ...]
+    periods: dict[str, int]
+
+    def base(self, record: Record) -> FloatArray:
+        """Give the base's output."""
+        return self.model.simulate(record.u, record.dt)
+
+
+@dataclass(frozen=True)
+class Named:
+    """An effect that a rival names."""
+
+    name: str
+    confidence: float
+    cannot_be_told_from: tuple[str, ...] = ()
+
+
+def read(dataset: Path, model: Path) -> Given:
+    """Read what a solver gets.
+
+    Raises
+    ------
+    InputError
+        If a file is not what it should be.
+    """
+    about = load_dataset(dataset)
+    records = [about.read(name) for name in about.record_files]
+    hold = about.about["input"].get("hold", "band-limited")
+    periods = {
+        Path(entry["file"]).stem: int(entry["period_samples"])
+        for entry in about.about["records"]
+        if "period_samples" in entry
+    }
+    return Given(
+        about.name,
+        load_model(model).with_hold(hold),
+        tuple(record for record in records if record.use == "fit"),
+        tuple(record for record in records if record.use == "hold-out"),
+        periods,
+    )
+
+
+def noise_rms(given: Given) -> float:
+    """Estimate the noise from repeated periods; from the residual where none repeat."""
+    squares, count = 0.0, 0
+    for record in given.fit:
+        period = given.periods.get(record.name)
+        # the first period holds the switch-on
+        whole = len(record) // period - 1 if period else 0
+        if whole >= 2 and period:
+            repeats = record.y[-whole * period :].reshape(whole, period)
+            squares += float(np.sum((repeats - repeats.mean(axis=0)) ** 2))
+            count += (whole - 1) * period
+    if count:
+        return float(np.sqrt(squares / count))
+    return _rms([record.y - given.base(record) for record in given.fit])
+
+
+def write(
+    given: Given,
+    named: Sequence[Named],
+    verdict: str,
+    reason: str,
+    predict: Predict,
+    out: Path,
+) -> None:
+    """Write gap.json.
+
+    Parameters
+    ----------
+    given : Given
+    named : sequence of Named
+        In their order.
+    verdict : {"named", "no-gap", "unnamed"}
+    reason : str
+    predict : callable
+        The model that is to close the gap, for the hold-out records.
+    out : Path
+        Folder.
+    """
+    before = _rms([record.y - given.base(record) for record in given.hold_out])
+    after = _rms([record.y - predict(record) for record in given.hold_out])
+    floor = noise_rms(given)
+    above = before**2 - floor**2
+    explained = (before**2 - after**2) / above if above > 0 else None
+    effects = [
+        {
+            "name": item.name,
+            "place": "",
+            "parameters": {},
+            "confidence": item.confidence,
+            "cannot_be_told_from": list(item.cannot_be_told_from),
+        }
+        for item in named
+    ]
+    content: dict[str, Any] = {
+        "dataset": given.name,
+        "model": given.model.name,
+        "unit": given.model.output.unit,
+        "verdict": verdict,
+        "reason": reason,
+        "effects": effects,
+        "where": [],
+        "gap": {
+            "before": before,
+            "after": after,
+            "noise_floor": floor,
+            "floor_method": "repeats" if given.periods else "upper-bound",
+            "explained": explained,
+        },
+        "ranking": [],
+        "next_experiment": None,
+    }
+    write_json(out / "gap.json", content)
+
+
+def _rms(parts: Sequence[FloatArray]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))
