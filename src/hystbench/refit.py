@@ -278,7 +278,9 @@ def _searched(task: Task, effect: str) -> dict[str, Searched]:
         },
         "resonance": mode,
         "stiffness-hardening": {
-            "coefficient": Searched(-1.0 / size**2, 3.0 / size**2, (1e-3 / size**2, 0.1 / size**2))
+            "coefficient": Searched(
+                -1.0 / size**2, 3.0 / size**2, (1e-3 / size**2, 0.1 / size**2)
+            )
         },
         "friction": {
             "coulomb": Searched(-0.2 * size, 0.2 * size, (0.01 * size,)),
@@ -343,8 +345,7 @@ def _search(
 
     def values(x: FloatArray) -> dict[str, float]:
         return {
-            name: item.outer(v)
-            for name, item, v in zip(names, items, x, strict=True)
+            name: item.outer(v) for name, item, v in zip(names, items, x, strict=True)
         }
 
     def residual(x: FloatArray) -> FloatArray:
@@ -358,8 +359,7 @@ def _search(
     best = None
     for number in range(max(len(item.starts) for item in items)):
         start = [
-            item.inner(item.starts[min(number, len(item.starts) - 1)])
-            for item in items
+            item.inner(item.starts[min(number, len(item.starts) - 1)]) for item in items
         ]
         found = least_squares(
             residual,
@@ -432,8 +432,9 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
         float(np.mean((missing - design @ weights) ** 2)),
         PLAYS,
         {},
-        lambda record: task.model.simulate(record.u, record.dt)
-        + columns(record) @ weights,
+        lambda record: (
+            task.model.simulate(record.u, record.dt) + columns(record) @ weights
+        ),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -149,6 +150,16 @@ def _over(above: FloatArray, below: FloatArray, at_zero: float) -> FloatArray:
     return out
 
 
+@lru_cache(maxsize=256)
+def _discretised(
+    a: bytes, b: bytes, dt: float, hold: Hold
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Do what :func:`discretise` does, once for records of the same rate."""
+    drive = np.frombuffer(b)
+    matrix = np.frombuffer(a).reshape(len(drive), len(drive))
+    return discretise(StateSpace(matrix, drive, drive, 0.0), dt, hold)
+
+
 def _step_by_step(
     system: StateSpace, v: FloatArray, dt: float, hold: Hold, start: FloatArray
 ) -> FloatArray:
@@ -159,7 +170,7 @@ def _step_by_step(
         b = now + phi * following
         d = system.d + float(system.c @ following)
         return operators.modes(phi, b, system.c, d, v, start - following * v[0])
-    phi, now, following = discretise(system, dt, hold)
+    phi, now, following = _discretised(system.a.tobytes(), system.b.tobytes(), dt, hold)
     b = now + phi @ following
     d = system.d + float(system.c @ following)
     y, _ = operators.state_space(phi, b, system.c, d, v, start - following * v[0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -74,7 +75,8 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         fine = OVERSAMPLING if self.holding == "band-limited" and len(v) > 2 else 1
         if fine > 1:
             place = np.arange((len(v) - 1) * fine + 1) / fine
-            v, u = interpolate(v, fine), np.interp(place, np.arange(len(u)), u)
+            # A fit comes back with the same v and another coefficient.
+            v, u = _finer(v.tobytes()), np.interp(place, np.arange(len(u)), u)
             if growth is not None:
                 growth = np.interp(place, np.arange(len(growth)), growth)
         rate = np.gradient(v, dt / fine)
@@ -84,3 +86,8 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         else:
             growth = 1.0 + effect if growth is None else (1.0 + effect) * growth
         return inner.grow(v, u, dt / fine, growth)[::fine].copy()
+
+
+@lru_cache(maxsize=16)
+def _finer(samples: bytes) -> FloatArray:
+    return interpolate(np.frombuffer(samples), OVERSAMPLING)

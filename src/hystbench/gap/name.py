@@ -192,7 +192,9 @@ def rank(
         candidates.append(Candidate(*own, value, now - value, after))
     candidates.sort(key=lambda item: (item.state is None, item.score))
     candidates = [
-        exactly(item, score, now) if place < EXACT else item
+        exactly(item, score, now)
+        if place < EXACT and item.score < candidates[0].score + NEAR
+        else item
         for place, item in enumerate(candidates)
     ]
     candidates.sort(key=lambda item: (item.state is None, item.score))
@@ -244,6 +246,9 @@ def _path(
     deferred = False
     while len(state.added) < MOST:
         score = make_score(state, floor_rms)
+        if state.added and score_of(state, score) - score.least(state.freedom) < PAYS:
+            say("nothing is left that an effect could gain")
+            break
         ranking = rank(state, score)
         if _shape_takes_more(ranking, state, floor):
             deferred = True

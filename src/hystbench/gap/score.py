@@ -76,6 +76,10 @@ class Score:
         inside = self.directions.T @ values
         return values - self.directions @ inside, inside
 
+    def least(self, freedom: float = 0.0) -> float:
+        """Give the score of a residual that is noise: none can be less."""
+        return self._value(np.zeros(len(self.sample.positions)), 0.0, freedom)
+
     def of(self, residual: FloatArray, freedom: float = 0.0) -> float:
         """Score a residual, shape (scored samples,), of that many parameters."""
         rest, inside = self.split(residual)
