@@ -38,6 +38,7 @@ COMMANDS = {
     "twins": "Run all models on several twins.",
     "pressure": "Judge the claims on many twins, step sizes and seeds.",
     "contest": "Give each filter its own best step size.",
+    "gap": "Find what a simulator lacks, add it, show the gap shrink.",
     "hide": "Make records in which a plant hides effects.",
     "blind-make": "Make the cases of a chunk of the blind contest.",
     "blind-solve": "Run a solver on a chunk of the blind contest.",
