@@ -16,6 +16,7 @@ from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import next_experiment, parameter_tangents
+from hystbench.gap.fit import finished
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.locate import curves, locate
@@ -28,7 +29,6 @@ from hystbench.gap.verdict import (
     Left,
     confidence,
     judge,
-    rivals_by_effect,
     what_is_left,
 )
 from hystbench.gap.yardstick import BlackBox
@@ -107,17 +107,23 @@ def find(
     views = locate(compared, floor)
     if views:
         say(views[0].sentence)
-    named = name(start, floor.rms, say)
+    tuned = start
+    if start.free:
+        tuned, _ = finished(start, make_score(start, floor.rms))
+    named = name(tuned, floor.rms, say)
     state = named.state
     left = what_is_left(start, state, floor.rms)
     folds = make_folds(records, whole=False)
     box = BlackBox.fit(compared, folds, floor.rms)
     rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
-    verdict, reason = judge(left, bool(state.added), rest.explained_on_folds)
+    verdict, reason = judge(
+        left, bool(state.added), rest.explained_on_folds, bool(start.free)
+    )
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
-    errors = standard_errors(finer, make_score(finer, floor.rms))
-    by_effect = rivals_by_effect(named)
+    score = make_score(finer, floor.rms, forms=False)
+    errors = standard_errors(finer, score)
+    by_effect = named.reasons
     model = augmented(base, state)
     content = {
         "dataset": dataset,
@@ -132,6 +138,7 @@ def find(
         "where": [view.to_mapping() for view in views],
         "ranking": _ranking(named),
         "next_experiment": _experiment(base, named, by_effect, records, floor),
+        "base_parameters": _base_parameters(base, state),
         "black_box": {"explained_on_folds": box.explained_on_folds},
     }
     return Finding(
@@ -151,6 +158,23 @@ def augmented(base: Model, state: State) -> Model:
     labels = [label for label, _ in model.labelled()]
     free = tuple(n for n in names if n.rpartition(".")[0] in {labels[k] for k in own})
     return replace(model, free=tuple(f for f in free if _numeric(model, f)))
+
+
+def _base_parameters(base: Model, state: State) -> dict[str, Any]:
+    """Give the base's free parameters before and after."""
+    own = {k for item in state.added for k in item.blocks}
+    after = iter([state.value(free) for free in state.free if free.block not in own])
+    found: dict[str, Any] = {}
+    for parameter in base.free:
+        before = base.value(parameter)
+        if isinstance(before, tuple):
+            found[parameter] = {
+                "before": list(before),
+                "after": [next(after) for _ in before],
+            }
+        elif not isinstance(before, str):
+            found[parameter] = {"before": before, "after": next(after)}
+    return found
 
 
 def beside_blocks(state: State) -> list[Block]:

@@ -102,15 +102,27 @@ class Named:
     state : State
         The model with all effects that were added.
     rounds : tuple of Round
+    reasons : dict of str to tuple of Candidate
+        The ranking by which each added effect was taken.
     """
 
     state: State
-    rounds: tuple[Round, ...] = field(default=())
+    rounds: tuple[Round, ...] = ()
+    reasons: dict[str, tuple[Candidate, ...]] = field(default_factory=dict)
 
 
-def make_score(state: State, floor_rms: float) -> Score:
-    """Give the score for a model: what could be wrong in its shape is spanned anew."""
-    wrong = [state.other_forms]
+def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
+    """Give the score for a model: what could be wrong in its shape is spanned anew.
+
+    Parameters
+    ----------
+    state : State
+    floor_rms : float
+    forms : bool
+        Whether the added effects may be of another form too; not when their own
+        numbers are to be found.
+    """
+    wrong = [state.other_forms] if forms else [np.zeros((len(state.sample), 0))]
     if state.hold == "band-limited":
         wrong.append(step_error(state.scene, state.sample))
     spanned = directions(state.scene, state.sample, np.hstack(wrong))
@@ -243,6 +255,7 @@ def _path(
     floor = floor_rms**2
     gap = max(state.power(floor), floor * 1e-6)
     rounds: list[Round] = []
+    reasons: dict[str, tuple[Candidate, ...]] = {}
     deferred = False
     while len(state.added) < MOST:
         score = make_score(state, floor_rms)
@@ -263,9 +276,13 @@ def _path(
             break
         assert first.state is not None  # noqa: S101  (for the type checker)
         state = first.state
+        reasons[first.effect] = ranking
         if len(state.added) > 1:
-            state = reconsidered(state, rounds, floor_rms, say)
-    return Named(state, tuple(rounds)), deferred
+            state, again = reconsidered(state, rounds, floor_rms, say)
+            reasons |= again
+    if state.added:
+        state, _ = finished(state, make_score(state, floor_rms, forms=False))
+    return Named(state, tuple(rounds), reasons), deferred
 
 
 def _shape_takes_more(
@@ -306,12 +323,19 @@ FURTHER = 100.0
 
 def reconsidered(
     state: State, rounds: Sequence[Round], floor_rms: float, say: Say
-) -> State:
+) -> tuple[State, dict[str, tuple[Candidate, ...]]]:
     """Try the rivals of each effect in its place, now that others are there.
 
     The first effect was named while the others were missing: one like it may have
     looked better for that.
+
+    Returns
+    -------
+    state : State
+    rankings : dict of str to tuple of Candidate
+        Of the effects that were looked at again.
     """
+    rankings: dict[str, tuple[Candidate, ...]] = {}
     for number, item in enumerate(state.added):
         if item.effect == SHAPE:
             continue
@@ -326,8 +350,9 @@ def reconsidered(
         if other and best.score < now - SWAP:
             gain = now - best.score
             say(f"{item.effect} gives way to {best.effect}: {gain:.1f}")
-            return best.state or state
-    return state
+            return best.state or state, {**rankings, best.effect: ranking}
+        rankings[item.effect] = ranking
+    return state, rankings
 
 
 SWAP = 3.0

@@ -7,7 +7,7 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor, noise_floor
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
-from hystbench.gap.state import State
+from hystbench.gap.state import Free, State
 from hystbench.model import Model
 from hystbench.record import Record
 
@@ -28,12 +28,40 @@ def start_state(
         How the input moves between samples.
     declared : float, optional
         RMS noise, where it is known.
+
+    Raises
+    ------
+    InputError
+        If the base's output is not finite.
     """
-    chain = base.with_hold(hold).chain
-    state = State(chain, records, Sample.of(records), hold=hold).settled()
+    base = base.with_hold(hold)
+    chain = base.chain
+    state = State(
+        chain, records, Sample.of(records), free=free_numbers(base), hold=hold
+    ).settled()
     exact = Scene(chain, records, hold).output
     compared = [
         Compared(record, simulated)
         for record, simulated in zip(records, exact, strict=True)
     ]
     return state, noise_floor(compared, declared)
+
+
+def free_numbers(base: Model) -> tuple[Free, ...]:
+    """Give the numbers that a model leaves free, with the size of a likely change.
+
+    A tolerance is a share of the value; of a zero it says nothing.
+    """
+    places = {label: k for k, (label, _) in enumerate(base.labelled())}
+    found = []
+    for name in base.free:
+        label, _, parameter = name.rpartition(".")
+        share, value = base.tolerances.get(name), base.value(name)
+        numbers = value if isinstance(value, tuple) else (value,)
+        for element, number in enumerate(numbers):
+            if isinstance(number, str):
+                continue
+            size = None if not share or not number else share * abs(number)
+            place = element if isinstance(value, tuple) else None
+            found.append(Free(places[label], parameter, place, size))
+    return tuple(found)

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from hystbench.gap.name import Candidate, Named, make_score
+from hystbench.gap.name import Candidate, make_score
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 
@@ -66,7 +66,9 @@ def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     )
 
 
-def judge(left: Left, named: bool, explained_by_box: float | None) -> tuple[Word, str]:
+def judge(
+    left: Left, named: bool, explained_by_box: float | None, retuned: bool = False
+) -> tuple[Word, str]:
     """Choose the word and say why.
 
     Parameters
@@ -77,10 +79,17 @@ def judge(left: Left, named: bool, explained_by_box: float | None) -> tuple[Word
     explained_by_box : float or None
         Share of what is left, above the floor, that a black box takes away on folds of
         the fit records.
+    retuned : bool
+        Whether the base had numbers of its own to re-tune.
     """
     box = explained_by_box or 0.0
     there = left.after > ABOVE
     if not named:
+        if retuned and left.all_before > ABOVE and left.loose < LOOSE:
+            return "parameters", (
+                "re-tuning the base within what is free leaves "
+                f"{100 * left.loose:.0f} % of the gap, and no effect pays beside it"
+            )
         if not there:
             return "no-gap", (
                 "what is left is noise, or no more than a slightly wrong shape of the "
@@ -120,14 +129,3 @@ def _beyond(model: State, score: Score) -> float:
     rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
     squares = [float(np.mean(rest[part] ** 2)) for part in model.sample.slices]
     return float(np.mean(squares)) / score.floor - 1.0
-
-
-def rivals_by_effect(named: Named) -> dict[str, tuple[Candidate, ...]]:
-    """Give the ranking in which each added effect was last the first."""
-    found: dict[str, tuple[Candidate, ...]] = {}
-    for one in named.rounds:
-        for item in named.state.added:
-            near = [x for x in one.ranking if x.effect == item.effect]
-            if near and near[0].state is not None and item.effect not in found:
-                found[item.effect] = one.ranking
-    return found

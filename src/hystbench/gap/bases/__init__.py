@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -52,7 +53,13 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
         return identified_gpi(evidence)
     if text == "linear":
         found = identified_linear(evidence)
-        return found.model, found.note
+        # It was fitted with the gap in it: what is added may take its part back.
+        numbers = [
+            name
+            for name in found.model.parameter_names()
+            if not isinstance(found.model.value(name), str)
+        ]
+        return replace(found.model, free=tuple(numbers)), found.note
     if text == "column":
         return simulated_column(evidence)
     if Path(text).is_file() or text.endswith((".yaml", ".yml")):

@@ -45,4 +45,16 @@ def path(record: Record, given: Values, order: int) -> FloatArray:
         return ramp
     x = np.linspace(-1.0, 1.0, len(record))
     curved = np.polynomial.legendre.legvander(x, order)
+    # A path as fast as the input's own periods could be anything that follows it.
+    curved[:, max(1, int(periods(record) // PERIODS)) + 1 :] = 0.0
     return np.ascontiguousarray(np.hstack([ramp, curved[:, :1], curved[:, 2:]]))
+
+
+PERIODS = 2.0
+"""Of the input for each degree of a path."""
+
+
+def periods(record: Record) -> float:
+    """Count the input's periods in a record by how often it crosses its mean."""
+    above = record.u > float(np.mean(record.u))
+    return float(np.count_nonzero(above[1:] != above[:-1])) / 2
