@@ -16,7 +16,9 @@ from hystbench.record import FloatArray
 HALVINGS = 4
 """Of the grid's step around its best value."""
 ROUNDS = 5
-"""Of Gauss and Newton in a refit."""
+"""Of least squares in a refit."""
+DAMPING = (0.0, 1e2, 1e4, 1e6)
+"""Charge for a change of the whole of a number, tried until a step pays."""
 ENOUGH = 0.05
 """A round that lowers the score by less is the last."""
 
@@ -148,7 +150,7 @@ def score_of(state: State, score: Score) -> float:
 
 
 def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, float]:
-    """Refit all free numbers together (Gauss and Newton on the score).
+    """Refit all free numbers together (Levenberg and Marquardt on the score).
 
     Returns
     -------
@@ -159,18 +161,18 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
     best = score_of(state, score)
     for _ in range(rounds if state.free else 0):
         columns = np.hstack([state.tangents, state.beside_columns])
-        stiffness = np.zeros(columns.shape[1])
-        stiffness[: len(state.free)] = state.stiffness
-        found = score.amplitudes(
-            state.residual, columns, state.freedom, stiffness
-        ).values
-        change = dict(enumerate(found[: len(state.free)].tolist()))
+        count = len(state.free)
+        size = np.array([max(abs(state.value(free)), 1e-12) for free in state.free])
         before = best
-        for shrink in (1.0, 0.5, 0.2, 0.05):
+        for damping in DAMPING:
+            stiffness = np.zeros(columns.shape[1])
+            stiffness[:count] = state.stiffness + damping / size**2
+            found = score.amplitudes(
+                state.residual, columns, state.freedom, stiffness
+            ).values
+            change = dict(enumerate(found[:count].tolist()))
             try:
-                moved = state.with_chain(
-                    state.moved({k: shrink * x for k, x in change.items()})
-                )
+                moved = state.with_chain(state.moved(change))
                 value = score_of(moved, score)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
