@@ -140,7 +140,7 @@ def blocks(draw):
     for key, about in block.parameters().items():
         if about.kind == "choice":
             values[key] = draw(st.sampled_from(about.options))
-        elif key in values:
+        elif about.kind != "text" and key in values:
             factor = draw(st.floats(0.5, 1.0))
             values[key] = scaled(values[key], factor, about.low, about.high)
     return block.from_mapping(values)
@@ -169,6 +169,8 @@ def test_a_model_file_round_trips(data):
     bare = Model("m", Channel("u", "A"), Channel("y", "um"), chain)
     names = bare.parameter_names()
     free = data.draw(st.lists(st.sampled_from(names), unique=True))
+    shares = st.none() | st.floats(1e-3, 10.0)
+    tolerances = {name: data.draw(shares) for name in free}
     sources = st.sampled_from(["published", "derived", "calibrated"])
     notes = words.filter(str.strip)
     original = Model(
@@ -180,6 +182,7 @@ def test_a_model_file_round_trips(data):
         provenance={
             name: Provenance(data.draw(sources), data.draw(notes)) for name in free
         },
+        tolerances={name: x for name, x in tolerances.items() if x is not None},
     )
     text = original.to_yaml()
     assert Model.from_mapping(yaml.safe_load(text), "m.yaml") == original
@@ -286,3 +289,42 @@ def test_importing_models_stays_light():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert out.stdout.strip() == "False"
+
+
+def test_a_free_parameter_may_have_a_tolerance():
+    free = {"gain.value": 0.1, "gain.offset": None}
+    given = Model.from_mapping(content() | {"free": free}, "small.yaml")
+    assert given.free == ("gain.value", "gain.offset")
+    assert given.tolerances == {"gain.value": 0.1}
+    assert given.to_mapping()["free"] == free
+    assert model().tolerances == {}
+
+
+@pytest.mark.parametrize(
+    ("free", "expected"),
+    [
+        ({"gain.valeu": 0.1}, "free: unknown parameter 'gain.valeu'.*gain.value"),
+        ({"gain.value": -0.1}, "gain.value: expected a tolerance above 0.*-0.1"),
+        ({"gain.value": 0}, "expected a tolerance above 0"),
+        ({"gain.value": "10 %"}, "expected a tolerance above 0.*'10 %'"),
+        ({"gain.value": True}, "expected a tolerance above 0"),
+        ({"gain.value": float("inf")}, "expected a tolerance above 0"),
+        ("gain.value", "expected a list of parameters, or a mapping"),
+    ],
+)
+def test_a_tolerance_that_makes_no_sense_is_refused(free, expected):
+    with pytest.raises(InputError, match=expected) as caught:
+        Model.from_mapping(content() | {"free": free}, "small.yaml")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_tolerance_of_what_is_not_free_is_refused():
+    with pytest.raises(InputError, match="'gain.offset', which is not free"):
+        Model(
+            "m",
+            Channel("u", "A"),
+            Channel("y", "um"),
+            (Gain(value=2.0),),
+            free=("gain.value",),
+            tolerances={"gain.offset": 0.1},
+        )

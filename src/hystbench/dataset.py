@@ -22,8 +22,8 @@ UNIFORM_TOLERANCE = 0.01
 #: The smallest range of a channel; the largest value is one over it.
 SMALLEST = 1e-30
 
-#: An input repeats itself if it differs one period later by no more than this share
-#: of its standard deviation, rms.
+#: An input repeats itself if two of its periods differ by no more than this share of
+#: its standard deviation, rms.
 UNLIKE = 0.2
 
 _CHANNEL = {
@@ -149,7 +149,6 @@ class Dataset:
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
         period = self._entry(name).get("period_samples")
         if period is not None:
-            period = int(period)
             _check_period(f"{self.path}: records: {file.name}", period, u)
         return Record(
             name,
@@ -307,12 +306,14 @@ def _check_period(place: str, period: int, u: FloatArray) -> None:
             f"{place}: period_samples: {period}; expected at most {len(u) // 2}, "
             f"half of its {len(u)} samples"
         )
-    away = float(np.sqrt(np.mean((u[period:] - u[:-period]) ** 2)) / np.std(u))
-    if away > UNLIKE:
+    rounds = u[: len(u) // period * period].reshape(-1, period)
+    # The nearest two of them: the input may be faded in and out.
+    away = float(np.sqrt(np.mean(np.diff(rounds, axis=0) ** 2, axis=1)).min())
+    if away > UNLIKE * float(np.std(u)):
         raise InputError(
-            f"{place}: period_samples: {period}; the input differs from itself so many "
-            f"samples later by {away:.2g} of its standard deviation; expected at most "
-            f"{UNLIKE:g}"
+            f"{place}: period_samples: {period}; the input differs from one period to "
+            f"the next by {away / float(np.std(u)):.2g} of its standard deviation; "
+            f"expected at most {UNLIKE:g}"
         )
 
 

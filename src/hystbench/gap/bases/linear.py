@@ -21,6 +21,9 @@ HIGHEST = 6
 MATTERS = 0.005
 #: Orders above are not tried once so many in a row have not mattered.
 IN_VAIN = 2
+#: Share of each record at its beginning that does not count: what it remembers of the
+#: time before would pull the poles.
+LEAD = 0.1
 #: Steps of least squares on simulation: of all records, then of each fold.
 ROUNDS = 20
 FOLD_ROUNDS = 4
@@ -36,7 +39,7 @@ class Linear(NamedTuple):
         One sentence.
     fit_rms, fold_rms : float
         Error on the fit records, and on the folds of them that did not fit it, in
-        units of the output.
+        units of the output, both after the first tenth of each record.
     """
 
     model: Model
@@ -57,7 +60,7 @@ def identified_linear(evidence: Evidence) -> Linear:
 
     A ratio of polynomials in s and a constant, in output error. Orders from 0 (a gain)
     to 6 are fitted to the spectra first, then by least squares on simulation with the
-    dataset's hold. The order is the lowest whose error on folds of the fit records is
+    dataset's hold, without the first tenth of each record. The order is the lowest whose error on folds of the fit records is
     within half a percent of the best; then the numerator is shortened by the same rule.
     Deterministic.
 
@@ -72,8 +75,11 @@ def identified_linear(evidence: Evidence) -> Linear:
         If a record is too short for folds.
     """
     records = evidence.fit
-    folds = make_folds(records)
-    whole = tuple(np.ones(len(record), dtype=bool) for record in records)
+    whole = tuple(np.arange(len(item)) >= LEAD * len(item) for item in records)
+    folds = tuple(
+        Fold(_both(fold.train, whole), _both(fold.validation, whole))
+        for fold in make_folds(records)
+    )
     static_fit, static_folds, gain = _static(evidence, whole, folds)
     spectra = Spectra.of([Stretch(r.u, r.y, r.dt) for r in records], evidence.hold)
 
@@ -114,6 +120,10 @@ def identified_linear(evidence: Evidence) -> Linear:
     return Linear(model, note, fit, fold)
 
 
+def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]:
+    return tuple(a & b for a, b in zip(masks, others, strict=True))
+
+
 def _static(
     evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
 ) -> tuple[float, float, Gain]:
@@ -136,7 +146,7 @@ def _static(
 
     best = line(whole)
     judged = sum(squares(line(fold.train), fold.validation) for fold in folds)
-    count = sum(map(len, u))
+    count = sum(int(mask.sum()) for mask in whole)
     return (
         float(np.sqrt(squares(best, whole) / count)),
         float(np.sqrt(judged / count)),
@@ -153,7 +163,7 @@ def _dynamic(
     folds: tuple[Fold, ...],
 ) -> _Found:
     """Fit one order to all records, and from there to each fold's."""
-    count = sum(map(len, evidence.fit))
+    count = sum(int(mask.sum()) for mask in whole)
     first = fit_ratio(spectra, order, zeros)
     rest, settled = (
         OutputError(evidence.fit, evidence.hold, spectra.scale, start)
