@@ -2,6 +2,7 @@
 
 import csv
 import subprocess
+from dataclasses import replace
 
 import pytest
 import yaml
@@ -16,6 +17,7 @@ from hystbench.calibration.choice import (
     write_structures,
 )
 from hystbench.calibration.structures import STRUCTURES, find_structure
+from hystbench.calibration.twin import UNKNOWNS, make_twin
 from hystbench.errors import InputError
 from hystbench.published import FILTERS
 from tests.conftest import ROOT
@@ -56,6 +58,20 @@ def test_the_committed_choice_has_the_rule_and_a_structure():
     }
     assert scores[chosen.name] == min(scores.values())
     assert kept["chosen"] == {"name": chosen.name, **kept["tried"][chosen.name]}
+
+
+def test_what_is_calibrated_is_what_was_chosen():
+    kept = yaml.safe_load((ROOT / "src/hystbench/plants/choice.yaml").read_text())
+    chosen = find_structure(kept["chosen"]["name"])
+    free = {item.name: item for item in UNKNOWNS}
+    assert set(free) == {item.name for item in chosen.unknowns}
+    values = {name: item.start for name, item in free.items()}
+    assert chosen.make(values).chain == make_twin(values).chain
+    for item in chosen.more:
+        assert free[item.name] == item
+    # Every reading of the chosen structure beside its twin is that of the settings.
+    plain = replace(find_structure("base"), name=chosen.name, meaning=chosen.meaning)
+    assert replace(chosen, more=()) == plain
 
 
 def test_the_table_has_the_least_score_first(tmp_path):

@@ -27,12 +27,12 @@ def equally_good(
     """Draw twins whose cost is at most a tenth above the best one's.
 
     The step sizes, and the zero error and the noise of the recorded input, stay as they
-    are: they are the experiment's, one for all twins. Around the best twin the cost grows by
-    ``|J step|^2 / 2``, J the Jacobian of the residuals. Steps are drawn within the
-    ellipsoid where that growth is a tenth of the cost; directions that the targets do
-    not feel are held to a quarter of the bounds. A drawn twin counts only if its true
-    cost keeps the promise and it meets the constraints. Where few do, the ellipsoid
-    shrinks.
+    are: they are the experiment's, one for all twins. Around the best twin the cost
+    grows by ``|J step|^2 / 2``, J the Jacobian of the residuals. Steps are drawn within
+    the ellipsoid where that growth is a tenth of the cost; directions that the targets
+    do not feel are held to a quarter of the bounds. A drawn twin counts only if its
+    true cost keeps the promise and it meets the constraints. Where few do, the
+    ellipsoid shrinks.
 
     Parameters
     ----------
