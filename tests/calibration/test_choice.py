@@ -27,7 +27,14 @@ def tried(**scores):
     ratios = dict.fromkeys(FILTERS, 0.5)  # beyond a factor of 2
     one = {"signal": "sine-010hz", "log10_ratio": ratios, "rms_error": -0.02}
     same = {"cost": 1, "constraints_met": True, "left_out": [one]}
-    return [{"name": name, "score": score, **same} for name, score in scores.items()]
+    return [
+        {"name": name, "score": score, "values": values(name), **same}
+        for name, score in scores.items()
+    ]
+
+
+def values(name):
+    return {item.name: item.low for item in find_structure(name).unknowns}
 
 
 @given(
@@ -85,6 +92,11 @@ def test_the_table_has_the_least_score_first(tmp_path):
     assert float(rows[0]["left_out_worst_factor"]) == pytest.approx(10**0.5, abs=0.01)
     assert float(rows[0]["left_out_within_factor_2"]) == 0
     assert float(rows[0]["left_out_rms_percent"]) == 2
+    assert [row["free_beside"] for row in rows] == [
+        "",
+        "creep 0.03 s = 0; creep 0.3 s = 0; creep 3.0 s = 0",
+        "",
+    ]
     write_choice(tmp_path / "choice.yaml", found)
     kept = yaml.safe_load((tmp_path / "choice.yaml").read_text())
     assert kept["chosen"] == {
