@@ -104,6 +104,7 @@ def test_every_key_of_the_config_is_in_the_schema_and_the_other_way_round():
             changed("twin", "input_zero_error", float("inf")),
             "input_zero_error: inf; expected a finite number",
         ),
+        (changed("twin", "input_noise", -1e-3), "input_noise: -0.001; expected"),
         (changed("excitation", "unit", "V"), "expected 'A', the input of"),
         (changed("source", "Twin"), "did you mean 'twin'?"),
         (

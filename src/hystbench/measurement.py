@@ -18,16 +18,17 @@ def measure(
 ) -> Record:
     """Simulate a model on a signal.
 
-    The record's input is the signal plus ``input_zero_error``, a constant that the
-    actuator does not see; the sensor noise is drawn from ``seed`` and the signal's
-    name, so that it does not depend on which signals are run.
+    The record's input is the signal plus ``input_zero_error``, a constant, and white
+    noise of the RMS ``input_noise``; the actuator sees neither. The sensor noise and
+    that of the input are drawn from ``seed`` and the signal's name, each from a stream
+    of its own, so that they do not depend on which signals are run.
 
     Parameters
     ----------
     excitation : Signal
     plant : Model
     settings : mapping
-        ``seed`` and ``input_zero_error``.
+        ``seed``, ``input_zero_error`` and ``input_noise``, both in the input's unit.
     place : str
         File of the model, for messages.
 
@@ -41,12 +42,14 @@ def measure(
             f"{place}: input: unit {plant.input.unit!r}; "
             f"expected {excitation.unit!r}, the unit of signal {excitation.name}"
         )
-    rng = np.random.default_rng([settings["seed"], *excitation.name.encode()])
+    streams = [settings["seed"], *excitation.name.encode()]
+    noise = np.random.default_rng([*streams, 1]).standard_normal(len(excitation.u))
+    recorded = excitation.u + settings["input_zero_error"]
     return Record(
         name=excitation.name,
         dt=excitation.dt,
-        u=excitation.u + settings["input_zero_error"],
-        y=plant.simulate(excitation.u, excitation.dt, rng),
+        u=recorded + settings["input_noise"] * noise,
+        y=plant.simulate(excitation.u, excitation.dt, np.random.default_rng(streams)),
         input=plant.input,
         output=plant.output,
         origin="twin",

@@ -165,7 +165,8 @@ class Settings:
     @property
     def measure_job(self) -> dict[str, Any]:
         """Settings of the twin's measurement."""
-        return {key: self.config["twin"][key] for key in ("seed", "input_zero_error")}
+        keys = ("seed", "input_zero_error", "input_noise")
+        return {key: self.config["twin"][key] for key in keys}
 
     @property
     def identification_job(self) -> dict[str, Any]:

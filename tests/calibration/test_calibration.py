@@ -245,7 +245,8 @@ def test_equally_good_twins_keep_their_promise():
     best = descend(problem, aims, truth, evaluations=6)
     twins = equally_good(problem, aims, best, count=3, seed=1)
     assert len({twin.cost for twin in twins}) == 3
-    shared = {"input zero", *(name for name in START if name.endswith(" step"))}
+    shared = {"input zero", "input noise"}
+    shared |= {name for name in START if name.endswith(" step")}
     for name, value in best.values.items():
         values = [twin.values[name] for twin in twins]
         assert (np.ptp([*values, value]) < 1e-9) == (name in shared)

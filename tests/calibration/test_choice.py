@@ -2,6 +2,7 @@
 
 import csv
 import subprocess
+from dataclasses import replace
 
 import pytest
 import yaml
@@ -16,6 +17,7 @@ from hystbench.calibration.choice import (
     write_structures,
 )
 from hystbench.calibration.structures import STRUCTURES, find_structure
+from hystbench.calibration.twin import UNKNOWNS, make_twin
 from hystbench.errors import InputError
 from hystbench.published import FILTERS
 from tests.conftest import ROOT
@@ -25,7 +27,14 @@ def tried(**scores):
     ratios = dict.fromkeys(FILTERS, 0.5)  # beyond a factor of 2
     one = {"signal": "sine-010hz", "log10_ratio": ratios, "rms_error": -0.02}
     same = {"cost": 1, "constraints_met": True, "left_out": [one]}
-    return [{"name": name, "score": score, **same} for name, score in scores.items()]
+    return [
+        {"name": name, "score": score, "values": values(name), **same}
+        for name, score in scores.items()
+    ]
+
+
+def values(name):
+    return {item.name: item.low for item in find_structure(name).unknowns}
 
 
 @given(
@@ -58,6 +67,20 @@ def test_the_committed_choice_has_the_rule_and_a_structure():
     assert kept["chosen"] == {"name": chosen.name, **kept["tried"][chosen.name]}
 
 
+def test_what_is_calibrated_is_what_was_chosen():
+    kept = yaml.safe_load((ROOT / "src/hystbench/plants/choice.yaml").read_text())
+    chosen = find_structure(kept["chosen"]["name"])
+    free = {item.name: item for item in UNKNOWNS}
+    assert set(free) == {item.name for item in chosen.unknowns}
+    values = {name: item.start for name, item in free.items()}
+    assert chosen.make(values).chain == make_twin(values).chain
+    for item in chosen.more:
+        assert free[item.name] == item
+    # Every reading of the chosen structure beside its twin is that of the settings.
+    plain = replace(find_structure("base"), name=chosen.name, meaning=chosen.meaning)
+    assert replace(chosen, more=()) == plain
+
+
 def test_the_table_has_the_least_score_first(tmp_path):
     found = tried(base=3.0, creep=2.0, window=1.0)
     write_structures(tmp_path / "tried.csv", found)
@@ -69,6 +92,11 @@ def test_the_table_has_the_least_score_first(tmp_path):
     assert float(rows[0]["left_out_worst_factor"]) == pytest.approx(10**0.5, abs=0.01)
     assert float(rows[0]["left_out_within_factor_2"]) == 0
     assert float(rows[0]["left_out_rms_percent"]) == 2
+    assert [row["free_beside"] for row in rows] == [
+        "",
+        "creep 0.03 s = 0; creep 0.3 s = 0; creep 3.0 s = 0",
+        "",
+    ]
     write_choice(tmp_path / "choice.yaml", found)
     kept = yaml.safe_load((tmp_path / "choice.yaml").read_text())
     assert kept["chosen"] == {

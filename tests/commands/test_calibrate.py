@@ -77,7 +77,9 @@ def test_an_interrupted_run_ends_as_an_uninterrupted_one(
     assert f"config.yaml: filters: convergence_factor: gpo: mu: {mu:.6g}\n" in (
         whole.stdout
     )
-    assert "config.yaml: twin: input_zero_error: " in whole.stdout
+    report = read_json(tmp_path / "whole" / "report.json")
+    for key in ("input_zero_error", "input_noise"):
+        assert f"config.yaml: twin: {key}: {report[key]:.6g}\n" in whole.stdout
 
     with monkeypatch.context() as patch:
         tune = fitting.tune_steps
@@ -116,6 +118,7 @@ def test_a_held_out_signal_is_refused_in_one_line(job, tmp_path):
 def test_the_job_holds_none_of_what_is_calibrated(job):
     assert all("convergence_factor" not in each for each in job["filters"].values())
     assert "input_zero_error" not in json.dumps(job)
+    assert "input_noise" not in json.dumps(job)
 
 
 def test_what_was_tried_has_a_row_each_and_one_that_was_chosen(tmp_path):
@@ -136,9 +139,10 @@ def test_values_are_read_back_from_the_twin_they_made():
     found = values_of(make_twin(VALUES))
     for name, value in found.items():
         assert value == pytest.approx(VALUES[name], rel=1e-5), name
-    # Step sizes and the input's zero error are the experiment's.
+    # Step sizes and what the recorded input has are the experiment's.
     assert {name for name in VALUES if name not in found} == {
         "input zero",
+        "input noise",
         *(name for name in VALUES if name.endswith(" step")),
     }
 

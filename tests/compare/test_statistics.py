@@ -73,6 +73,19 @@ def test_cycles_of_a_sine_on_an_offset():
     assert when[0] == pytest.approx((1 / (2 * np.pi) + 0.5) / 7.3, abs=1e-4)
 
 
+@given(st.floats(0, 0.005), st.integers(0, 2**32 - 1))
+def test_noise_starts_no_cycle_of_a_chirp(rms, seed):
+    time = np.arange(10000) * 1e-4
+    # from 2 to 82 Hz: at first the noise is more than what u moves in ten samples
+    phase = 2 * np.pi * (2 * time + 40 * time**2)
+    noise = np.random.default_rng(seed).normal(0, rms, len(time))
+    when, frequency, _ = cycles(np.sin(phase) + noise, np.sin(phase), 1e-4)
+    # Of 42 turns: u is not clearly below before the first, nor above after the last.
+    assert len(when) == 40
+    # a cycle's frequency is that of a linear chirp in its middle
+    np.testing.assert_allclose(frequency, 2 + 80 * when, rtol=0.02)
+
+
 @given(
     st.lists(st.integers(-50, 50).map(float), min_size=2, max_size=30),
     st.integers(1, 60),

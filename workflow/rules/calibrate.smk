@@ -1,8 +1,8 @@
 from hystbench.calibration.structures import asked_structures
 
 # The twin itself. `snakemake calibrate` fits it to the published tables and puts it into
-# the package; it is committed there, so no other target makes it. The step sizes and
-# the zero error that belong to it are printed, for config.yaml.
+# the package; it is committed there, so no other target makes it. The step sizes, the
+# zero error and the input noise that belong to it are printed, for config.yaml.
 if TWIN:
     CALIBRATION = f"{RESULTS}/calibration"
     try:

@@ -38,6 +38,7 @@ COLUMNS = (
     "left_out_within_factor_2",
     "left_out_worst_factor",
     "left_out_rms_percent",
+    "free_beside",
 )
 
 
@@ -80,7 +81,11 @@ def write_choice(path: Path, tried: Sequence[Mapping[str, Any]]) -> None:
 
 
 def write_structures(path: Path, tried: Sequence[Mapping[str, Any]]) -> None:
-    """Write a row for each structure, least left-out score first."""
+    """Write a row for each structure, least left-out score first.
+
+    ``free_beside`` is what the fit to all signals found for the unknowns that the base
+    does not have, or not within the same bounds.
+    """
     rows = []
     chosen = choose(tried)
     for item in _by_score(tried):
@@ -100,6 +105,11 @@ def write_structures(path: Path, tried: Sequence[Mapping[str, Any]]) -> None:
                 f"{np.mean(sizes <= np.log10(2)):.3f}",
                 f"{10 ** sizes.max():.2f}",
                 f"{100 * max(abs(one.rms_error) for one in left_out):.1f}",
+                "; ".join(
+                    f"{own.name} = {item['values'][own.name]:.3g} "
+                    f"{own.unit.replace('-', '')}".strip()
+                    for own in structure.more
+                ),
             ]
         )
     write_csv(path, COLUMNS, rows)

@@ -26,13 +26,13 @@ def equally_good(
 ) -> tuple[Fit, ...]:
     """Draw twins whose cost is at most a tenth above the best one's.
 
-    The step sizes and the zero error of the recorded input stay as they are: they are
-    the experiment's, one for all twins. Around the best twin the cost grows by
-    ``|J step|^2 / 2``, J the Jacobian of the residuals. Steps are drawn within the
-    ellipsoid where that growth is a tenth of the cost; directions that the targets do
-    not feel are held to a quarter of the bounds. A drawn twin counts only if its true
-    cost keeps the promise and it meets the constraints. Where few do, the ellipsoid
-    shrinks.
+    The step sizes, and the zero error and the noise of the recorded input, stay as they
+    are: they are the experiment's, one for all twins. Around the best twin the cost
+    grows by ``|J step|^2 / 2``, J the Jacobian of the residuals. Steps are drawn within
+    the ellipsoid where that growth is a tenth of the cost; directions that the targets
+    do not feel are held to a quarter of the bounds. A drawn twin counts only if its
+    true cost keeps the promise and it meets the constraints. Where few do, the
+    ellipsoid shrinks.
 
     Parameters
     ----------
@@ -52,6 +52,7 @@ def equally_good(
     centre = to_point(best.values)
     fixed = {
         "input zero",
+        "input noise",
         *(name for own in STEP_NAMES.values() for name in own.values()),
     }
     plant = [k for k, item in enumerate(UNKNOWNS) if item.name not in fixed]

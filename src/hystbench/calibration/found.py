@@ -26,7 +26,8 @@ COLUMNS = (
 def values_of(model: Model) -> dict[str, float]:
     """Read the unknowns from a twin: the inverse of ``make_twin``, to its rounding.
 
-    Step sizes and the zero error of the recorded input are no part of a model.
+    Step sizes, and the zero error and the noise of the recorded input, are no part of
+    a model.
     """
 
     def first(name: str) -> float:

@@ -66,7 +66,7 @@ class Objective:
         Settings of each filter's job, as :func:`hystbench.adaptive.make_filter` takes
         them, but for the step sizes.
     seed : int
-        Seed of the sensor noise, as of ``hystbench measure``.
+        Seed of the noise, as of ``hystbench measure``.
     window_start_s : float
         Errors before it are left out of the MSE.
     unknowns : tuple of Unknown
@@ -100,15 +100,12 @@ class Objective:
     def _measured(
         self, signal: Signal, model: Model, values: Mapping[str, float]
     ) -> Record:
-        zero = values.get("input zero", 0.0)
-        settings = {"seed": self.seed, "input_zero_error": zero}
-        record = measure(signal, model, settings, "calibration")
-        if "input noise" not in values:
-            return record
-        # A stream of its own beside the sensor noise's.
-        rng = np.random.default_rng([self.seed, *signal.name.encode(), 1])
-        noise = values["input noise"] * rng.standard_normal(len(record))
-        return replace(record, u=record.u + noise)
+        settings = {
+            "seed": self.seed,
+            "input_zero_error": values.get("input zero", 0.0),
+            "input_noise": values.get("input noise", 0.0),
+        }
+        return measure(signal, model, settings, "calibration")
 
     def at(self, values: Mapping[str, float]) -> Objective:
         """Give the objective with the envelopes that Algorithm 1 finds on a twin.

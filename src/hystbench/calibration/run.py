@@ -34,14 +34,14 @@ def run_calibration(
     job : mapping
         ``signals`` (a signal's job by name, as of ``hystbench signal``; the
         calibration signals alone), ``filters`` (each filter's job), ``seed`` of the
-        sensor noise, ``starts``, ``search_seed`` and ``twins``.
+        noise, ``starts``, ``search_seed`` and ``twins``.
     model : Path
         Model file to write.
     uncertainty : Path
         Folder for the equally good twins' model files.
     report : Path
-        JSON to write: values, step sizes, zero error of the recorded input, cost,
-        cells and the turns of the chirp.
+        JSON to write: values, step sizes, zero error and noise of the recorded input,
+        cost, cells and the turns of the chirp.
     state : Path, optional
         Where an interrupted search goes on.
     tell : callable
@@ -86,6 +86,7 @@ def run_calibration(
             "values": best.values,
             "convergence_factor": step_sizes(best.values),
             "input_zero_error": best.values["input zero"],
+            "input_noise": best.values["input noise"],
             "cells": asdict(objective.cells(best.values, signals)),
             "targets": [asdict(aim) for aim in aims],
             "chirp": turns(twin)._asdict(),

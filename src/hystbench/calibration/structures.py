@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.calibration.objective import Objective
-from hystbench.calibration.twin import UNKNOWNS, Unknown, make_twin
+from hystbench.calibration.twin import BASE_UNKNOWNS, INPUT_NOISE, Unknown, make_twin
 from hystbench.errors import InputError, nearest
 from hystbench.model import Model
 from hystbench.signals import make_signal
@@ -63,7 +63,7 @@ class Structure:
     def unknowns(self) -> tuple[Unknown, ...]:
         """What is free: the base's unknowns first, then what is free beside."""
         own = {item.name: item for item in self.more}
-        free = {item.name: item for item in (*UNKNOWNS, _FROM_BELOW)} | own
+        free = {item.name: item for item in (*BASE_UNKNOWNS, _FROM_BELOW)} | own
         return tuple(item for name, item in free.items() if name not in self.fixed)
 
     @property
@@ -178,7 +178,7 @@ STRUCTURES = (
     Structure(
         "input-noise",
         "noise on the input that filters read",
-        more=(Unknown("input noise", "A", 1e-3, 1e-4, 0.02, True, "RMS, white"),),
+        more=(INPUT_NOISE,),
     ),
     Structure(
         "identified-envelopes",

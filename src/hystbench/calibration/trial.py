@@ -18,7 +18,7 @@ from hystbench.calibration.fit import Fit, Tell, descend, to_values, tune_steps
 from hystbench.calibration.objective import Objective, error_residual
 from hystbench.calibration.structures import Structure, make_objective
 from hystbench.calibration.targets import Target, targets
-from hystbench.calibration.twin import UNKNOWNS
+from hystbench.calibration.twin import BASE_UNKNOWNS
 
 SPREAD = 0.05
 """Standard deviation of the starts around the middle, as a share of the bounds."""
@@ -32,7 +32,7 @@ def starts(structure: Structure, count: int, seed: int) -> list[dict[str, float]
     """
     rng = np.random.default_rng(seed)
     unknowns = structure.unknowns
-    base = [item.name for item in UNKNOWNS]
+    base = [item.name for item in BASE_UNKNOWNS]
     more = [item.name for item in unknowns if item.name not in base]
     # Those of the base first, whether free or not, so that each keeps its draws.
     draws = [rng.standard_normal((count, len(names))) for names in (base, more)]

@@ -49,7 +49,7 @@ class Unknown:
     meaning: str
 
 
-UNKNOWNS = (
+BASE_UNKNOWNS = (
     Unknown("gain", "um", 94, 20, 400, True, "sum of the weights of the operators"),
     Unknown("first", "-", 0.47, 0.02, 0.98, False, "share of the first operator"),
     Unknown("decay", "-", -2.1, -8, 8, False, "others go as exp(-decay i / (N + 1))"),
@@ -74,6 +74,10 @@ UNKNOWNS = (
     ),
     Unknown("delayed step", "-", 0.02, 1e-3, 0.3, True, "convergence factor"),
 )
+"""Those of the base structure, from which the others that were tried set out."""
+INPUT_NOISE = Unknown("input noise", "A", 1e-3, 1e-4, 0.02, True, "RMS, white")
+UNKNOWNS = (*BASE_UNKNOWNS, INPUT_NOISE)
+"""Those of the structure that was chosen (plants/choice.yaml)."""
 
 
 def weights(gain: float, first: float, decay: float) -> FloatArray:
@@ -88,8 +92,8 @@ def make_twin(values: dict[str, float]) -> Model:
     Parameters
     ----------
     values : dict of str to float
-        By the names of :data:`UNKNOWNS`; step sizes and the zero error of the
-        recorded input are no part of the model and are left aside.
+        By the names of :data:`UNKNOWNS`; step sizes, and the zero error and the noise
+        of the recorded input, are no part of the model and are left aside.
     """
     fitted = "Fitted to the published errors and implied RMS of eight signals"
     sweep = f"{fitted}, held to the times of the chirp in the text."

@@ -37,5 +37,6 @@ def calibrate(settings: dict[str, Any], out: Path) -> None:
                 f"config.yaml: filters: convergence_factor: {model}: {key}: {value:.6g}"
             )
     click.echo(f"config.yaml: twin: input_zero_error: {best.values['input zero']:.6g}")
+    click.echo(f"config.yaml: twin: input_noise: {best.values['input noise']:.6g}")
     # Done: another run shall calculate, not remember.
     state.unlink(missing_ok=True)

@@ -98,7 +98,7 @@ class Task:
 
     def rms_errors(self, twin: Model) -> FloatArray:
         """RMS of each signal's record over the implied one, minus one."""
-        settings = {"seed": self.seed, "input_zero_error": 0.0}
+        settings = {"seed": self.seed, "input_zero_error": 0.0, "input_noise": 0.0}
         records = [measure(each, twin, settings, twin.name) for each in self.signals]
         found = [np.sqrt(np.mean(record.y**2)) for record in records]
         return np.array(found) / self.rms - 1

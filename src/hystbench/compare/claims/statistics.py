@@ -69,7 +69,9 @@ def cycles(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Split a chirp into its whole cycles: time, frequency and range of y.
 
-    A cycle starts where u rises through the middle of its range.
+    A cycle starts where u rises through the middle of its range, from clearly below to
+    clearly above it (by a twentieth of the range, so that noise starts none), on the
+    straight line between the two.
 
     Returns
     -------
@@ -81,7 +83,10 @@ def cycles(
         max(y) - min(y) over the cycle.
     """
     u = u - (u.max() + u.min()) / 2
-    starts = np.flatnonzero((u[:-1] <= 0) & (u[1:] > 0))
-    exact = (starts - u[starts] / (u[starts + 1] - u[starts])) * dt
+    clear = np.flatnonzero(np.abs(u) > 0.05 * np.ptp(u))
+    rises = np.flatnonzero((u[clear[:-1]] < 0) & (u[clear[1:]] > 0))
+    below, above = clear[rises], clear[rises + 1]
+    exact = (below - u[below] * (above - below) / (u[above] - u[below])) * dt
+    starts = np.floor(exact / dt).astype(int)
     ranges = np.array([np.ptp(y[a : b + 1]) for a, b in pairwise(starts)], dtype=float)
     return (exact[:-1] + exact[1:]) / 2, 1 / np.diff(exact), ranges
