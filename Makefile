@@ -8,13 +8,16 @@ endif
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 SOURCES := $(wildcard src/hystbench/kernels/*.c src/hystbench/kernels/*.h)
 
-.PHONY: help reproduce test lint docs clean requirements
+.PHONY: help reproduce test lint docs bench test-slurm clean requirements
 help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
 	@echo "make docs       fill the tables of README.md and docs/ from results/"
+	@echo "make bench      measure kernels and pipeline beside their peers"
+	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
 	@echo "make clean      remove .venv and results"
 
 # Look first, so that what is missing is said in one line and not by a compiler.
@@ -24,8 +27,13 @@ $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "hystbench needs Python's venv module (on Debian: the package python3.11-venv)" >&2; exit 1; }
 	@command -v $(firstword $(CC)) >/dev/null || { echo "hystbench needs a C compiler ('$(CC)' was not found; name another with CC=...)" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.txt
-	CC="$(CC)" $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	$(INSTALL) --require-hashes -r requirements.txt
+	CC="$(CC)" $(INSTALL) --no-deps --no-build-isolation -e .
+	touch $@
+
+# What a benchmark or a cluster needs beside that: an optional group of pyproject.toml.
+$(VENV)/ready-%: requirements-%.txt $(READY)
+	$(INSTALL) --require-hashes -r $<
 	touch $@
 
 reproduce: $(READY)
@@ -44,12 +52,26 @@ test: lint
 
 docs: $(READY)
 	$(BIN)/snakemake --cores all all pressure structures held_out
+	test -f results/benchmarks/imports.csv || $(MAKE) bench
 	$(BIN)/hystbench docs
 
-# Needs pip-tools; the file names no index, so pip's own setting decides.
+# Writes results/benchmarks/*.csv; a quiet machine makes the figures worth keeping.
+# One part alone: make bench BENCH=kernels
+BENCH ?= all
+bench: $(VENV)/ready-bench
+	CC="$(CC)" $(BIN)/python -m benchmarks $(BENCH)
+
+# Installs Slurm and starts its daemons for the time of the test.
+test-slurm: $(VENV)/ready-slurm
+	bash profiles/slurm/test/run $(BIN)
+
+# Needs pip-tools; the files name no index, so pip's own setting decides.
+COMPILE := pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras \
+  --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header
 requirements:
-	pip-compile --quiet --extra dev --generate-hashes --allow-unsafe --strip-extras \
-	  --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --no-header --output-file requirements.txt pyproject.toml
+	$(COMPILE) --extra dev --output-file requirements.txt pyproject.toml
+	for group in bench slurm; do $(COMPILE) --extra $$group \
+	  --constraint requirements.txt --output-file requirements-$$group.txt pyproject.toml || exit 1; done
 
 clean:
 	rm -rf $(VENV) results .snakemake

@@ -196,6 +196,36 @@ class Settings:
             "rdgpi": rdgpi if "rdgpi" in self.models else None,
         }
 
+    def _twin_job(self, *more: str) -> dict[str, Any]:
+        names = dict.fromkeys([*self.signals, *more])
+        return {
+            "signals": {name: self.signal_job(name) for name in names},
+            "asked": self.signals,
+            "measure": self.measure_job,
+        }
+
+    @property
+    def twin_fits_job(self) -> dict[str, Any]:
+        """Settings of what no step size changes, on all twins."""
+        whole = self.ensemble_job
+        fitted = whole["rdgpi"]["fit_signals"] if whole["rdgpi"] else []
+        return self._twin_job(self.identification_signal, *fitted) | {
+            key: whole[key] for key in ("identification", "rdgpi")
+        }
+
+    def twin_runs_job(self, model: str) -> dict[str, Any]:
+        """Give the settings of one filter on all twins."""
+        sweep = self.ensemble_job["order_sweep"]
+        return self._twin_job(sweep["signal"]) | {
+            "filters": {model: self.filter_job(model)},
+            "order_sweep": sweep,
+        }
+
+    @property
+    def twins_job(self) -> dict[str, Any]:
+        """Settings of the claims on all twins as configured."""
+        return self._twin_job()
+
     @property
     def pressure_job(self) -> dict[str, Any]:
         """Settings of the claims under pressure."""

@@ -8,10 +8,16 @@ from click.testing import CliRunner
 
 from hystbench.commands.contest import contest
 from hystbench.commands.pressure import pressure
+from hystbench.commands.twin_fits import twin_fits
+from hystbench.commands.twin_runs import twin_runs
 from hystbench.commands.twins import twins
 from hystbench.compare.twins import read_holdings, read_spreads
+from hystbench.errors import InputError
+from hystbench.pressure.ensemble import fit_rdgpi, run_ensemble
+from hystbench.pressure.report import write_twins
+from hystbench.pressure.twins import read_twins
 
-from .conftest import SIGNALS, write_twin
+from .conftest import SIGNALS, small_settings, write_twin
 
 
 def rows(path):
@@ -29,10 +35,63 @@ def two(tmp_path):
     return [write_twin(tmp_path / "one.yaml"), write_twin(tmp_path / "two.yaml", 1.5)]
 
 
+def run_twins(settings, files, folder):
+    """Fit, run each filter and judge, as the workflow does."""
+    fits, runs = folder / "fits.json", []
+    call(
+        twin_fits, *files, "--settings", json.dumps(settings.twin_fits_job),
+        "--out", fits,
+    )  # fmt: skip
+    for model in settings.filters:
+        runs += ["--runs", folder / f"{model}.json"]
+        job = json.dumps(settings.twin_runs_job(model))
+        call(twin_runs, *files, "--fits", fits, "--settings", job, "--out", runs[-1])
+    errors, claims = folder / "errors.csv", folder / "claims.csv"
+    call(
+        twins, *files, "--fits", fits, *runs,
+        "--settings", json.dumps(settings.twins_job),
+        "--errors", errors, "--claims", claims,
+    )  # fmt: skip
+    return errors, claims
+
+
+def test_twins_in_parts_are_those_of_the_ensemble_in_one(settings, two, tmp_path):
+    errors, claims = run_twins(settings, two, tmp_path)
+    job = settings.ensemble_job
+    whole = [
+        run_ensemble(twin, job, fit_rdgpi(twin, job), 0, [1.0])
+        for twin in read_twins(two)
+    ]
+    write_twins(whole, tmp_path / "whole.csv", tmp_path / "whole-claims.csv")
+    assert errors.read_bytes() == (tmp_path / "whole.csv").read_bytes()
+    assert claims.read_bytes() == (tmp_path / "whole-claims.csv").read_bytes()
+
+
+def test_a_filter_that_diverges_on_a_twin_goes_through_its_file(two, tmp_path):
+    wild = small_settings()
+    wild.config["filters"]["convergence_factor"]["gpo"]["mu"] = 1e6
+    errors, _ = run_twins(wild, two, tmp_path)
+    gpo = [row for row in rows(errors) if row["model"] == "gpo"]
+    assert gpo
+    for row in gpo:
+        assert (row["mse"], row["re"]) == ("", "")
+        assert row["status"].startswith("diverged at sample")
+
+
+def test_a_twin_that_was_not_fitted_is_told(settings, two, tmp_path):
+    fits = tmp_path / "fits.json"
+    job = json.dumps(settings.twin_fits_job)
+    call(twin_fits, two[0], "--settings", job, "--out", fits)
+    with pytest.raises(InputError, match=r"two\.yaml: not run; expected one of one"):
+        call(
+            twin_runs, two[1], "--fits", fits,
+            "--settings", json.dumps(settings.twin_runs_job("delayed")),
+            "--out", tmp_path / "out.json",
+        )  # fmt: skip
+
+
 def test_twins_writes_what_the_comparison_reads(settings, two, tmp_path):
-    errors, claims = tmp_path / "errors.csv", tmp_path / "claims.csv"
-    job = json.dumps(settings.ensemble_job)
-    call(twins, *two, "--settings", job, "--errors", errors, "--claims", claims)
+    errors, claims = run_twins(settings, two, tmp_path)
     assert len(rows(errors)) == 2 * len(SIGNALS) * 5
     low, high = read_spreads(errors)["sine-100hz", "gpo", "mse"]
     # 1.5 times the displacement under the same noise: up to 2.25 times the MSE

@@ -24,6 +24,8 @@ if TWIN:
             found=f"{COMPARE}/found.csv",
         log:
             f"{RESULTS}/logs/tried.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/tried.tsv"
         message:
             "what the calibration tried and found"
         shell:
@@ -43,6 +45,8 @@ if TWIN:
             report=f"{CALIBRATION}/report.json",
         log:
             f"{RESULTS}/logs/calibration/fit.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/calibration.tsv"
         params:
             settings=settings_text(SETTINGS.calibration_job),
             folder=subpath(output.report, parent=True),
@@ -77,6 +81,8 @@ if TWIN:
             f"{RESULTS}/structures/{{structure}}.json",
         log:
             f"{RESULTS}/logs/structures/{{structure}}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/structure/{{structure}}.tsv"
         params:
             settings=settings_text(SETTINGS.structure_job),
         message:
@@ -94,6 +100,8 @@ if TWIN:
             choice=f"{RESULTS}/structures/choice.yaml",
         log:
             f"{RESULTS}/logs/structures/tried.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/structures.tsv"
         message:
             "structures that were tried"
         shell:
@@ -111,6 +119,8 @@ if TWIN:
             f"{RESULTS}/structures/held-out.csv",
         log:
             f"{RESULTS}/logs/structures/held-out.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/held_out.tsv"
         params:
             settings=settings_text(SETTINGS.held_out_job),
         message:

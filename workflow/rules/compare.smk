@@ -49,6 +49,8 @@ if TWIN:
             latex=expand(f"{COMPARE}/tables/table-{{number}}.tex", number=[1, 2, 3, 4]),
         log:
             f"{RESULTS}/logs/tables.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/tables.tsv"
         params:
             runs=lambda wildcards, input: options("--run", input.runs),
             records=lambda wildcards, input: options("--record", input.records),
@@ -84,6 +86,8 @@ else:
             ),
         log:
             f"{RESULTS}/logs/tables.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/tables.tsv"
         params:
             runs=lambda wildcards, input: options("--run", input.runs),
             dataset=SETTINGS.name,

@@ -20,6 +20,8 @@ rule family_twins:
         report=f"{RESULTS}/families/families.json",
     log:
         f"{RESULTS}/logs/families/fit.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/family_twins.tsv"
     params:
         settings=settings_text(SETTINGS.measure_job),
         folder=subpath(output.report, parent=True),

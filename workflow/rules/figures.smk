@@ -76,6 +76,8 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
             svg=figure(NAME, "svg"),
         log:
             f"{RESULTS}/logs/figures/{NAME}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/draw/{NAME}.tsv"
         params:
             name=NAME,
             given=" ".join(

@@ -11,6 +11,8 @@ rule filter:
         arrays=run("{signal}", "{filter}", "npz"),
     log:
         f"{RESULTS}/logs/filter/{{signal}}-{{filter}}.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/filter/{{signal}}-{{filter}}.tsv"
     params:
         settings=lambda wildcards: settings_text(SETTINGS.filter_job(wildcards.filter)),
         identified=lambda wildcards, input: (
@@ -37,6 +39,8 @@ rule order_sweep:
         f"{RESULTS}/order-sweep/errors.csv",
     log:
         f"{RESULTS}/logs/order-sweep.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/order_sweep.tsv"
     params:
         settings=settings_text(SETTINGS.order_sweep_job),
     message:

@@ -6,6 +6,8 @@ rule identify:
         f"{RESULTS}/identify/identified.json",
     log:
         f"{RESULTS}/logs/identify/identify.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/identify.tsv"
     params:
         settings=settings_text(SETTINGS.identification_job),
     message:
@@ -29,6 +31,8 @@ rule envelopes:
         ),
     log:
         f"{RESULTS}/logs/identify/envelopes.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/envelopes.tsv"
     params:
         settings=settings_text(SETTINGS.filter_job("gpo")),
     message:

@@ -10,6 +10,8 @@ if TWIN:
             f"{RESULTS}/records/{{signal}}.npz",
         log:
             f"{RESULTS}/logs/measure/{{signal}}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/measure/{{signal}}.tsv"
         params:
             settings=settings_text(SETTINGS.measure_job),
         message:
@@ -29,6 +31,8 @@ else:
             f"{RESULTS}/records/{{signal}}.npz",
         log:
             f"{RESULTS}/logs/measure/{{signal}}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/measure/{{signal}}.tsv"
         message:
             "record {wildcards.signal}"
         shell:

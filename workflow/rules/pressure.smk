@@ -7,22 +7,70 @@ FILTER_MODULES = [f"hystbench.filters.{name}" for name in SETTINGS.filters]
 
 if TWIN:
 
-    # As configured, for the spread of each cell and for where each claim holds.
+    # As configured, for the spread of each cell and for where each claim holds. A
+    # changed step size runs its filter again on the twins, and no other.
+    rule twin_fits:
+        input:
+            twins=SETTINGS.twin_files,
+            code=code("hystbench.commands.twin_fits"),
+        output:
+            f"{RESULTS}/twins/fits.json",
+        log:
+            f"{RESULTS}/logs/twins/fits.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/twin_fits.tsv"
+        params:
+            settings=settings_text(SETTINGS.twin_fits_job),
+        message:
+            "identification and RDGPI model on each twin"
+        shell:
+            "hystbench twin-fits {input.twins:q} --settings {params.settings:q}"
+            " --out {output:q} 2> {log:q}"
+
+    rule twin_runs:
+        input:
+            twins=SETTINGS.twin_files,
+            fits=rules.twin_fits.output,
+            code=lambda wildcards: code(
+                "hystbench.commands.twin_runs", f"hystbench.filters.{wildcards.filter}"
+            ),
+        output:
+            f"{RESULTS}/twins/{{filter}}.json",
+        log:
+            f"{RESULTS}/logs/twins/{{filter}}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/twin_runs/{{filter}}.tsv"
+        params:
+            settings=lambda wildcards: settings_text(
+                SETTINGS.twin_runs_job(wildcards.filter)
+            ),
+        message:
+            "{wildcards.filter} on each twin"
+        shell:
+            "hystbench twin-runs {input.twins:q} --fits {input.fits:q}"
+            " --settings {params.settings:q} --out {output:q} 2> {log:q}"
+
     rule twins:
         input:
             twins=SETTINGS.twin_files,
-            code=code("hystbench.commands.twins", *FILTER_MODULES),
+            fits=rules.twin_fits.output,
+            runs=[f"{RESULTS}/twins/{name}.json" for name in SETTINGS.filters],
+            code=code("hystbench.commands.twins"),
         output:
             errors=f"{RESULTS}/twins/errors.csv",
             claims=f"{RESULTS}/twins/claims.csv",
         log:
-            f"{RESULTS}/logs/twins.log",
+            f"{RESULTS}/logs/twins/claims.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/twins.tsv"
         params:
-            settings=settings_text(SETTINGS.ensemble_job),
+            settings=settings_text(SETTINGS.twins_job),
+            runs=lambda wildcards, input: options("--runs", input.runs),
         message:
             "all models on each twin"
         shell:
-            "hystbench twins {input.twins:q} --settings {params.settings:q}"
+            "hystbench twins {input.twins:q} --fits {input.fits:q} {params.runs}"
+            " --settings {params.settings:q}"
             " --errors {output.errors:q} --claims {output.claims:q} 2> {log:q}"
 
     rule press:
@@ -36,6 +84,8 @@ if TWIN:
             markdown=f"{PRESSURE}/claims.md",
         log:
             f"{RESULTS}/logs/pressure/claims.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/press.tsv"
         params:
             settings=settings_text(SETTINGS.pressure_job),
             folder=lambda wildcards, output: Path(output.claims).parent,
@@ -56,6 +106,8 @@ if TWIN:
             markdown=f"{PRESSURE}/contest.md",
         log:
             f"{RESULTS}/logs/pressure/contest.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/contest.tsv"
         params:
             settings=settings_text(SETTINGS.contest_job),
             folder=lambda wildcards, output: Path(output.table).parent,
@@ -79,6 +131,8 @@ if TWIN:
             svg=figure("contest", "svg"),
         log:
             f"{RESULTS}/logs/figures/contest.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/draw_contest.tsv"
         message:
             "figure contest"
         shell:

@@ -6,6 +6,8 @@ rule rdgpi_identify:
         f"{RESULTS}/rdgpi/identified.json",
     log:
         f"{RESULTS}/logs/rdgpi/identify.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/rdgpi_identify.tsv"
     params:
         settings=settings_text(SETTINGS.rdgpi_job),
     message:
@@ -25,6 +27,8 @@ rule rdgpi:
         arrays=run("{signal}", "rdgpi", "npz"),
     log:
         f"{RESULTS}/logs/rdgpi/{{signal}}.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/rdgpi/{{signal}}.tsv"
     params:
         settings=settings_text(SETTINGS.error_job),
     message:
@@ -48,6 +52,8 @@ rule rdgpi_published:
         ),
     log:
         f"{RESULTS}/logs/rdgpi/published.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/rdgpi_published.tsv"
     message:
         "RDGPI model with the published parameters"
     shell:

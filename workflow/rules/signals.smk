@@ -5,6 +5,8 @@ rule signal:
         f"{RESULTS}/signals/{{signal}}.npz",
     log:
         f"{RESULTS}/logs/signal/{{signal}}.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/signal/{{signal}}.tsv"
     params:
         settings=lambda wildcards: settings_text(SETTINGS.signal_job(wildcards.signal)),
     message:

@@ -8,23 +8,30 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.pressure.ensemble import fit_rdgpi, run_ensemble
+from hystbench.files import read_json
+from hystbench.pressure.configured import join
+from hystbench.pressure.ensemble import draw_signals
 from hystbench.pressure.report import write_twins
 from hystbench.pressure.twins import read_twins
 
 
 @click.command()
 @click.argument("twins", type=options.FILE, nargs=-1, required=True)
+@click.option("--fits", type=options.FILE, required=True, help="Of twin-fits.")
+@click.option("--runs", type=options.FILE, multiple=True, help="Of twin-runs.")
 @options.settings
 @click.option("--errors", type=options.NEW_FILE, required=True, help="Errors to write.")
 @click.option("--claims", type=options.NEW_FILE, required=True, help="Claims to write.")
 def twins(
-    twins: tuple[Path, ...], settings: dict[str, Any], errors: Path, claims: Path
+    twins: tuple[Path, ...],
+    fits: Path,
+    runs: tuple[Path, ...],
+    settings: dict[str, Any],
+    errors: Path,
+    claims: Path,
 ) -> None:
-    """Run all models on TWINS as configured: errors, and where claims hold."""
-    found = []
-    for twin in read_twins(twins):
-        click.echo(f"twin {twin.name} ({twin.family})", err=True)
-        rdgpi = fit_rdgpi(twin, settings)
-        found.append(run_ensemble(twin, settings, rdgpi, seed=0, factors=[1.0]))
+    """Put what was run on TWINS together: errors, and where claims hold."""
+    parts = [read_json(path) for path in (fits, *runs)]
+    signals = draw_signals(settings["signals"], 0).values()
+    found = [join(twin, signals, settings, parts) for twin in read_twins(twins)]
     write_twins(found, errors, claims)

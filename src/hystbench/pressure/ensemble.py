@@ -106,9 +106,9 @@ def run_ensemble(
     records = measure_twin(twin, signals.values(), settings["measure"], seed)
     asked = {name: records[name] for name in settings["asked"]}
     jobs = filter_jobs(settings)
-    found = _identify(records, settings)
+    found = identify_records(records, settings)
     runs = {
-        (model, factor): _run_filter(model, scaled(job, factor), asked, found)
+        (model, factor): run_records(model, scaled(job, factor), asked, found)
         for model, job in jobs.items()
         for factor in factors
     }
@@ -124,16 +124,16 @@ def run_ensemble(
         common=Evidence(
             records=asked,
             identification=identification_of(found, twin.place),
-            runs=_run_rdgpi(rdgpi, asked),
+            runs=run_rdgpi(rdgpi, asked),
         ),
         runs=runs,
         order_sweeps={
-            (model, factor): _sweep(swept, filters, factor)
+            (model, factor): sweep_orders(swept, filters, factor)
             for model, filters in by_order.items()
             for factor in factors
         },
         envelope_errors={
-            factor: _envelopes(scaled(jobs["gpo"], factor), asked, found)
+            factor: compare_envelopes(scaled(jobs["gpo"], factor), asked, found)
             for factor in factors
             if "gpo" in jobs
         },
@@ -206,12 +206,13 @@ def run_all(
     return found
 
 
-def _run_filter(
+def run_records(
     model: str,
     job: Settings,
     records: Mapping[str, Record],
     identified: Settings,
 ) -> dict[Cell, Run]:
+    """Run a filter on records; ``identified`` is the result of Algorithm 1."""
     filters = [make_filter(model, job, r, identified) for r in records.values()]
     errors = run_all(list(zip(filters, records.values(), strict=True)))
     return {
@@ -256,16 +257,29 @@ def fit_rdgpi(twin: Twin, settings: Settings) -> RateDependentGPI | None:
     job = settings["rdgpi"]
     if job is None:
         return None
-    given = {key: value for key, value in job.items() if key != "fit_signals"}
     wanted = {name: settings["signals"][name] for name in job["fit_signals"]}
     signals = draw_signals(wanted, 0).values()
-    records = measure_twin(twin, signals, settings["measure"], 0)
-    return identify_rdgpi(list(records.values()), **given).model
+    return fit_rdgpi_records(
+        measure_twin(twin, signals, settings["measure"], 0), settings
+    )
 
 
-def _run_rdgpi(
+def fit_rdgpi_records(
+    records: Mapping[str, Record], settings: Settings
+) -> RateDependentGPI | None:
+    """Fit the RDGPI model to the records that its settings name."""
+    job = settings["rdgpi"]
+    if job is None:
+        return None
+    given = {key: value for key, value in job.items() if key != "fit_signals"}
+    wanted = [records[name] for name in job["fit_signals"]]
+    return identify_rdgpi(wanted, **given).model
+
+
+def run_rdgpi(
     model: RateDependentGPI | None, records: Mapping[str, Record]
 ) -> dict[Cell, Run]:
+    """Simulate the RDGPI model on records; nothing where there is none."""
     if model is None:
         return {}
     runs = {}
@@ -293,14 +307,18 @@ def _run_rdgpi(
     return runs
 
 
-def _identify(records: Mapping[str, Record], settings: Settings) -> dict[str, Any]:
+def identify_records(
+    records: Mapping[str, Record], settings: Settings
+) -> dict[str, Any]:
+    """Give the result of Algorithm 1 on the slow record, as its file holds it."""
     job = settings["identification"]
     return identify_slow_loop(records[job["signal"]], job).to_dict()
 
 
-def _sweep(
+def sweep_orders(
     record: Record, filters: Iterable[AdaptiveFilter], factor: float
 ) -> tuple[OrderPoint, ...]:
+    """Run filters of several orders on a record, with a factor on their step sizes."""
     faster = []
     for each in filters:
         own = step_names(each.name).values()
@@ -312,12 +330,13 @@ def _sweep(
     )
 
 
-def _envelopes(
+def compare_envelopes(
     job: Settings, records: Mapping[str, Record], identified: Settings
 ) -> dict[Cell, float]:
+    """Give the MSE of the GPO filter with either envelopes, by signal and envelopes."""
     errors = {}
     for source in ("identified", "published"):
-        runs = _run_filter(
+        runs = run_records(
             "gpo", dict(job) | {"envelopes": source}, records, identified
         )
         for (signal, _), run in runs.items():

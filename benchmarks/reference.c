@@ -1,0 +1,158 @@
+/* Plain C loops that the kernels are measured beside.
+ *
+ * TAPS is a constant of the build, so that the compiler may unroll and keep weights in
+ * registers.  Sums are left to the compiler: whether it may reorder them is a flag.
+ * Lines hold TAPS - 1 (lms, volterra) or TAPS (plays) zeros before the first sample;
+ * weights and operators run from the oldest tap to the newest.
+ */
+#include <math.h>
+#include <stddef.h>
+
+typedef ptrdiff_t index_t;
+
+void reference_lms(index_t n, const double *restrict line, const double *restrict d,
+                   double step, double *restrict w, double *restrict y)
+{
+    for (index_t k = 0; k < n; k++) {
+        double sum = 0;
+        for (int i = 0; i < TAPS; i++) sum += w[i] * line[k + i];
+        const double change = step * (d[k] - sum);
+        for (int i = 0; i < TAPS; i++) w[i] += change * line[k + i];
+        y[k] = sum;
+    }
+}
+
+/* The same with the output looked ahead by one step: w(k)'H(k) is
+ * w(k-1)'H(k) + c H(k-1)'H(k), so that no sum waits for the error before it. */
+void reference_lms_ahead(index_t n, const double *restrict line,
+                         const double *restrict d, double step, double *restrict w,
+                         double *restrict y)
+{
+    double last[TAPS] = {0}, change = 0;
+    for (index_t k = 0; k < n; k++) {
+        double before = 0, overlap = 0;
+        for (int i = 0; i < TAPS; i++) {
+            const double h = line[k + i];
+            before += w[i] * h;
+            overlap += last[i] * h;
+            w[i] += change * last[i];
+            last[i] = h;
+        }
+        y[k] = before + change * overlap;
+        change = step * (d[k] - y[k]);
+    }
+    for (int i = 0; i < TAPS; i++) w[i] += change * last[i];
+}
+
+/* Plays along the line; left and right are the envelopes of the line. */
+static inline void plays(index_t n, const double *restrict line,
+                         const double *restrict left, const double *restrict right,
+                         const double *restrict d, const double *restrict r,
+                         double step, double *restrict w, double *restrict y)
+{
+    double state[TAPS] = {0};
+    for (index_t k = 0; k < n; k++) {
+        double sum = 0;
+        for (int i = 0; i < TAPS; i++) {
+            const double move = line[k + 1 + i] - line[k + i];
+            const double low = right[k + 1 + i] - r[i], high = left[k + 1 + i] + r[i];
+            const double up = low > state[i] ? low : state[i];
+            const double down = high < state[i] ? high : state[i];
+            state[i] = move > 0 ? up : move < 0 ? down : state[i];
+            sum += w[i] * state[i];
+        }
+        const double change = step * (d[k] - sum);
+        for (int i = 0; i < TAPS; i++) w[i] += change * state[i];
+        y[k] = sum;
+    }
+}
+
+void reference_backlash(index_t n, const double *line, const double *d, const double *r,
+                        double step, double *w, double *y)
+{
+    plays(n, line, line, line, d, r, step, w, y);
+}
+
+/* a: the eight parameters of Eqs. 5 and 6; left and right: space for n + TAPS. */
+void reference_gpo(index_t n, const double *restrict line, const double *restrict a,
+                   double *restrict left, double *restrict right, const double *d,
+                   const double *r, double step, double *w, double *y)
+{
+    for (index_t k = 0; k < n + TAPS; k++) {
+        left[k] = a[0] * tanh(a[1] * line[k] + a[2]) + a[3];
+        right[k] = a[4] * tanh(a[5] * line[k] + a[6]) + a[7];
+    }
+    plays(n, line, left, right, d, r, step, w, y);
+}
+
+/* All TAPS + TAPS^2 weights: predict, then correct. */
+void reference_volterra(index_t n, const double *restrict line,
+                        const double *restrict d, double step1, double step2,
+                        double *restrict first, double *restrict second,
+                        double *restrict y)
+{
+    for (index_t k = 0; k < n; k++) {
+        const double *x = line + k;
+        double sum = 0;
+        for (int i = 0; i < TAPS; i++) {
+            double row = first[i];
+            for (int j = 0; j < TAPS; j++) row += second[i * TAPS + j] * x[j];
+            sum += row * x[i];
+        }
+        const double error = d[k] - sum;
+        for (int i = 0; i < TAPS; i++) {
+            first[i] += step1 * error * x[i];
+            const double change = step2 * error * x[i];
+            for (int j = 0; j < TAPS; j++) second[i * TAPS + j] += change * x[j];
+        }
+        y[k] = sum;
+    }
+}
+
+/* The same in one pass over the weights: each is corrected for the sample before, then
+ * predicts. */
+void reference_volterra_fused(index_t n, const double *restrict line,
+                              const double *restrict d, double step1, double step2,
+                              double *restrict first, double *restrict second,
+                              double *restrict y)
+{
+    double last[TAPS] = {0}, error = 0;
+    for (index_t k = 0; k <= n; k++) {
+        double x[TAPS], sum = 0;
+        for (int j = 0; j < TAPS; j++) x[j] = k < n ? line[k + j] : 0;
+        for (int i = 0; i < TAPS; i++) {
+            const double change = step2 * error * last[i];
+            double row = first[i] += step1 * error * last[i];
+            for (int j = 0; j < TAPS; j++) {
+                const double w = second[i * TAPS + j] + change * last[j];
+                second[i * TAPS + j] = w;
+                row += w * x[j];
+            }
+            sum += row * x[i];
+        }
+        for (int j = 0; j < TAPS; j++) last[j] = x[j];
+        if (k < n) {
+            y[k] = sum;
+            error = d[k] - sum;
+        }
+    }
+}
+
+/* Eqs. 4 and 9 from rest. */
+void reference_prandtl_ishlinskii(index_t n, const double *restrict left,
+                                  const double *restrict right,
+                                  const double *restrict r,
+                                  const double *restrict weights, double *restrict y)
+{
+    double state[TAPS] = {0};
+    for (index_t k = 0; k < n; k++) {
+        double sum = 0;
+        for (int i = 0; i < TAPS; i++) {
+            const double low = right[k] - r[i], high = left[k] + r[i];
+            const double under = high < state[i] ? high : state[i];
+            state[i] = low > under ? low : under;
+            sum += weights[i] * state[i];
+        }
+        y[k] = sum;
+    }
+}

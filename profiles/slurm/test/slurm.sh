@@ -1,0 +1,69 @@
+# A real Slurm of one node on this machine, all of it in one folder. For Debian, as root.
+# Source it: start_slurm FOLDER, stop_slurm FOLDER.
+
+start_slurm() {
+  local folder=$1 host
+  host=$(hostname -s)
+  [ ! -e /etc/slurm/slurm.conf ] || {
+    echo "/etc/slurm/slurm.conf is there: this machine has a Slurm of its own" >&2
+    return 1
+  }
+  mkdir -p "$folder/state" "$folder/spool" "$folder/munge"
+  dd if=/dev/urandom of="$folder/munge/key" bs=1 count=1024 status=none
+  chown -R munge:munge "$folder/munge"
+  chmod 755 "$folder" "$folder/munge"
+  chmod 400 "$folder/munge/key"
+  cat > "$folder/slurm.conf" <<CONF
+ClusterName=hystbench
+SlurmctldHost=$host(127.0.0.1)
+SlurmUser=root
+SlurmdUser=root
+AuthType=auth/munge
+AuthInfo=socket=$folder/munge/socket
+CredType=cred/munge
+SlurmctldPort=16817
+SlurmdPort=16818
+StateSaveLocation=$folder/state
+SlurmdSpoolDir=$folder/spool
+SlurmctldPidFile=$folder/slurmctld.pid
+SlurmdPidFile=$folder/slurmd.pid
+SlurmctldLogFile=$folder/slurmctld.log
+SlurmdLogFile=$folder/slurmd.log
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core_Memory
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+MpiDefault=none
+ReturnToService=2
+# A job that has ended stays in squeue's sight, since there is no sacct here.
+MinJobAge=600
+SchedulerParameters=sched_interval=1,batch_sched_delay=0
+NodeName=$host NodeAddr=127.0.0.1 CPUs=2 RealMemory=6000
+PartitionName=main Nodes=$host Default=YES State=UP
+CONF
+  # With SLURM_CONF alone the inner srun finds no configuration.
+  mkdir -p /etc/slurm
+  ln -s "$folder/slurm.conf" /etc/slurm/slurm.conf
+  # munged runs as its own user, whose key and folders these are.
+  runuser -u munge -- munged --force --key-file="$folder/munge/key" \
+    --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" \
+    --log-file="$folder/munge/log" --seed-file="$folder/munge/seed"
+  setsid slurmctld -i
+  setsid slurmd
+  for _ in $(seq 60); do
+    [ "$(sinfo --noheader --format=%T 2>/dev/null)" = idle ] && return 0
+    sleep 1
+  done
+  echo "Slurm's node did not become idle; see $folder/*.log" >&2
+  return 1
+}
+
+stop_slurm() {
+  local folder=$1 file
+  for file in slurmd.pid slurmctld.pid munge/pid; do
+    [ ! -s "$folder/$file" ] || kill "$(cat "$folder/$file")" || true
+  done
+  [ "$(readlink /etc/slurm/slurm.conf)" != "$folder/slurm.conf" ] || rm /etc/slurm/slurm.conf
+}

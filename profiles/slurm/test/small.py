@@ -1,0 +1,16 @@
+"""Cut config.yaml down to three signals: small.py CONFIG OUT."""
+
+import sys
+from pathlib import Path
+
+import yaml
+
+from hystbench.schema import load_yaml
+
+config = load_yaml(sys.argv[1])
+config["signals"] = ["sine-040hz", "sine-100hz", "multisine-10-30-50hz"]
+config["rdgpi"]["fit_signals"] = ["sine-040hz", "sine-100hz"]
+config["rdgpi"]["starts"] = 2
+config["order_sweep"]["orders"] = [1, 5, 10]
+config["pressure"]["twins"] = ["gma-preisach"]
+Path(sys.argv[2]).write_text(yaml.safe_dump(config), encoding="utf-8")
