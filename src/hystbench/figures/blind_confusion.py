@@ -23,7 +23,7 @@ _WRONG = LinearSegmentedColormap.from_list("wrong", ["white", style.VERMILION])
 def draw(*, table: Path) -> Figure:
     """Draw the confusion matrix: a row a hidden effect, a column a first answer.
 
-    Colour is the share of the row's cases; in each cell stands how many there are.
+    Colour goes with the root of the share of the row's cases; in each cell stands how many there are.
 
     Parameters
     ----------
@@ -52,7 +52,8 @@ def draw(*, table: Path) -> Figure:
     axes = figure.subplots()
     axes.grid(visible=False)
     axes.tick_params(length=0)
-    share = counts / counts.sum(axis=1, keepdims=True)
+    # the root: few wrong answers among many are to be seen
+    share = np.sqrt(counts / counts.sum(axis=1, keepdims=True))
     mostly = (right >= 0.5 * counts)[:, :, np.newaxis]
     colours = np.where(mostly, _RIGHT(share), _WRONG(share))
     axes.imshow(colours, aspect="auto", interpolation="nearest")

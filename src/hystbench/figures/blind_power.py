@@ -39,6 +39,8 @@ def draw(*, table: Path) -> Figure:
             _curve(axes, mine, family)
     for axes in panels.flat[len(effects) :]:
         axes.set_visible(False)
+    for axes in panels[-2, len(effects) % _ACROSS or _ACROSS :] if lines > 1 else []:
+        axes.tick_params(labelbottom=True)
     ratios = sorted({float(row["ratio_db"]) for row in rows})
     panels[0, 0].set_xticks(ratios)
     panels[0, 0].set_ylim(-5.0, 105.0)

@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hystbench.compare.rows import read_rows
-from hystbench.errors import InputError
 from hystbench.figures import style
 
 _COLUMNS = ("from", "to", "stated", "share", "low", "high", "cases")
@@ -20,11 +19,10 @@ def draw(*, table: Path) -> Figure:
     Parameters
     ----------
     table : Path
-        ``from, to, stated, share, low, high, cases``, a row a bin of confidence.
+        ``from, to, stated, share, low, high, cases``, a row a bin of confidence; none
+        where nothing was named.
     """
     rows = read_rows(table, _COLUMNS)
-    if not rows:
-        raise InputError(f"{table}: no effect was named")
     figure = Figure(figsize=(style.COLUMN, style.COLUMN))
     axes, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
     axes.plot([0, 100], [0, 100], **style.BEHIND)

@@ -21,7 +21,7 @@ FAMILIES = {
     "jiles-atherton": ("Jiles-Atherton plant", style.GREEN, "^"),
 }
 #: How much of an effect's place its families take.
-_SPREAD = 0.6
+_SPREAD = 0.8
 
 
 def by_effect(table: Path, figures: Mapping[str, str]) -> Figure:
@@ -38,7 +38,7 @@ def by_effect(table: Path, figures: Mapping[str, str]) -> Figure:
     if not rows:
         raise InputError(f"{table}: no effect of the blind contest")
     effects = sorted({row["effect"] for row in rows})
-    size = (style.PAGE, 1.1 + 0.22 * len(effects))
+    size = (style.PAGE, 1.1 + 0.3 * len(effects))
     drawn = Figure(figsize=size)
     panels = drawn.subplots(1, len(figures), sharey=True, squeeze=False)[0]
     for axes, (figure, title) in zip(panels, figures.items(), strict=True):
