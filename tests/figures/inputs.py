@@ -106,6 +106,45 @@ def write_contest(path: Path) -> None:
     _write(path, columns.split(","), rows)
 
 
+BLIND_EFFECTS = ("creep", "rate-dependent-hysteresis", "stiffness-hardening")
+BLIND_FAMILIES = ("gpi", "preisach", "jiles-atherton")
+
+
+def write_blind(folder: Path) -> None:
+    """Write the tables of a blind contest."""
+    answers = [
+        ["single", "creep", "creep", "yes", 9],
+        ["single", "creep", "drift", "no", 1],
+        ["single", "stiffness-hardening", "resonance", "no", 3],
+        ["unlisted", "dropouts", "unnamed", "yes", 4],
+        ["unlisted", "dropouts", "friction", "no", 1],
+        ["none", "none", "hysteresis-shape", "yes", 2],
+        ["none", "none", "no-gap", "yes", 12],
+    ]
+    _write(
+        folder / "confusion.csv",
+        ["kind", "hidden", "answered", "right", "cases"],
+        answers,
+    )
+    interval = ["share", "low", "high", "cases"]
+    shares = [
+        [effect, family, figure, 0.8 + 0.05 * n, 0.6, 1.0, 10]
+        for effect in BLIND_EFFECTS
+        for n, family in enumerate(BLIND_FAMILIES)
+        for figure in ("top1", "exact", "where_hit")
+    ]
+    _write(folder / "effects.csv", ["effect", "family", "figure", *interval], shares)
+    curves = [
+        [effect, family, ratio, ratio / (3 + ratio), 0.3, 1.0, 10]
+        for effect in ("all", *BLIND_EFFECTS)
+        for family in BLIND_FAMILIES
+        for ratio in (3.0, 10.0, 20.0, 30.0)
+    ]
+    _write(folder / "power.csv", ["effect", "family", "ratio_db", *interval], curves)
+    bins = [[0.5, 0.6, 0.55, 0.5, 0.2, 0.8, 4], [0.95, 1.0, 0.99, 0.97, 0.9, 0.99, 90]]
+    _write(folder / "reliability.csv", ["from", "to", "stated", *interval], bins)
+
+
 def write_identified(path: Path, record: Record) -> None:
     """Run a short Algorithm 1 on a record."""
     found = identify(
@@ -139,6 +178,7 @@ class Inputs:
         write_order_sweep(folder / "errors.csv")
         write_cells(folder / "cells.csv")
         write_contest(folder / "contest.csv")
+        write_blind(folder / "blind")
         write_identified(folder / "identified.json", self.records[SIGNALS[0]])
 
     def record(self, *names: str) -> list[Path]:
@@ -171,6 +211,11 @@ class Inputs:
             "learning-curves": everything,
             "errors-heat-map": {"table": self.folder / "cells.csv"},
             "contest": {"table": self.folder / "contest.csv"},
+            "blind-confusion": {"table": self.folder / "blind" / "confusion.csv"},
+            "blind-effects": {"table": self.folder / "blind" / "effects.csv"},
+            "blind-power": {"table": self.folder / "blind" / "power.csv"},
+            "blind-reliability": {"table": self.folder / "blind" / "reliability.csv"},
+            "blind-where": {"table": self.folder / "blind" / "effects.csv"},
             "loops": everything | {"records": self.record(*SIGNALS)},
             "errors-by-record": everything,
         }[figure]

@@ -16,7 +16,7 @@ from hystbench.errors import InputError
 from hystbench.figures import NAMES, drawer, style
 
 #: Axes that name categories, not a quantity.
-CATEGORIES = {"model", "signal"}
+CATEGORIES = {"model", "signal", "effect", "hidden effect", "first answer"}
 #: Smallest type that is legible in print (points).
 LEGIBLE = 6.0
 REPORT = Path(__file__).parents[2] / "workflow" / "report"

@@ -32,9 +32,9 @@ if CONTEST["solver"] not in ENTERED:
     )
 
 
-def blind_chunks(wildcards_or_set):
+def blind_chunks(name):
     """Numbers of the chunks of a set."""
-    return list(chunks(plan(wildcards_or_set, CONTEST["scale"]), CONTEST["chunk"]))
+    return list(chunks(plan(name, CONTEST["scale"]), CONTEST["chunk"]))
 
 
 def blind_case_settings(wildcards):
@@ -67,8 +67,8 @@ def blind_solver_code(wildcards):
     command = CONTEST["solvers"][wildcards.solver]["command"]
     modules = ["hystbench.commands.blind_solve"]
     if command[0] == "hystbench":
-        module = f"hystbench.commands.{command[1].replace('-', '_')}"
-        modules += [module] if module in GRAPH.modules else []
+        called = f"hystbench.commands.{command[1].replace('-', '_')}"
+        modules += [called] if called in GRAPH.modules else []
         if command[1] == "gap":
             # Effects are found by name, so that no import tells of them.
             modules += sorted(GRAPH.find_descendants("hystbench.gap"))

@@ -30,6 +30,11 @@ NAMES = (
     "contest",
     "loops",
     "errors-by-record",
+    "blind-confusion",
+    "blind-effects",
+    "blind-power",
+    "blind-reliability",
+    "blind-where",
 )
 
 

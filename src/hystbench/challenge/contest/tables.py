@@ -13,24 +13,35 @@ from hystbench.challenge.contest.wilson import Share, share, wilson
 
 #: Edges of the bins of stated confidence.
 CONFIDENCES = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)
-#: Columns of the confusion matrix that are no effect.
-OTHERS = ("no-gap", "unnamed", "parameters", "lost")
 
 
-def confusion(rows: Iterable[Row]) -> list[tuple[str, str, int]]:
-    """Count what was answered first for each single hidden effect and none.
+def confusion(rows: Iterable[Row]) -> list[tuple[str, str, str, str, int]]:
+    """Count what was answered first where at most one effect is hidden.
 
     Returns
     -------
-    list of (hidden, answered, cases)
-        An effect outside the vocabulary stands under its own name.
+    list of (kind, hidden, answered, right, cases)
+        ``kind`` is single, unlisted or none; ``right`` yes or no. With nothing hidden
+        beside a plant of another family than the base's, the shape is right too.
     """
-    counts = Counter(
-        (row.truth or "none", _first(row))
-        for row in rows
-        if row.kind in ("single", "none", "unlisted")
-    )
-    return [(*key, count) for key, count in sorted(counts.items())]
+    counts: Counter[tuple[str, str, str, str]] = Counter()
+    for row in rows:
+        if row.kind not in ("single", "unlisted", "none"):
+            continue
+        first = _first(row)
+        right = {
+            "single": first == row.truth,
+            "unlisted": first == "unnamed",
+            "none": row.false_alarm is False,
+        }[row.kind]
+        counts[row.kind, row.truth or "none", first, "yes" if right else "no"] += 1
+    order = ["single", "unlisted", "none"]
+    return [
+        (*key, count)
+        for key, count in sorted(
+            counts.items(), key=lambda item: (order.index(item[0][0]), item[0])
+        )
+    ]
 
 
 def _first(row: Row) -> str:

@@ -14,6 +14,7 @@ from hystbench.challenge.contest.summary import reach, summary
 from hystbench.files import write_csv, write_json
 
 _SHARE = ("share", "low", "high", "cases")
+_CONFUSION = ("kind", "hidden", "answered", "right", "cases")
 _REACH = ("figure", "asked", "reached", "low", "high", "cases", "met")
 _RIVALS = (
     "solver",
@@ -65,7 +66,7 @@ def write_score(
     write_rows(out / "cases.csv", rows)
     write_rows(out / "transfer-cases.csv", transfer)
     counts = tables.confusion(own)
-    write_csv(out / "confusion.csv", ("hidden", "answered", "cases"), counts)
+    write_csv(out / "confusion.csv", _CONFUSION, counts)
     write_csv(
         out / "effects.csv",
         ("effect", "family", "figure", *_SHARE),

@@ -1,0 +1,64 @@
+"""Polynomial NARX on the residual, by forward regression. Names nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.entrants.black_box import kept, residual
+from hystbench.entrants.task import Given, read, write
+from hystbench.record import FloatArray, Record
+
+DEGREE, LAG, TERMS = 2, 2, 10
+#: Samples of each record that it is fitted to.
+SAMPLES = 1500
+
+
+def solve(dataset: Path, model: Path, out: Path) -> None:
+    """Fit the residual from its own past, the input and the base; let it run free.
+
+    Lags are samples, whatever the record's rate, as is usual.
+
+    Parameters
+    ----------
+    dataset, model, out : Path
+        As every solver's.
+
+    References
+    ----------
+    .. [1] S. A. Billings, Nonlinear System Identification: NARMAX Methods in the Time,
+       Frequency, and Spatio-Temporal Domains, Wiley, 2013.
+    """
+    from sysidentpy.basis_function import (  # an optional package: hystbench[rivals]
+        Polynomial,
+    )
+    from sysidentpy.model_structure_selection import FROLS
+    from sysidentpy.parameter_estimation import LeastSquares
+
+    given = read(dataset, model)
+    r = np.concatenate([residual(given, record)[:SAMPLES] for record in given.fit])
+    x = np.concatenate([_driven(given, record)[:SAMPLES] for record in given.fit])
+    size, spread = float(np.std(r)) or 1.0, np.std(x, axis=0)
+    found = FROLS(
+        order_selection=True,
+        n_info_values=TERMS,
+        info_criteria="bic",
+        ylag=LAG,
+        xlag=[list(range(1, LAG + 1))] * x.shape[1],
+        basis_function=Polynomial(degree=DEGREE),
+        estimator=LeastSquares(),
+    )
+    found.fit(X=x / spread, y=r[:, np.newaxis] / size)
+
+    def predict(record: Record) -> FloatArray:
+        start = np.zeros((LAG, 1))
+        with np.errstate(all="ignore"):
+            ran = found.predict(X=_driven(given, record) / spread, y=start)
+        return kept(given.base(record) + size * ran[:, 0], record)
+
+    write(given, [], "unnamed", "A black box names nothing.", predict, out)
+
+
+def _driven(given: Given, record: Record) -> FloatArray:
+    return np.stack([record.u, given.base(record)], axis=1)
