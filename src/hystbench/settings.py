@@ -371,6 +371,7 @@ def read_settings(
     ]
     if config["source"] == "twin":
         _check_names(place, named, excitations)
+        _check_names(place, _gap_signals(place, config), excitations)
         # The calibration and the trial of structures run all signals of the tables.
         for pair in load():
             _check_names(place, [("excitations", pair.signal)], excitations)
@@ -396,6 +397,18 @@ def read_settings(
             config["filters"]["order"],
         )
     return Settings(config, dataset)
+
+
+def _gap_signals(place: str, config: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Name the signals of the gap's worked example; none may be in both roles."""
+    roles = config["gap"]["twin"]
+    for name in roles["hold_out"]:
+        if name in roles["fit"]:
+            raise InputError(
+                f"{place}: gap: twin: {name!r} is in fit and in hold_out; "
+                "expected it in one of them"
+            )
+    return [(f"gap: twin: {role}", name) for role in roles for name in roles[role]]
 
 
 def packaged_models() -> dict[str, str]:

@@ -11,7 +11,7 @@ from hystbench.blocks.held import Hold
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.errors import InputError
 from hystbench.model import Model
-from hystbench.record import Channel, Record
+from hystbench.record import Channel, Record, Use
 from hystbench.units import check_same_unit
 
 STUCK = 0.05
@@ -51,12 +51,12 @@ class Evidence:
     @property
     def input(self) -> Channel:
         """Name and unit of the input."""
-        return self.fit[0].input
+        return (*self.fit, *self.hold_out)[0].input
 
     @property
     def output(self) -> Channel:
         """Name and unit of the output."""
-        return self.fit[0].output
+        return (*self.fit, *self.hold_out)[0].output
 
     @property
     def slowest(self) -> Record:
@@ -66,8 +66,14 @@ class Evidence:
         return next(item for item in self.fit if item.name == self.identification)
 
 
-def load_evidence(path: str | Path) -> Evidence:
+def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     """Read a dataset for the gap workflow.
+
+    Parameters
+    ----------
+    path : str or Path
+    use : {"fit", "hold-out"}, optional
+        Read only these records; the files of the others are not opened.
 
     Raises
     ------
@@ -75,14 +81,18 @@ def load_evidence(path: str | Path) -> Evidence:
         If a record cannot be used, or there is none to fit or none held out.
     """
     dataset = load_dataset(path)
-    records = [dataset.read(name) for name in dataset.record_files]
-    fit = tuple(record for record in records if record.use == "fit")
-    hold_out = tuple(record for record in records if record.use == "hold-out")
-    if not hold_out:
+    if not any(dataset.use(name) == "hold-out" for name in dataset.record_files):
         raise InputError(
             f"{dataset.path}: records: none has 'use: hold-out'; expected at least "
             "one, to show by how much the gap shrinks"
         )
+    records = [
+        dataset.read(name)
+        for name in dataset.record_files
+        if use in (None, dataset.use(name))
+    ]
+    fit = tuple(record for record in records if record.use == "fit")
+    hold_out = tuple(record for record in records if record.use == "hold-out")
     for record in records:
         _check_usable(dataset, record)
     about = dataset.about

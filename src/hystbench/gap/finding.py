@@ -16,7 +16,6 @@ from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import next_experiment, parameter_tangents
-from hystbench.gap.fit import finished
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.locate import curves, locate
@@ -103,18 +102,39 @@ def find(
         If the base does not run on the records.
     """
     start, floor = start_state(records, base, hold, declared)
+    return decide(dataset, base, start, floor, name(start, floor.rms, say), say)
+
+
+def decide(
+    dataset: str,
+    base: Model,
+    start: State,
+    floor: Floor,
+    named: Named,
+    say: Say = _silent,
+) -> Finding:
+    """Locate the gap, and give the verdict on what was named.
+
+    Parameters
+    ----------
+    dataset : str
+        Its name.
+    base : Model
+    start : State
+        The base on the fit records.
+    floor : Floor
+    named : Named
+    say : callable
+        Told a line of progress at a time.
+    """
+    records, state = start.records, named.state
     compared = _compared(start.chain, start)
     views = locate(compared, floor)
     if views:
         say(views[0].sentence)
-    tuned = start
-    if start.free:
-        tuned, _ = finished(start, make_score(start, floor.rms))
-    named = name(tuned, floor.rms, say)
-    state = named.state
     left = what_is_left(start, state, floor.rms)
     folds = make_folds(records, whole=False)
-    box = BlackBox.fit(compared, folds, floor.rms)
+    box = black_box(start, floor)
     rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
     verdict, reason = judge(
         left, bool(state.added), rest.explained_on_folds, bool(start.free)
@@ -144,6 +164,12 @@ def find(
     return Finding(
         base, model, state, floor, left, box, content, curves(compared, floor)
     )
+
+
+def black_box(start: State, floor: Floor) -> BlackBox:
+    """Fit the yardstick to what the base leaves on the fit records."""
+    folds = make_folds(start.records, whole=False)
+    return BlackBox.fit(_compared(start.chain, start), folds, floor.rms)
 
 
 def augmented(base: Model, state: State) -> Model:

@@ -9,11 +9,12 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined, Effect
-from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished, score_of
+from hystbench.gap.effects.base import Effect
+from hystbench.gap.fit import Trial, score_of
 from hystbench.gap.reshape import directions, step_error
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, at_end, without_effect
+from hystbench.gap.work import IN_PROCESS, Tried, Work
 
 PAYS = 40.0
 """By how much an effect must lower the score to be named."""
@@ -129,21 +130,11 @@ def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
     return Score(state.sample, spanned, floor_rms**2)
 
 
-def try_effect(
-    effect: Effect, state: State, score: Score
-) -> tuple[list[tuple[Attempt, Trial]], str]:
-    """Score every variant of an effect over its grid; or say why it declines."""
-    try:
-        attempts = [
-            Attempt(state, item, score) for item in effect.variants(state.scene)
-        ]
-    except Declined as reason:
-        return [], str(reason)
-    return [(attempt, coarse(attempt)) for attempt in attempts], ""
-
-
 def rank(
-    state: State, score: Score, known: Sequence[Effect] | None = None
+    state: State,
+    score: Score,
+    known: Sequence[Effect] | None = None,
+    work: Work = IN_PROCESS,
 ) -> tuple[Candidate, ...]:
     """Try every effect beside a model, the likely ones to the end.
 
@@ -155,7 +146,7 @@ def rank(
     known = tuple(effects().values()) if known is None else tuple(known)
     have = {item.effect for item in state.added}
     now = score_of(state, score)
-    found: list[tuple[Attempt, Trial]] = []
+    found: list[Tried] = []
     declined = []
     for effect in known:
         if effect.name in have:
@@ -163,7 +154,7 @@ def rank(
                 Candidate(effect.name, effect.place, declined="added already")
             )
             continue
-        trials, why = try_effect(effect, state, score)
+        trials, why = work.tried(effect, state, score)
         found += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
@@ -171,7 +162,7 @@ def rank(
     refined = []
     for attempt, trial in found:
         if trial.score < best + max(NEAR, (now - best) * STILL):
-            trial = fine(attempt, trial)
+            trial = work.fine(attempt, trial)
         refined.append(trial)
     refined.sort(key=lambda trial: trial.score)
     of_effect: dict[str, Trial] = {}
@@ -186,7 +177,7 @@ def rank(
         likely = number < FINALISTS or variant.effect == SHAPE
         if likely and now - value > 0:
             try:
-                after, value = added(state, trial, score)
+                after, value = work.added(state, trial, score)
             except InputError as error:
                 declined.append(
                     Candidate(*own[:2], declined=f"fits best where {error}")
@@ -204,7 +195,7 @@ def rank(
         candidates.append(Candidate(*own, value, now - value, after))
     candidates.sort(key=lambda item: (item.state is None, item.score))
     candidates = [
-        exactly(item, score, now)
+        exactly(item, score, now, work)
         if place < EXACT and item.score < candidates[0].score + NEAR
         else item
         for place, item in enumerate(candidates)
@@ -213,11 +204,11 @@ def rank(
     return (*candidates, *declined)
 
 
-def exactly(item: Candidate, score: Score, now: float) -> Candidate:
+def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:
     """Simulate a candidate exactly: what steps of time miss may look like an effect."""
     if item.state is None:
         return item
-    after, value = finished(item.state, score)
+    after, value = work.finished(item.state, score)
     return replace(item, state=after, score=value, gain=now - value)
 
 
@@ -226,17 +217,25 @@ EXACT = 3
 
 
 def name(state: State, floor_rms: float, say: Say = lambda line: None) -> Named:
-    """Add effects to a model for as long as one pays.
+    """Add effects to a model for as long as one pays."""
+    return settled(_path(state, floor_rms, say), state, floor_rms, say)
+
+
+def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
+    """Give what a path found, or another where a wrong shape is to go first.
 
     Where a wrong shape of the hysteresis takes more of the gap away than the effect
     that scores best, that effect may still be one of several that do without it. So
     they are tried first; if the shape is needed after all, it goes first.
     """
-    found, deferred = _path(state, floor_rms, say, shape_first=False)
-    if deferred and any(item.effect == SHAPE for item in found.state.added):
+    if found.deferred and any(item.effect == SHAPE for item in found.state.added):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
-        found, _ = _path(state, floor_rms, say, shape_first=True)
-    return found
+        found = _path(start, floor_rms, say, shape_first=True)
+    state = found.state
+    if state.added:
+        # Its own numbers are found without what other forms of it could do.
+        state, _ = finished(state, make_score(state, floor_rms, forms=False))
+    return Named(state, found.rounds, found.reasons)
 
 
 SHAPE = "hysteresis-shape"
@@ -248,41 +247,90 @@ BESIDE_SHAPE = 0.1
 """Share that matters beside a hysteresis of the wrong shape."""
 
 
+@dataclass(frozen=True)
+class Progress:
+    """How far adding effects one by one has come.
+
+    Parameters
+    ----------
+    state : State
+    gap : float
+        Mean square of the base's gap above the floor.
+    rounds : tuple of Round
+    deferred : bool
+        Whether a shape that takes more of the gap was put off.
+    reasons : dict of str to tuple of Candidate
+        The ranking by which each added effect was taken.
+    closed : bool
+        Whether nothing is left that an effect could gain.
+    """
+
+    state: State
+    gap: float
+    rounds: tuple[Round, ...] = ()
+    deferred: bool = False
+    reasons: dict[str, tuple[Candidate, ...]] = field(default_factory=dict)
+    closed: bool = False
+
+    @classmethod
+    def begun(cls, state: State, floor_rms: float) -> Progress:
+        """Start from the base, re-tuned where it has free numbers."""
+        floor = floor_rms**2
+        if state.free:
+            state, _ = finished(state, make_score(state, floor_rms))
+        return cls(state, max(state.power(floor), floor * 1e-6))
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing more is to be added."""
+        stopped = bool(self.rounds) and not self.rounds[-1].taken
+        return stopped or self.closed or len(self.state.added) >= MOST
+
+
 def _path(
-    state: State, floor_rms: float, say: Say, shape_first: bool
-) -> tuple[Named, bool]:
-    """Add effects one by one; tell whether a shape that takes more was put off."""
-    floor = floor_rms**2
-    gap = max(state.power(floor), floor * 1e-6)
-    rounds: list[Round] = []
-    reasons: dict[str, tuple[Candidate, ...]] = {}
-    deferred = False
-    while len(state.added) < MOST:
-        score = make_score(state, floor_rms)
-        if state.added and score_of(state, score) - score.least(state.freedom) < PAYS:
-            say("nothing is left that an effect could gain")
-            break
-        ranking = rank(state, score)
-        if _shape_takes_more(ranking, state, floor):
-            deferred = True
-            if shape_first:
-                ranking = tuple(sorted(ranking, key=lambda x: x.effect != SHAPE))
-        first = ranking[0]
-        for item in ranking[:4]:
-            say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
-        taken = _pays(first, state, floor, gap)
-        rounds.append(Round(state, first.score + first.gain, ranking, taken))
-        if not taken:
-            break
+    state: State, floor_rms: float, say: Say, shape_first: bool = False
+) -> Progress:
+    """Add effects one by one."""
+    progress = Progress.begun(state, floor_rms)
+    while not progress.done:
+        progress = advance(progress, floor_rms, say, shape_first)
+    return progress
+
+
+def advance(
+    progress: Progress,
+    floor_rms: float,
+    say: Say,
+    shape_first: bool = False,
+    work: Work = IN_PROCESS,
+) -> Progress:
+    """Try every effect beside the model and add the one that pays, if any does."""
+    floor, state = floor_rms**2, progress.state
+    score = make_score(state, floor_rms)
+    if state.added and score_of(state, score) - score.least(state.freedom) < PAYS:
+        say("nothing is left that an effect could gain")
+        return replace(progress, closed=True)
+    ranking = rank(state, score, work=work)
+    reasons = dict(progress.reasons)
+    deferred = progress.deferred
+    if _shape_takes_more(ranking, state, floor):
+        deferred = True
+        if shape_first:
+            ranking = tuple(sorted(ranking, key=lambda x: x.effect != SHAPE))
+    first = ranking[0]
+    for item in ranking[:4]:
+        say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
+    taken = _pays(first, state, floor, progress.gap)
+    one = Round(state, first.score + first.gain, ranking, taken)
+    rounds = (*progress.rounds, one)
+    if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)
         state = first.state
         reasons[first.effect] = ranking
         if len(state.added) > 1:
             state, again = reconsidered(state, rounds, floor_rms, say)
             reasons |= again
-    if state.added:
-        state, _ = finished(state, make_score(state, floor_rms, forms=False))
-    return Named(state, tuple(rounds), reasons), deferred
+    return Progress(state, progress.gap, rounds, deferred, reasons)
 
 
 def _shape_takes_more(

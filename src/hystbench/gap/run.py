@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +13,12 @@ from hystbench.files import write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, Say, _silent, find
+from hystbench.gap.floor import Floor
 from hystbench.gap.nuisance import Nuisance, left_over, offset_and_mains
 from hystbench.gap.scene import Scene
 from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink
 from hystbench.gap.state import State, without_effect
+from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
@@ -60,21 +62,42 @@ def close_gap(
         say,
     )
     # From here on the hold-out records are read; nothing is decided any more.
-    shown = show(finding, evidence.hold_out)
-    content = {**finding.content, **shown.content}
+    shown = show(
+        base, finding.state, finding.floor, finding.black_box, evidence.hold_out
+    )
     folder.mkdir(parents=True, exist_ok=True)
     finding.model.save(folder / "model.yaml")
     write_json(folder / "curves.json", finding.curves)
-    for record, (before, after) in zip(evidence.hold_out, shown.outputs, strict=True):
-        _write_hold_out(
-            folder / "holdout" / f"{record.name}.csv", record, before, after
-        )
-    write_json(folder / "gap.json", content)
+    write_shown(folder, finding.content, evidence.hold_out, shown)
     if report:
         from hystbench.gap.report import write_report  # late: it draws
 
         write_report(folder)
     return finding
+
+
+def write_shown(
+    folder: Path,
+    decided: Mapping[str, Any],
+    records: tuple[Record, ...],
+    shown: Shown,
+) -> None:
+    """Write gap.json and the hold-out records before and after.
+
+    Parameters
+    ----------
+    folder : Path
+    decided : mapping
+        What gap.json holds, but for what the hold-out records show.
+    records : tuple of Record
+        The hold-out records.
+    shown : Shown
+    """
+    for record, (before, after) in zip(records, shown.outputs, strict=True):
+        _write_hold_out(
+            folder / "holdout" / f"{record.name}.csv", record, before, after
+        )
+    write_json(folder / "gap.json", {**decided, **shown.content})
 
 
 class Shown:
@@ -86,8 +109,24 @@ class Shown:
         self.content, self.outputs = content, outputs
 
 
-def show(finding: Finding, records: tuple[Record, ...]) -> Shown:
+def show(
+    base: Model,
+    state: State,
+    floor: Floor,
+    box: BlackBox,
+    records: tuple[Record, ...],
+) -> Shown:
     """Compare base and model on hold-out records.
+
+    Parameters
+    ----------
+    base : Model
+    state : State
+        The model with all effects that were added.
+    floor : Floor
+    box : BlackBox
+        Fitted to what the base leaves on the fit records.
+    records : tuple of Record
 
     Returns
     -------
@@ -95,11 +134,8 @@ def show(finding: Finding, records: tuple[Record, ...]) -> Shown:
         ``gap``, ``records``, ``ladder`` and ``black_box`` of gap.json, and the outputs
         before and after of each record, with what is new in it as estimated.
     """
-    state, floor = finding.state, finding.floor
-    hold = state.hold
     nuisance = what_is_new(state)
-    base = finding.base.with_hold(hold).chain
-    before = _run(base, records, state)
+    before = _run(base.with_hold(state.hold).chain, records, state)
     after = _run(state.chain, records, state)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
     stages = [("base", before)]
@@ -117,9 +153,7 @@ def show(finding: Finding, records: tuple[Record, ...]) -> Shown:
             {"name": name, "rms": value}
             for name, value in ladder(records, stages, nuisance)
         ],
-        "black_box": black_box_mapping(
-            finding.black_box, records, before, found, nuisance
-        ),
+        "black_box": black_box_mapping(box, records, before, found, nuisance),
     }
     outputs = [
         (

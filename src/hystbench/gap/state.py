@@ -68,6 +68,8 @@ class State:
     correction : ndarray, shape (scored samples,), optional
         By how much the exact simulation is above the quick one. It changes little
         from candidate to candidate; :meth:`settled` measures it anew.
+    corrected_at : tuple of Block, optional
+        The chain at which the correction was measured.
     """
 
     chain: tuple[Block, ...]
@@ -78,6 +80,7 @@ class State:
     beside: tuple[tuple[Beside, Values], ...] = ()
     hold: Hold = "band-limited"
     correction: FloatArray | None = None
+    corrected_at: tuple[Block, ...] | None = None
 
     @cached_property
     def scene(self) -> Scene:
@@ -88,7 +91,7 @@ class State:
         """Give the state with what the quick simulation lacks made up for."""
         exact = Scene(self.chain, self.records, self.hold).output
         lacks = self.sample.take(exact) - self.sample.take(self.scene.output)
-        return replace(self, correction=lacks)
+        return replace(self, correction=lacks, corrected_at=self.chain)
 
     @cached_property
     def residual(self) -> FloatArray:

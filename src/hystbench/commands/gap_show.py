@@ -1,0 +1,24 @@
+"""``hystbench gap-show``: read the hold-out records, once, and write gap.json."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.gap.evidence import load_evidence
+from hystbench.gap.jobs import show_in
+from hystbench.model import load_model
+
+
+@click.command()
+@click.argument("dataset", type=click.Path(path_type=Path))
+@click.option("--base", type=options.FILE, required=True, help="Model file.")
+@click.option("--out", type=click.Path(path_type=Path), required=True)
+def gap_show(dataset: Path, base: Path, out: Path) -> None:
+    """Show on the hold-out records of DATASET how far the gap shrinks.
+
+    Reads what hystbench gap-decide wrote to OUT; writes gap.json and holdout/ there.
+    """
+    show_in(out, load_evidence(dataset), load_model(base))

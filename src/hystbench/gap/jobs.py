@@ -1,0 +1,71 @@
+"""The last two stages as jobs: decide on the fit records, show on the hold-out ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hystbench.files import read_json, write_json
+from hystbench.gap.evidence import Evidence
+from hystbench.gap.finding import Say, _silent, black_box, decide
+from hystbench.gap.floor import Floor
+from hystbench.gap.kept import Restorer, state_mapping
+from hystbench.gap.name import name
+from hystbench.gap.run import show, write_shown
+from hystbench.gap.stages import floor_mapping, named_by
+from hystbench.gap.start import start_state
+from hystbench.model import Model
+
+DECISION = "stages/decision.json"
+NAMED = "stages/named.json"
+
+
+def decide_in(
+    folder: Path,
+    evidence: Evidence,
+    base: Model,
+    progress: Path | None,
+    say: Say = _silent,
+) -> None:
+    """Give the verdict and write it, the model and the curves to a folder.
+
+    Parameters
+    ----------
+    folder : Path
+    evidence : Evidence
+        Only its fit records are read.
+    base : Model
+    progress : Path or None
+        After the last round; None names the effects here.
+    say : callable
+        Told a line of progress at a time.
+    """
+    start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
+    if progress is None:
+        named = name(start, floor.rms, say)
+    else:
+        named, floor = named_by(evidence, read_json(progress), start, say)
+    finding = decide(evidence.name, base, start, floor, named, say)
+    finding.model.save(folder / "model.yaml")
+    write_json(folder / "curves.json", finding.curves)
+    kept = {"floor": floor_mapping(floor), "state": state_mapping(finding.state)}
+    write_json(folder / NAMED, kept)
+    write_json(folder / DECISION, finding.content)
+
+
+def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
+    """Read the hold-out records and write gap.json and holdout/; decide nothing.
+
+    Parameters
+    ----------
+    folder : Path
+        With what :func:`decide_in` wrote.
+    evidence : Evidence
+    base : Model
+    """
+    kept = read_json(folder / NAMED)
+    floor = Floor(**kept["floor"])
+    state = Restorer(evidence.fit).state(kept["state"])
+    start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
+    box = black_box(start, floor)
+    shown = show(base, state, floor, box, evidence.hold_out)
+    write_shown(folder, read_json(folder / DECISION), evidence.hold_out, shown)

@@ -1,0 +1,251 @@
+"""Naming cut into jobs: a start, one job an effect and round, and a choice a round.
+
+The jobs compute; the choice decides, by the code that decides in one process too. An
+effect's job cannot know how well the others do, so it searches around its own best
+variants and refits its best one. The choice leaves out what lies too far from the best
+of all, as one process does, and simulates the finalists exactly. So both ways name the
+same, and the jobs do some work that one process is spared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from hystbench.errors import InputError
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.evidence import Evidence
+from hystbench.gap.finding import Say, _silent
+from hystbench.gap.fit import Attempt, Trial, score_of
+from hystbench.gap.floor import Floor
+from hystbench.gap.kept import (
+    Mapped,
+    Restorer,
+    limit,
+    number,
+    progress_mapping,
+    state_mapping,
+)
+from hystbench.gap.name import NEAR, Named, Progress, advance, make_score, settled
+from hystbench.gap.score import Score
+from hystbench.gap.start import start_state
+from hystbench.gap.state import State
+from hystbench.gap.work import IN_PROCESS, Tried, Work
+from hystbench.model import Model
+
+
+def begin(evidence: Evidence, base: Model) -> Mapped:
+    """Measure the floor and give the progress before the first round.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Only its fit records are read.
+    base : Model
+
+    Returns
+    -------
+    dict
+        ``floor`` and, as after every round, ``state``, ``gap``, ``rounds``,
+        ``deferred`` and ``done``.
+    """
+    state, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
+    begun = progress_mapping(Progress.begun(state, floor.rms))
+    return {"floor": floor_mapping(floor), **begun}
+
+
+def floor_mapping(floor: Floor) -> Mapped:
+    """Give the noise floor, as JSON holds it."""
+    return {
+        "rms": floor.rms,
+        "method": floor.method,
+        "per_record": dict(floor.per_record),
+    }
+
+
+def try_one(evidence: Evidence, before: Mapped, name: str) -> Mapped:
+    """Try one effect beside the model of a round.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Only its fit records are read.
+    before : dict
+        The progress before the round.
+    name : str
+        Of the effect.
+
+    Returns
+    -------
+    dict
+        ``effect``; ``declined``: why, or empty; ``variants``, each with its best point
+        of the grid (``coarse``) and the best around it (``fine``, None where another
+        variant is better by far); ``added``: the best variant refitted with the whole
+        model, or why a block refuses it.
+    """
+    state = Restorer(evidence.fit).state(before["state"])
+    found: Mapped = {"effect": name, "declined": "", "variants": [], "added": None}
+    if name in {item.effect for item in state.added}:
+        return found | {"declined": "added already"}
+    score = make_score(state, before["floor"]["rms"])
+    tried, declined = IN_PROCESS.tried(effects()[name], state, score)
+    if declined:
+        return found | {"declined": declined}
+    limit_of_search = min(trial.score for _, trial in tried) + NEAR
+    best: tuple[int, Trial] | None = None
+    for place, (attempt, trial) in enumerate(tried):
+        likely = trial.score < limit_of_search
+        finer = IN_PROCESS.fine(attempt, trial) if likely else None
+        found["variants"].append(
+            {
+                "form": trial.variant.form,
+                "coarse": _trial_mapping(trial),
+                "fine": None if finer is None else _trial_mapping(finer),
+            }
+        )
+        reached = trial if finer is None else finer
+        if best is None or reached.score < best[1].score:
+            best = place, reached
+    if best is not None and best[1].score < score_of(state, score):
+        found["added"] = _added(state, best, score)
+    return found
+
+
+def choose(
+    evidence: Evidence, before: Mapped, tried: Mapping[str, Mapped], say: Say = _silent
+) -> Mapped:
+    """Rank the effects of a round and add the one that pays, if any does.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Only its fit records are read.
+    before : dict
+        The progress before the round.
+    tried : mapping
+        What :func:`try_one` gave, by effect. An effect that is not there is tried here.
+    say : callable
+        Told a line of progress at a time.
+
+    Returns
+    -------
+    dict
+        The progress after the round.
+    """
+    restorer = Restorer(evidence.fit)
+    progress = restorer.progress(before)
+    work = Recorded(progress.state, tried, restorer)
+    after = advance(progress, before["floor"]["rms"], say, work=work)
+    return {"floor": before["floor"], **progress_mapping(after)}
+
+
+def named_by(
+    evidence: Evidence, content: Mapped, start: State, say: Say = _silent
+) -> tuple[Named, Floor]:
+    """Give what the rounds named, and the floor that they were judged by.
+
+    Where a wrong shape of the hysteresis has to go first, the second way of adding
+    effects is gone here, in one process.
+
+    Raises
+    ------
+    InputError
+        If the last round was not the last.
+    """
+    progress = Restorer(evidence.fit).progress(content)
+    if not progress.done:
+        raise InputError(
+            f"round {len(progress.rounds)}: an effect was added; expected the progress "
+            "after the round that adds none"
+        )
+    floor = Floor(**content["floor"])
+    return settled(progress, start, floor.rms, say), floor
+
+
+class Recorded(Work):
+    """Looks up what jobs computed beside one model, and computes what they did not.
+
+    Parameters
+    ----------
+    state : State
+        The model of the round.
+    tried : mapping
+        What the jobs wrote, by effect.
+    restorer : Restorer
+    """
+
+    def __init__(
+        self, state: State, tried: Mapping[str, Mapped], restorer: Restorer
+    ) -> None:
+        self._state, self._tried, self._restorer = state, tried, restorer
+        self._variants: list[Variant] = []
+        self._entries: list[Mapped] = []
+
+    def tried(
+        self, effect: Effect, state: State, score: Score
+    ) -> tuple[list[Tried], str]:
+        """Look up every variant of an effect over its grid."""
+        if state is not self._state or effect.name not in self._tried:
+            return super().tried(effect, state, score)
+        content = self._tried[effect.name]
+        if content["declined"]:
+            return [], str(content["declined"])
+        found = []
+        variants = effect.variants(state.scene)
+        for variant, entry in zip(variants, content["variants"], strict=True):
+            self._variants.append(variant)
+            self._entries.append(entry)
+            found.append(
+                (Attempt(state, variant, score), _trial(variant, entry["coarse"]))
+            )
+        return found, ""
+
+    def fine(self, attempt: Attempt, trial: Trial) -> Trial:
+        """Look up the best around the best point of a variant's grid."""
+        entry = self._entry(trial.variant)
+        if entry is None or entry["fine"] is None:
+            return super().fine(attempt, trial)
+        return _trial(trial.variant, entry["fine"])
+
+    def added(self, state: State, trial: Trial, score: Score) -> tuple[State, float]:
+        """Look up the effect added and all refitted, if it is what its job added."""
+        entry = self._entry(trial.variant)
+        if entry is None:
+            return super().added(state, trial, score)
+        content = self._tried[trial.variant.effect]
+        added = content["added"]
+        if (
+            added is None
+            or content["variants"][added["variant"]] is not entry
+            or added["values"] != trial.values
+        ):
+            return super().added(state, trial, score)
+        if added["refused"]:
+            raise InputError(added["refused"])
+        return self._restorer.state(added["state"]), added["score"]
+
+    def _entry(self, variant: Variant) -> Mapped | None:
+        """Give what a job wrote of a variant, if it was a job's."""
+        for known, entry in zip(self._variants, self._entries, strict=True):
+            if known is variant:
+                return entry
+        return None
+
+
+def _added(state: State, best: tuple[int, Trial], score: Score) -> Mapped:
+    place, trial = best
+    found: Mapped = {"variant": place, "values": dict(trial.values)}
+    try:
+        after, value = IN_PROCESS.added(state, trial, score)
+    except InputError as error:
+        return found | {"refused": str(error), "state": None, "score": None}
+    return found | {"refused": "", "state": state_mapping(after), "score": value}
+
+
+def _trial_mapping(trial: Trial) -> Mapped:
+    return {"values": dict(trial.values), "score": number(trial.score)}
+
+
+def _trial(variant: Variant, content: Mapping[str, Any]) -> Trial:
+    return Trial(variant, dict(content["values"]), limit(content["score"]))

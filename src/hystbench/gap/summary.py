@@ -1,0 +1,100 @@
+"""The verdicts on several datasets side by side, for the documentation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from hystbench.files import write_csv
+
+Content = Mapping[str, Any]
+
+COLUMNS = (
+    "dataset",
+    "base",
+    "verdict",
+    "effects",
+    "unit",
+    "before",
+    "after",
+    "black_box",
+    "noise_floor",
+    "floor_method",
+    "explained_percent",
+    "reason",
+)
+EFFECT_COLUMNS = (
+    "dataset",
+    "effect",
+    "place",
+    "confidence",
+    "cannot_be_told_from",
+    "parameter",
+    "value",
+    "standard_error",
+    "unit",
+)
+
+
+def write_summary(contents: Sequence[Content], path: Path) -> None:
+    """Write one row a dataset: the verdict, and RMS over its hold-out records."""
+    write_csv(path, COLUMNS, [_row(content) for content in contents])
+
+
+def write_effects(contents: Sequence[Content], path: Path) -> None:
+    """Write one row a parameter of each named effect."""
+    rows = [row for content in contents for row in _effect_rows(content)]
+    write_csv(path, EFFECT_COLUMNS, rows)
+
+
+def _row(content: Content) -> list[str]:
+    gap = content["gap"]
+    return [
+        content["dataset"],
+        content["model"],
+        content["verdict"],
+        " + ".join(item["name"] for item in content["effects"]) or "none",
+        content["unit"],
+        *(_number(gap[key]) for key in ("before", "after")),
+        _number(content["black_box"]["after"]),
+        _number(gap["noise_floor"]),
+        gap["floor_method"],
+        _share(gap["explained"]),
+        content["reason"],
+    ]
+
+
+def _effect_rows(content: Content) -> Iterator[list[str]]:
+    for item in content["effects"]:
+        shown = [
+            content["dataset"],
+            item["name"],
+            item["place"],
+            _number(item["confidence"]),
+            ", ".join(item["cannot_be_told_from"]),
+        ]
+        for name, about in item["parameters"].items():
+            value, error = about["value"], about["standard_error"]
+            yield [*shown, name, _any(value), _any(error), about["unit"]]
+
+
+def _share(explained: float | Sequence[float] | None) -> str:
+    """Give a share in percent, or a range of it where the floor is a bound."""
+    if explained is None:
+        return ""
+    if isinstance(explained, Sequence):
+        return " to ".join(f"{100 * each:.1f}" for each in explained)
+    return f"{100 * explained:.1f}"
+
+
+def _any(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Sequence):
+        return " ".join(_any(each) for each in value)
+    return "" if value is None else _number(float(str(value)))
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"

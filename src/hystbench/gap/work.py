@@ -1,0 +1,52 @@
+"""What naming has to compute: here and now, or looked up where a job computed it."""
+
+from __future__ import annotations
+
+from hystbench.gap.effects.base import Declined, Effect
+from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished
+from hystbench.gap.score import Score
+from hystbench.gap.state import State
+
+Tried = tuple[Attempt, Trial]
+"""A variant beside a model, and how it does over its grid."""
+
+
+class Work:
+    """The four steps that take the time; all are computed here and now.
+
+    Naming decides by what they give and by nothing else, so that jobs which compute
+    them elsewhere lead to the same names.
+    """
+
+    def tried(
+        self, effect: Effect, state: State, score: Score
+    ) -> tuple[list[Tried], str]:
+        """Score every variant of an effect over its grid; or say why it declines."""
+        try:
+            attempts = [
+                Attempt(state, item, score) for item in effect.variants(state.scene)
+            ]
+        except Declined as reason:
+            return [], str(reason)
+        return [(attempt, coarse(attempt)) for attempt in attempts], ""
+
+    def fine(self, attempt: Attempt, trial: Trial) -> Trial:
+        """Search a variant around the best point of its grid."""
+        return fine(attempt, trial)
+
+    def added(self, state: State, trial: Trial, score: Score) -> tuple[State, float]:
+        """Add an effect as a trial found it and refit everything together.
+
+        Raises
+        ------
+        InputError
+            If a block refuses the values.
+        """
+        return added(state, trial, score)
+
+    def finished(self, state: State, score: Score) -> tuple[State, float]:
+        """Simulate a model exactly and refit it to the end."""
+        return finished(state, score)
+
+
+IN_PROCESS = Work()

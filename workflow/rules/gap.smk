@@ -1,0 +1,265 @@
+# The gap: where a simulator and measurements disagree, and what the simulator lacks.
+# `snakemake gap` runs the worked example (config: gap: twin) and the datasets listed
+# there; `all` leaves it out for its time.
+from hystbench.dataset import load_dataset
+
+GAP = f"{RESULTS}/gap"
+GAP_CASE = f"{GAP}/{{case}}"
+STAGES = f"{GAP_CASE}/stages"
+# Effects are found by name, so that no import tells of them.
+EFFECTS = {
+    name.rpartition(".")[2].replace("_", "-"): name
+    for name in sorted(GRAPH.find_children("hystbench.gap.effects"))
+    if name != "hystbench.gap.effects.base"
+}
+# What each case is made of. Fit records are inputs of all jobs, hold-out records of
+# `gap_show` alone (and of the job that writes the twin's dataset).
+GAP_CASES = {}
+
+if TWIN:
+    GAP_FOLDER = f"{GAP}/twin/dataset"
+    GAP_CASES["twin"] = {
+        "dataset": f"{GAP_FOLDER}/dataset.yaml",
+        "fit": [f"{GAP_FOLDER}/{name}.csv" for name in config["gap"]["twin"]["fit"]],
+        "hold_out": [
+            f"{GAP_FOLDER}/{name}.csv" for name in config["gap"]["twin"]["hold_out"]
+        ],
+        "model": f"{GAP}/twin/base.yaml",
+    }
+
+    rule gap_twin:
+        input:
+            fit=[record(signal) for signal in config["gap"]["twin"]["fit"]],
+            hold_out=[record(signal) for signal in config["gap"]["twin"]["hold_out"]],
+            identified=rules.identify.output,
+            code=code("hystbench.commands.gap_twin"),
+        output:
+            dataset=GAP_CASES["twin"]["dataset"],
+            records=[*GAP_CASES["twin"]["fit"], *GAP_CASES["twin"]["hold_out"]],
+            base=GAP_CASES["twin"]["model"],
+        log:
+            f"{RESULTS}/logs/gap/twin/dataset.log",
+        params:
+            fit=lambda wildcards, input: options("--fit", input.fit),
+            hold_out=lambda wildcards, input: options("--hold-out", input.hold_out),
+            folder=subpath(output.base, parent=True),
+        message:
+            "the twin's records and the model of its slow loop"
+        shell:
+            "hystbench gap-twin {params.fit} {params.hold_out}"
+            " --identified {input.identified:q} --out {params.folder:q} 2> {log:q}"
+
+
+for GIVEN in config["gap"]["datasets"]:
+    try:
+        GAP_DATASET = load_dataset(GIVEN["dataset"])
+        if GAP_DATASET.name in GAP_CASES:
+            raise InputError(f"a second dataset {GAP_DATASET.name!r}; expected one")
+    except InputError as error:
+        sys.exit(f"hystbench: {PLACE}: gap: datasets: {error}")
+    GAP_CASES[GAP_DATASET.name] = {
+        "dataset": str(GAP_DATASET.path),
+        "fit": [
+            str(file)
+            for name, file in GAP_DATASET.record_files.items()
+            if GAP_DATASET.use(name) == "fit"
+        ],
+        "hold_out": [
+            str(file)
+            for name, file in GAP_DATASET.record_files.items()
+            if GAP_DATASET.use(name) == "hold-out"
+        ],
+        "model": GIVEN["model"],
+    }
+
+
+wildcard_constraints:
+    case="|".join(map(re.escape, GAP_CASES)) or "none",
+    effect="|".join(EFFECTS),
+    round="[1-9]",
+
+
+def of_case(key):
+    """Files of a case, by its name."""
+    return lambda wildcards: GAP_CASES[wildcards.case][key]
+
+
+def model_of_case(wildcards):
+    """The model file of a case; a base that is identified has none."""
+    model = GAP_CASES[wildcards.case]["model"]
+    return [model] if model.endswith((".yaml", ".yml")) else []
+
+
+# The base, read or identified, and the floor.
+rule gap_start:
+    input:
+        dataset=of_case("dataset"),
+        fit=of_case("fit"),
+        model=model_of_case,
+        code=code("hystbench.commands.gap_start"),
+    output:
+        base=f"{STAGES}/base.yaml",
+        start=f"{STAGES}/round-0.json",
+    log:
+        f"{RESULTS}/logs/gap/{{case}}/start.log",
+    params:
+        model=of_case("model"),
+    message:
+        "base of {wildcards.case}"
+    shell:
+        "hystbench gap-start {input.dataset:q} --model {params.model:q}"
+        " --base {output.base:q} --out {output.start:q} 2> {log:q}"
+
+
+if config["gap"]["jobs"] == "effects":
+
+    # One job an effect and round. It needs no other effect's file: an edited effect
+    # is tried again alone.
+    rule gap_candidate:
+        input:
+            dataset=of_case("dataset"),
+            fit=of_case("fit"),
+            before=lambda wildcards: (
+                f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
+            ),
+            code=lambda wildcards: code(
+                "hystbench.commands.gap_candidate", EFFECTS[wildcards.effect]
+            ),
+        output:
+            f"{STAGES}/round-{{round}}/{{effect}}.json",
+        log:
+            f"{RESULTS}/logs/gap/{{case}}/round-{{round}}/{{effect}}.log",
+        message:
+            "{wildcards.effect} on {wildcards.case}, round {wildcards.round}"
+        shell:
+            "hystbench gap-candidate {wildcards.effect:q} --dataset {input.dataset:q}"
+            " --before {input.before:q} --out {output:q} 2> {log:q}"
+
+    # How many rounds there are is known when the last is done.
+    checkpoint gap_choose:
+        input:
+            dataset=of_case("dataset"),
+            fit=of_case("fit"),
+            before=lambda wildcards: (
+                f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
+            ),
+            candidates=expand(
+                f"{STAGES}/round-{{{{round}}}}/{{effect}}.json",
+                effect=EFFECTS,
+                allow_missing=True,
+            ),
+            code=code("hystbench.commands.gap_choose", *EFFECTS.values()),
+        output:
+            f"{STAGES}/round-{{round}}.json",
+        log:
+            f"{RESULTS}/logs/gap/{{case}}/round-{{round}}.log",
+        message:
+            "choice on {wildcards.case}, round {wildcards.round}"
+        shell:
+            "hystbench gap-choose {input.candidates:q} --dataset {input.dataset:q}"
+            " --before {input.before:q} --out {output:q} 2> {log:q}"
+
+
+def last_round(wildcards):
+    """The progress after the last round; nothing where one job names all effects."""
+    if config["gap"]["jobs"] == "whole":
+        return []
+    for number in range(1, 10):
+        done = checkpoints.gap_choose.get(case=wildcards.case, round=number).output[0]
+        if json.loads(Path(done).read_text())["done"]:
+            return done
+    raise ValueError(f"{wildcards.case}: more rounds than there may be effects")
+
+
+rule gap_decide:
+    input:
+        dataset=of_case("dataset"),
+        fit=of_case("fit"),
+        base=rules.gap_start.output.base,
+        named=last_round,
+        code=code("hystbench.commands.gap_decide", *EFFECTS.values()),
+    output:
+        model=f"{GAP_CASE}/model.yaml",
+        curves=f"{GAP_CASE}/curves.json",
+        named=f"{STAGES}/named.json",
+        decision=f"{STAGES}/decision.json",
+    log:
+        f"{RESULTS}/logs/gap/{{case}}/decide.log",
+    params:
+        named=lambda wildcards, input: (
+            f"--named {shlex.quote(input.named)}" if input.named else ""
+        ),
+        folder=subpath(output.model, parent=True),
+    message:
+        "verdict on {wildcards.case}"
+    shell:
+        "hystbench gap-decide {input.dataset:q} --base {input.base:q} {params.named}"
+        " --out {params.folder:q} 2> {log:q}"
+
+
+# The one job that reads hold-out records: verdict, effects and model are written.
+rule gap_show:
+    input:
+        dataset=of_case("dataset"),
+        fit=of_case("fit"),
+        hold_out=of_case("hold_out"),
+        base=rules.gap_start.output.base,
+        model=rules.gap_decide.output.model,
+        named=rules.gap_decide.output.named,
+        decision=rules.gap_decide.output.decision,
+        code=code("hystbench.commands.gap_show", *EFFECTS.values()),
+    output:
+        gap=f"{GAP_CASE}/gap.json",
+        hold_out=directory(f"{GAP_CASE}/holdout"),
+    log:
+        f"{RESULTS}/logs/gap/{{case}}/show.log",
+    params:
+        folder=subpath(output.gap, parent=True),
+    message:
+        "hold-out records of {wildcards.case}"
+    shell:
+        "hystbench gap-show {input.dataset:q} --base {input.base:q}"
+        " --out {params.folder:q} 2> {log:q}"
+
+
+rule gap_report:
+    input:
+        gap=rules.gap_show.output.gap,
+        hold_out=rules.gap_show.output.hold_out,
+        curves=rules.gap_decide.output.curves,
+        code=code("hystbench.commands.gap_report"),
+        page=PACKAGE / "gap/report/report.html.j2",
+    output:
+        f"{GAP_CASE}/report.html",
+    log:
+        f"{RESULTS}/logs/gap/{{case}}/report.log",
+    params:
+        folder=subpath(input.gap, parent=True),
+    message:
+        "page of {wildcards.case}"
+    shell:
+        "hystbench gap-report {params.folder:q} 2> {log:q}"
+
+
+rule gap_summary:
+    input:
+        gaps=expand(rules.gap_show.output.gap, case=GAP_CASES),
+        code=code("hystbench.commands.gap_summary"),
+    output:
+        summary=f"{GAP}/summary.csv",
+        effects=f"{GAP}/effects.csv",
+    log:
+        f"{RESULTS}/logs/gap/summary.log",
+    message:
+        "verdicts side by side"
+    shell:
+        "hystbench gap-summary {input.gaps:q} --effects {output.effects:q}"
+        " --out {output.summary:q} 2> {log:q}"
+
+
+rule gap:
+    input:
+        rules.gap_summary.output,
+        expand(rules.gap_report.output, case=GAP_CASES),
+    message:
+        f"{GAP} is up to date"
