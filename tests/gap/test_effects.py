@@ -1,0 +1,264 @@
+"""What every effect owes the search, checked over all effects and their variants."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from hystbench.blocks import registry
+from hystbench.blocks.base import Block
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Declined, logarithmic
+from hystbench.gap.fit import Attempt, score_of
+from hystbench.gap.scene import Scene
+from hystbench.gap.state import Free, with_effect, without_effect
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT, record
+from tests.gap.small import chains, plain_score, records, state_of
+
+# As printed in the vocabulary that users and figures share, by place.
+VOCABULARY = {
+    "drive": (
+        *("input-delay", "drive-lag", "eddy-diffusion", "drive-saturation"),
+        *("slew-limit", "dead-zone"),
+    ),
+    "material": (
+        *("hysteresis", "hysteresis-shape", "asymmetry", "saturation"),
+        "rate-dependent-hysteresis",
+    ),
+    "mechanics": (
+        *("resonance", "stiffness-hardening", "friction", "backlash", "creep"),
+        "thermal-drift",
+    ),
+    "sensor": (
+        *("sensor-lag", "sensor-nonlinearity", "mains-pickup", "drift"),
+        "calibration-error",
+    ),
+}
+BASES = ("gpi", "gain", "transfer-function", "rdgpi")
+
+
+def offered():
+    """Every variant of every effect, on each of the chains that take it."""
+    for name, chain in chains().items():
+        scene = Scene(chain, records())
+        for effect in effects().values():
+            try:
+                variants = list(effect.variants(scene))
+            except Declined:
+                continue
+            for variant in variants:
+                yield pytest.param(name, variant, id=f"{variant.label} on {name}")
+
+
+ALL = list(offered())
+SOLVED = [x for x in ALL if x.values[1].unit]
+SEARCHED = [x for x in ALL if not x.values[1].unit and x.values[1].beside is None]
+
+
+def values_of(variant):
+    """Ends and middle of the grids, with what is solved for at its small step."""
+    axes = [
+        (axis[0], axis[len(axis) // 2], axis[-1]) for axis in variant.grids.values()
+    ]
+    for point in product(*axes):
+        yield {
+            **dict(zip(variant.grids, map(float, point), strict=True)),
+            **variant.unit,
+        }
+
+
+def test_every_word_of_the_vocabulary_can_be_named():
+    found = {(item.place, name) for name, item in effects().items()}
+    assert found == {
+        (place, name) for place in VOCABULARY for name in VOCABULARY[place]
+    }
+    assert all(item.name == name for name, item in effects().items())
+
+
+@pytest.mark.parametrize("name", [*BASES, *(n for v in VOCABULARY.values() for n in v)])
+def test_every_word_of_the_vocabulary_is_a_block(name):
+    assert issubclass(registry()[name], Block)
+
+
+def test_every_effect_is_tried_on_some_chain():
+    """Otherwise the contract below would leave one out."""
+    assert {item.values[1].effect for item in ALL} == set(effects())
+
+
+@pytest.mark.parametrize(("chain", "variant"), ALL)
+def test_a_variant_builds_a_model_that_runs(chain, variant):
+    before = chains()[chain]
+    effect = effects()[variant.effect]
+    assert variant.place == effect.place
+    assert 0 <= variant.start <= len(before)
+    for axis in variant.grids.values():
+        assert (np.diff(axis) > 0).all()
+    for values in values_of(variant):
+        built = variant.build(values)
+        if variant.beside is not None:
+            for one in records():
+                shapes = variant.beside.columns(one, values, variant.beside.order)
+                assert shapes.shape[0] == len(one)
+                assert np.isfinite(shapes).all()
+            continue
+        own = [built[k] for k in variant.positions]
+        # A field bias is made of two plain gains; all else has a block of its name.
+        assert {item.name for item in own} in ({variant.effect}, {"gain"})
+        rest = [item for k, item in enumerate(built) if k not in variant.positions]
+        assert rest == list(before[variant.start + variant.replaces :])
+        model = Model(
+            "built", CURRENT, DISPLACEMENT, (*before[: variant.start], *built)
+        )
+        for one in records():
+            assert np.isfinite(model.simulate(one.u, one.dt)).all()
+        again = Model.from_mapping(model.to_mapping(), "again")
+        assert again == model
+
+
+@pytest.mark.parametrize(("chain", "variant"), SOLVED)
+def test_a_neutral_variant_changes_nothing_where_all_is_zero(chain, variant):
+    scene = Scene(chains()[chain], records())
+    size = scene.largest(len(scene.chain))
+    for values in values_of(variant):
+        zero = {**values, **dict.fromkeys(variant.unit, 0.0)}
+        one = scene.tail(variant.start, variant.build(values))
+        none = scene.tail(variant.start, variant.build(zero))
+        changes = [np.abs(a - b).max() for a, b in zip(none, scene.output, strict=True)]
+        if variant.neutral:
+            assert max(changes) < 1e-9 * size
+        moved = [np.abs(a - b).max() for a, b in zip(one, none, strict=True)]
+        assert max(moved) > 0
+
+
+def state_with_free(name):
+    """A state in which every number of the first and last block is free already."""
+    chain = chains()[name]
+    free = [
+        Free(k, key, element)
+        for k in dict.fromkeys((0, len(chain) - 1))
+        for key, value in vars(chain[k]).items()
+        if not isinstance(value, str)
+        for element in (range(len(value)) if isinstance(value, tuple) else (None,))
+    ]
+    return state_of(chain, free=tuple(free))
+
+
+def numbers(state):
+    """Free numbers with the values they have, however the blocks are numbered."""
+    return [
+        (state.chain[f.block].name, f.parameter, f.element, state.value(f))
+        for f in state.free
+    ]
+
+
+@pytest.mark.parametrize(("chain", "variant"), ALL)
+def test_what_is_added_can_be_taken_out_again(chain, variant):
+    before = state_with_free(chain)
+    for values in list(values_of(variant))[:2]:
+        after = with_effect(before, variant, values)
+        (added,) = after.added
+        assert (added.effect, added.place) == (variant.effect, variant.place)
+        assert after.freedom == variant.freedom
+        assert [after.chain[k].name for k in added.blocks] == [
+            variant.build(values)[k].name for k in variant.positions
+        ]
+        kept = [n for n in numbers(after) if n in numbers(before)]
+        if not variant.replaces:
+            assert kept[: len(before.free)] == numbers(before)
+        own = [f for f in after.free if f.block in added.blocks]
+        if variant.beside is None:
+            assert {f.parameter for f in own} == set(variant.free)
+        for free in own:
+            assert free.low <= after.value(free) <= free.high
+        again = without_effect(after, 0)
+        assert again.chain == before.chain
+        assert again.added == ()
+        assert again.beside == ()
+        assert again.freedom == 0
+        if not variant.replaces:
+            assert again.free == before.free
+
+
+@pytest.mark.parametrize("base", ["hysteresis and mode", "wrapped"])
+def test_of_several_effects_each_can_be_taken_out(base):
+    """Whatever lies before, behind, around or beside: the others stay as they are."""
+    before = state_with_free(base)
+    used = ("drive-lag", "asymmetry", "backlash", "mains-pickup", "drift", "creep")
+    after = before
+    alone = {}
+    for name in used:
+        if name in {block.name for block in before.chain}:
+            continue
+        variant = list(effects()[name].variants(after.scene))[-1]
+        after = with_effect(after, variant, next(iter(values_of(variant))))
+        (item,) = [item for item in after.added if item.effect == name]
+        alone[name] = [after.chain[k] for k in item.blocks]
+    for number, gone in enumerate(after.added):
+        short = without_effect(after, number)
+        names = [item.effect for item in short.added]
+        assert names == [n for n in alone if n != gone.effect]
+        for item in short.added:
+            assert [short.chain[k] for k in item.blocks] == alone[item.effect]
+        assert len(short.chain) == len(after.chain) - len(gone.blocks)
+        beside = [x.effect for x, _ in after.beside if x.effect != gone.effect]
+        assert [x.effect for x, _ in short.beside] == beside
+        left = numbers(after)
+        for taken in [
+            (after.chain[f.block].name, f.parameter, f.element, after.value(f))
+            for f in after.free
+            if f.block in gone.blocks
+        ]:
+            left.remove(taken)
+        assert numbers(short) == left
+        assert short.freedom == after.freedom - gone.charge
+    for _ in after.added:
+        after = without_effect(after, 0)
+    assert after.chain == before.chain
+    assert after.free == before.free
+
+
+@pytest.mark.parametrize(("chain", "variant"), SEARCHED)
+def test_a_trial_scores_as_the_model_that_it_stands_for(chain, variant):
+    """Nothing is solved for: then what a trial says holds to rounding."""
+    rng = np.random.default_rng(0)
+    noisy = tuple(
+        record(one.u, rng.standard_normal(len(one)), name=one.name, dt=one.dt)
+        for one in records()
+    )
+    state = state_of(chains()[chain], noisy)
+    score = plain_score(state)
+    for values in values_of(variant):
+        trial = Attempt(state, variant, score).at(tuple(values.values()))
+        model = with_effect(state, variant, values)
+        assert trial.score == pytest.approx(score_of(model, score), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "chain", "why"),
+    [
+        ("hysteresis", "hysteresis", "has a hysteresis already"),
+        ("hysteresis-shape", "gain", "no hysteresis"),
+        ("rate-dependent-hysteresis", "gain", "no hysteresis"),
+        ("stiffness-hardening", "hysteresis", "no mode"),
+    ],
+)
+def test_what_makes_no_sense_in_a_chain_is_declined_with_a_reason(name, chain, why):
+    with pytest.raises(Declined, match=why):
+        list(effects()[name].variants(Scene(chains()[chain], records())))
+
+
+@pytest.mark.parametrize("name", ["creep", "mains-pickup"])
+def test_records_too_short_for_an_effect_are_a_reason(name):
+    t = np.arange(60) / 2000
+    short = (record(np.sin(2 * np.pi * 80 * t), name="short", dt=1 / 2000),)
+    with pytest.raises(Declined, match="too short"):
+        list(effects()[name].variants(Scene(chains()["gain"], short)))
+
+
+def test_a_logarithmic_grid_has_its_ends_and_even_steps():
+    axis = logarithmic(2e-4, 0.3, 4)
+    assert (axis[0], axis[-1]) == (pytest.approx(2e-4), pytest.approx(0.3))
+    ratios = axis[1:] / axis[:-1]
+    assert ratios == pytest.approx(ratios[0])
+    assert ratios[0] <= 10 ** (1 / 4) * (1 + 1e-9)

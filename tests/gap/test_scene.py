@@ -1,0 +1,125 @@
+"""A chain on records: what is kept and reused equals a simulation from scratch."""
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.wrapping import WrappingBlock
+from hystbench.gap.scene import Scene
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT
+from tests.gap.small import MODE, block, chains, hysteresis, records, state_of
+
+HOLDS = ("band-limited", "linear", "zero-order")
+
+
+def from_scratch(chain):
+    """What the model says, which knows nothing of scenes."""
+    model = Model("whole", CURRENT, DISPLACEMENT, tuple(chain))
+    return [model.simulate(one.u, one.dt) for one in records()]
+
+
+def same(signals, others):
+    for one, other in zip(signals, others, strict=True):
+        size = np.abs(other).max()
+        assert one == pytest.approx(other, abs=1e-11 * size)
+
+
+@pytest.mark.parametrize("name", chains())
+def test_stages_are_those_of_the_chain_cut_short(name):
+    chain = chains()[name]
+    scene = Scene(chain, records())
+    same(scene.before[0], [one.u for one in records()])
+    for end in range(1, len(chain) + 1):
+        same(scene.before[end], from_scratch(chain[:end]))
+    same(scene.output, from_scratch(chain))
+
+
+INSERTED = {
+    "gain": block("gain", value=1.3, offset=0.1),
+    "sensor-lag": block("sensor-lag", time_constant_s=3e-3),
+    "backlash": block("backlash", half_width=0.2),
+    "saturation": block("saturation", level=8.0),
+}
+
+
+@pytest.mark.parametrize("name", chains())
+@pytest.mark.parametrize("inserted", INSERTED)
+def test_a_tail_is_the_whole_changed_chain(name, inserted):
+    chain = chains()[name]
+    scene = Scene(chain, records())
+    for place in range(len(chain) + 1):
+        if place < len(chain) and isinstance(chain[place], WrappingBlock):
+            continue  # nothing fits between a hysteresis and what wraps it
+        blocks = (INSERTED[inserted], *chain[place:])
+        same(scene.tail(place, blocks), from_scratch((*chain[:place], *blocks)))
+
+
+def test_a_wrapping_block_changes_the_chain_from_the_hysteresis_on():
+    for form, before in (("growing-thresholds", ()), ("excess-field", ("drive-lag",))):
+        drive = tuple(block(item, time_constant_s=2e-3) for item in before)
+        chain = (*drive, hysteresis(), block("resonance", **MODE))
+        around = block(
+            "rate-dependent-hysteresis", coefficient=0.03, exponent=1.0, form=form
+        )
+        scene = Scene(chain, records())
+        start = scene.hysteresis
+        blocks = (chain[start], around, *chain[start + 1 :])
+        changed = (*chain[:start], *blocks)
+        same(scene.tail(start, blocks), from_scratch(changed))
+        assert np.ptp(scene.tail(start, blocks)[1] - scene.output[1]) > 1e-3
+
+
+def test_a_second_wrapping_block_goes_around_the_first():
+    chain = chains()["wrapped"]
+    scene = Scene(chain, records())
+    assert scene.hysteresis == 1
+    assert scene.behind_hysteresis == 3
+    outer = block(
+        "rate-dependent-hysteresis",
+        coefficient=0.01,
+        exponent=1.0,
+        form="growing-thresholds",
+    )
+    blocks = (chain[1], chain[2], outer, chain[3])
+    same(scene.tail(1, blocks), from_scratch((chain[0], *blocks)))
+
+
+@pytest.mark.parametrize("name", chains())
+@pytest.mark.parametrize("hold", HOLDS)
+def test_quick_with_its_correction_is_exact_for_the_chain_itself(name, hold):
+    model = Model("whole", CURRENT, DISPLACEMENT, chains()[name]).with_hold(hold)
+    state = state_of(model.chain, hold=hold)
+    exact = [model.simulate(one.u, one.dt) for one in records()]
+    size = max(np.abs(y).max() for y in exact)
+    residual = state.measured - state.sample.take(exact)
+    assert state.residual == pytest.approx(residual, abs=1e-11 * size)
+
+
+def test_quick_is_not_exact_where_a_mode_takes_a_band_limited_signal():
+    """Otherwise the test above would show nothing."""
+    model = Model("whole", CURRENT, DISPLACEMENT, chains()["hysteresis and mode"])
+    chain = model.with_hold("band-limited").chain
+    quick, exact = (Scene(chain, records(), quick=q).output for q in (True, False))
+    difference = np.abs(quick[1] - exact[1]).max()
+    assert 1e-6 < difference < 0.05 * np.abs(exact[1]).max()
+
+
+def test_a_staircase_is_smooth_behind_what_is_dynamic():
+    model = Model("whole", CURRENT, DISPLACEMENT, chains()["wrapped"])
+    scene = Scene(model.with_hold("zero-order").chain, records(), "zero-order")
+    assert scene.hold_at(0) == "zero-order"
+    assert [scene.hold_at(place) for place in (1, 3, 4)] == ["linear"] * 3
+    scene = Scene(model.with_hold("band-limited").chain, records(), "band-limited")
+    assert {scene.hold_at(place) for place in range(5)} == {"band-limited"}
+
+
+def test_what_effects_ask_of_a_scene():
+    scene = Scene(chains()["gain"], records())
+    assert scene.hysteresis is None
+    assert scene.behind_hysteresis == 0
+    assert scene.step == 1 / 2000
+    assert scene.span == pytest.approx(1.5)
+    assert scene.shortest == pytest.approx(0.6)
+    assert scene.largest(0) == max(np.abs(one.u).max() for one in records())
+    rates = [np.abs(np.diff(one.u) / one.dt).max() for one in records()]
+    assert scene.fastest == pytest.approx(max(rates))

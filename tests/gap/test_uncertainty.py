@@ -1,0 +1,113 @@
+"""Standard errors beside plain weighted least squares, and how often they hold."""
+
+import numpy as np
+import pytest
+
+from hystbench.gap.sample import Sample
+from hystbench.gap.score import Score
+from hystbench.gap.state import Free, State
+from hystbench.gap.uncertainty import SAMPLES, on_more_samples, standard_errors
+from tests.gap.made import record
+from tests.gap.small import block, chains, plain_score, state_of
+
+GAIN = 3.0
+LEVELS = (0.05, 0.3)
+"""RMS of the white noise of each record."""
+COUNT = 2000
+
+
+def inputs():
+    rng = np.random.default_rng(1)
+    return [rng.standard_normal(COUNT) for _ in LEVELS]
+
+
+def noisy(seed):
+    rng = np.random.default_rng(seed)
+    return tuple(
+        record(u, GAIN * u + level * rng.standard_normal(COUNT), name=f"{level}")
+        for u, level in zip(inputs(), LEVELS, strict=True)
+    )
+
+
+def one_number(records, at=GAIN):
+    sample = Sample(tuple(np.arange(len(one)) for one in records))
+    chain = (block("gain", value=at),)
+    return State(chain, records, sample, free=(Free(0, "value"),)).settled()
+
+
+def plain():
+    """Weighted least squares of a gain, the noise being known."""
+    terms = zip(inputs(), LEVELS, strict=True)
+    return 1 / np.sqrt(sum(np.sum(u**2) / level**2 for u, level in terms))
+
+
+def test_errors_are_those_of_weighted_least_squares_and_hold_as_often():
+    seeds = 200
+    found, inside = [], 0
+    weights = np.repeat([1 / level**2 for level in LEVELS], COUNT)
+    for seed in range(seeds):
+        records = noisy(seed)
+        u, y = (np.concatenate([getattr(one, k) for one in records]) for k in "uy")
+        estimate = np.sum(weights * u * y) / np.sum(weights * u**2)
+        state = one_number(records, estimate)
+        (error,) = standard_errors(state, plain_score(state, 1e-9))
+        found.append(error)
+        inside += abs(estimate - GAIN) < 2 * error
+    # Each comes of 40 stretches: it scatters by a ninth, their mean by a hundredth.
+    assert np.mean(found) == pytest.approx(plain(), rel=0.05)
+    assert np.std(found) < 0.25 * plain()
+    # Two errors hold 95 %: of 200, fewer than 178 or all are rarer than 1 in 1000.
+    assert 178 <= inside <= 199
+
+
+def test_what_reshaping_could_do_widens_the_errors_where_it_is_needed():
+    """A direction that the residual fills counts as fitted; an empty one does not."""
+    u = inputs()[0]
+    noise = 0.1 * np.random.default_rng(5).standard_normal(COUNT)
+    # Nine tenths of the direction are the gain's own column.
+    other = np.random.default_rng(6).standard_normal(COUNT)
+    other -= u * (u @ other) / (u @ u)
+    share = 0.9
+    direction = share * u / np.linalg.norm(u) + np.sqrt(
+        1 - share**2
+    ) * other / np.linalg.norm(other)
+    found = {}
+    for size in (0.0, 1e4):
+        y = GAIN * u + noise + size * direction
+        # Least squares of gain and direction, so that the gain stays where it is.
+        state = one_number((record(u, y),))
+        score = Score(state.sample, direction[:, None], 0.1**2)
+        (found[size],) = standard_errors(state, score)
+    plainly = 0.1 / np.linalg.norm(u)
+    assert found[0.0] == pytest.approx(plainly, rel=0.4)
+    # What is left of the column beside the direction has sqrt(1 - share^2) of its size.
+    assert found[1e4] == pytest.approx(plainly / np.sqrt(1 - share**2), rel=0.4)
+
+
+def test_errors_grow_where_neighbours_are_alike():
+    """Noise that is the same over ten samples is a tenth of the facts."""
+    seeds, found = 20, {"white": [], "held": []}
+    for seed in range(seeds):
+        rng = np.random.default_rng(seed)
+        u = np.repeat(inputs()[0][: COUNT // 10], 10)
+        noise = {
+            "white": rng.standard_normal(COUNT),
+            "held": np.repeat(rng.standard_normal(COUNT // 10), 10),
+        }
+        for kind, one in noise.items():
+            state = one_number((record(u, GAIN * u + 0.1 * one),))
+            found[kind] += standard_errors(state, plain_score(state, 1e-9)).tolist()
+    ratio = np.mean(found["held"]) / np.mean(found["white"])
+    assert ratio == pytest.approx(np.sqrt(10), rel=0.2)
+
+
+def test_without_free_numbers_there_are_no_errors():
+    state = state_of(chains()["gain"])
+    assert standard_errors(state, plain_score(state)).shape == (0,)
+
+
+def test_more_samples_change_the_sample_alone():
+    state = state_of(chains()["hysteresis"], count=50, free=(Free(0, "weights", 0),))
+    more = on_more_samples(state)
+    assert len(more.sample) == sum(min(SAMPLES, len(one)) for one in state.records)
+    assert (more.chain, more.free) == (state.chain, state.free)
