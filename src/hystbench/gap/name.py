@@ -10,7 +10,7 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
-from hystbench.gap.fit import Trial, score_of
+from hystbench.gap.fit import Trial, finished, score_of
 from hystbench.gap.reshape import directions, step_error
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, at_end, without_effect
