@@ -11,6 +11,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fit import Trial, finished, score_of
+from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.reshape import directions, step_error
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, at_end, without_effect
@@ -18,6 +19,8 @@ from hystbench.gap.work import IN_PROCESS, Tried, Work
 
 PAYS = 40.0
 """By how much an effect must lower the score to be named."""
+PAYS_HELD_BACK = 20.0
+"""The same on records that did not fit it, where no parameter is charged."""
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
 STILL = 0.25
@@ -321,6 +324,10 @@ def advance(
     for item in ranking[:4]:
         say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
     taken = _pays(first, state, floor, progress.gap)
+    if taken and first.state is not None:
+        held_back = gain_held_back(state, first.state, score)
+        say(f"{first.effect}: {held_back:.1f} of it on records held back")
+        taken = held_back > PAYS_HELD_BACK
     one = Round(state, first.score + first.gain, ranking, taken)
     rounds = (*progress.rounds, one)
     if taken:

@@ -15,9 +15,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.gap.sample import Sample
 from hystbench.record import FloatArray
@@ -50,11 +52,22 @@ class Score:
         Orthonormal: what a wrong shape of the hysteresis could do.
     floor : float
         Mean square of what no model explains, in squared output units.
+    used : tuple of ndarray of bool, optional
+        Of each record's scored samples, those that count; by default all.
     """
 
     sample: Sample
     directions: FloatArray
     floor: float
+    used: tuple[NDArray[np.bool_], ...] | None = None
+
+    @cached_property
+    def parts(self) -> tuple[NDArray[np.intp], ...]:
+        """Which scored samples count, by record; records without any are left out."""
+        places = [np.arange(part.start, part.stop) for part in self.sample.slices]
+        if self.used is not None:
+            places = [p[u] for p, u in zip(places, self.used, strict=True)]
+        return tuple(p for p in places if len(p))
 
     @property
     def weight(self) -> float:
@@ -78,18 +91,18 @@ class Score:
 
     def least(self, freedom: float = 0.0) -> float:
         """Give the score of a residual that is noise: none can be less."""
-        return self._value(np.zeros(len(self.sample.positions)), 0.0, freedom)
+        return self._value(np.zeros(len(self.parts)), 0.0, freedom)
 
     def of(self, residual: FloatArray, freedom: float = 0.0) -> float:
         """Score a residual, shape (scored samples,), of that many parameters."""
         rest, inside = self.split(residual)
-        squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
+        squares = [float(np.mean(rest[part] ** 2)) for part in self.parts]
         return self._value(np.array(squares), float(inside @ inside), freedom)
 
     def free(self, residual: FloatArray, freedom: float = 0.0) -> float:
         """Score a residual when its part inside the directions is fitted away."""
         rest, _ = self.split(residual)
-        squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
+        squares = [float(np.mean(rest[part] ** 2)) for part in self.parts]
         return self._value(np.array(squares), 0.0, freedom)
 
     def amplitudes(
@@ -122,8 +135,12 @@ class Score:
         scale = np.sqrt(np.mean(columns**2, axis=0))
         scale[scale == 0] = 1.0
         rest, inside = self.split(np.column_stack([residual, columns / scale]))
-        parts = [rest[part].T @ rest[part] for part in self.sample.slices]
-        counts = np.array([part.stop - part.start for part in self.sample.slices])
+        if self.used is None:  # views of the samples, not copies
+            pieces = [rest[part] for part in self.sample.slices]
+        else:
+            pieces = [rest[part] for part in self.parts]
+        parts = [piece.T @ piece for piece in pieces]
+        counts = np.array([len(piece) for piece in pieces])
         within = inside.T @ inside
         charge = np.zeros(k) if stiffness is None else stiffness / scale**2
         grams = np.array(parts)
