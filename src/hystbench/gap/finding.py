@@ -226,7 +226,7 @@ def _numeric(model: Model, name: str) -> bool:
 
 
 def _compared(chain: Sequence[Block], state: State) -> list[Compared]:
-    outputs = Scene(tuple(chain), state.records, state.hold).output
+    outputs = Scene(tuple(chain), state.records, state.hold, fine=True).output
     offsets = _beside_signals(state) if state.beside else None
     return [
         Compared(record, y if offsets is None else y + offsets[k])

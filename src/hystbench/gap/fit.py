@@ -52,6 +52,7 @@ class Attempt:
         stiffness = np.zeros(self.more.shape[1])
         stiffness[: len(state.free)] = state.stiffness
         self.stiffness = stiffness
+        self.zero: FloatArray | None = None
 
     def at(self, point: tuple[float, ...]) -> Trial:
         """Score the variant at a point of the grid."""
@@ -68,10 +69,12 @@ class Attempt:
         elif variant.unit:
             own, residual = self._scaled(values)
         else:
-            tail = variant.build(values)
-            residual = state.reference - state.sample.take(
-                state.scene.tail(variant.start, tail)
-            )
+            take, tail = state.sample.take, state.scene.tail
+            after = take(tail(variant.start, variant.build(values)))
+            if variant.zero is None:
+                residual = state.reference - after
+            else:
+                residual = state.residual - (after - self._at_zero(values))
             own = np.zeros((len(residual), 0))
         count = len(variant.unit)
         columns = np.hstack([own, self.more])
@@ -88,6 +91,15 @@ class Attempt:
         }
         return Trial(variant, values, found.score)
 
+    def _at_zero(self, values: Values) -> FloatArray:
+        """Simulate the chain as before in the effect's own way; it is kept."""
+        variant, state = self.variant, self.state
+        if self.zero is None:
+            at = {**values, **(variant.zero or {})}
+            signals = state.scene.tail(variant.start, variant.build(at))
+            self.zero = state.sample.take(signals)
+        return self.zero
+
     def _scaled(self, values: Values) -> tuple[FloatArray, FloatArray]:
         """How the output changes with each parameter that is solved for."""
         variant, state = self.variant, self.state
@@ -102,7 +114,9 @@ class Attempt:
             given = {**values, **zero, name: step}
             after = take(tail(variant.start, variant.build(given)))
             columns.append((after - now) / step)
-        return np.column_stack(columns), state.reference - now
+        own = np.column_stack(columns)
+        anchored = variant.zero is not None
+        return own, state.residual if anchored else state.reference - now
 
 
 def coarse(attempt: Attempt) -> Trial:
@@ -186,7 +200,10 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
 
 def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
     """Add an effect as a trial found it and refit everything together."""
-    return refit(with_effect(state, trial.variant, trial.values), score)
+    after = with_effect(state, trial.variant, trial.values)
+    if trial.variant.zero is not None:
+        after = after.settled()
+    return refit(after, score)
 
 
 def finished(state: State, score: Score) -> tuple[State, float]:

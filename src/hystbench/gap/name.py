@@ -12,7 +12,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fit import Trial, finished, score_of
 from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.reshape import directions, step_error
+from hystbench.gap.reshape import directions
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, at_end, without_effect
 from hystbench.gap.work import IN_PROCESS, Tried, Work
@@ -127,8 +127,6 @@ def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
         numbers are to be found.
     """
     wrong = [state.other_forms] if forms else [np.zeros((len(state.sample), 0))]
-    if state.hold == "band-limited":
-        wrong.append(step_error(state.scene, state.sample))
     spanned = directions(state.scene, state.sample, np.hstack(wrong))
     return Score(state.sample, spanned, floor_rms**2)
 
@@ -369,9 +367,13 @@ def _pays(item: Candidate, state: State, floor: float, gap: float) -> bool:
     beside_shape = any(other.effect == SHAPE for other in state.added)
     matters = BESIDE_SHAPE if beside_shape else MATTERS
     share = item.state.share(state, floor, gap)
+    if item.effect == SHAPE and share > MOST_OF_IT:
+        return True
     return item.gain > CERTAIN or (item.gain > FURTHER and share > matters)
 
 
+MOST_OF_IT = 0.3
+"""Share that makes a wrong shape of the hysteresis matter, dear as it is charged."""
 FURTHER = 100.0
 """By how much a further effect must lower the score."""
 

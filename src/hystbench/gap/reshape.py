@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.base import Block
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.gap.sample import Sample
@@ -53,29 +52,6 @@ def directions(scene: Scene, sample: Sample, more: FloatArray) -> FloatArray:
             sample.take(_sent(scene, behind, signals)) for signals in _ways(scene)
         ]
     return orthonormal(np.column_stack([*columns, more]))
-
-
-def step_error(scene: Scene, sample: Sample) -> FloatArray:
-    """How the output differs when the chain takes steps ``FINER`` times shorter.
-
-    The error of the simulation itself, which no effect explains: shape (scored
-    samples, 1).
-    """
-    fine = tuple(
-        replace(
-            record,
-            dt=record.dt / FINER,
-            u=interpolate(record.u, FINER),
-            y=np.zeros((len(record) - 1) * FINER + 1),
-        )
-        for record in scene.records
-    )
-    finer = replace(scene, records=fine).output
-    difference = sample.take([y[::FINER] for y in finer]) - sample.take(scene.output)
-    return difference[:, None]
-
-
-FINER = 4
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:

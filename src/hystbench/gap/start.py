@@ -39,7 +39,7 @@ def start_state(
     state = State(
         chain, records, Sample.of(records), free=free_numbers(base), hold=hold
     ).settled()
-    exact = Scene(chain, records, hold).output
+    exact = Scene(chain, records, hold, fine=True).output
     compared = [
         Compared(record, simulated)
         for record, simulated in zip(records, exact, strict=True)

@@ -89,7 +89,7 @@ class State:
 
     def settled(self) -> State:
         """Give the state with what the quick simulation lacks made up for."""
-        exact = Scene(self.chain, self.records, self.hold).output
+        exact = Scene(self.chain, self.records, self.hold, fine=True).output
         lacks = self.sample.take(exact) - self.sample.take(self.scene.output)
         return replace(self, correction=lacks, corrected_at=self.chain)
 

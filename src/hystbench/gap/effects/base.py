@@ -82,6 +82,9 @@ class Variant:
         Whether the effect's block takes the place of the chain's at ``start``.
     neutral : bool
         Whether the chain is as before where all parameters solved for are zero.
+    zero : dict of str to float, optional
+        Values at which the chain is as before, but simulated in another way: only the
+        difference to them is the effect's.
     """
 
     effect: str
@@ -100,6 +103,7 @@ class Variant:
     replaces: bool = False
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
     neutral: bool = True
+    zero: dict[str, float] | None = None
 
     def ends(self, name: str) -> tuple[float, float]:
         """Give the ends of a searched parameter's range."""
@@ -148,6 +152,7 @@ class Effect(ABC):
         inside: tuple[str, ...] = (),
         limits: dict[str, tuple[float, float]] | None = None,
         neutral: bool = True,
+        zero: dict[str, float] | None = None,
     ) -> Variant:
         """Give the variant that puts the effect's block before the block at a place.
 
@@ -181,6 +186,7 @@ class Effect(ABC):
             inside=inside,
             limits=limits or {},
             neutral=neutral,
+            zero=zero,
         )
 
     def added(

@@ -42,6 +42,7 @@ class RateDependentHysteresis(Effect):
                     form=f"{form}, {exponent:g}",
                     grids={"coefficient": at_fastest / scene.fastest**exponent},
                     free=("coefficient", "exponent"),
+                    zero={"coefficient": 0.0},
                 )
 
 

@@ -20,11 +20,11 @@ class Saturation(Effect):
         """Offer levels from half to thirty times the largest signal there."""
         place = scene.behind_hysteresis
         largest = scene.largest(place)
-        levels = logarithmic(0.5 * largest, 30 * largest, 4)
+        levels = logarithmic(0.5 * largest, 30 * largest, 5)
         yield self.inserted(scene, place, grids={"level": levels})
         yield self.inserted(
             scene,
             place,
             form="algebraic",
-            grids={"level": levels, "sharpness": np.array([2.0, 4.0, 8.0])},
+            grids={"level": levels, "sharpness": np.array([2.0, 3.0, 4.5, 8.0])},
         )

@@ -45,6 +45,7 @@ class StiffnessHardening(Effect):
                 free=("coefficient",),
                 replaces=True,
                 neutral=False,
+                zero={"coefficient": 0.0},
             )
 
 
