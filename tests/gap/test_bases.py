@@ -152,7 +152,7 @@ class TestLinear:
     def test_a_record_out_of_a_motion_is_simulated_as_one(self):
         # Force over displacement: from a constant past it would begin with a blow.
         def system(s):
-            return (0.1 + 5 * s) / (1 + 0.3 * s)
+            return (0.1 + 5 * s) / (1 + 0.05 * s)
 
         noise = np.random.default_rng(4)
         records = []
