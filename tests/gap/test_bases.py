@@ -456,6 +456,13 @@ class TestLoad:
         assert repr(text) in said
         assert expected in said
 
+    def test_a_file_whose_model_runs_away_is_refused(self, tmp_path):
+        path = tmp_path / "m.yaml"
+        gains = tuple(Gain(value=1e9) for _ in range(40))
+        Model("m", self.known.input, self.known.output, gains).save(path)
+        said = message(lambda: load_base(str(path), self.known))
+        assert "not finite from 0.001 s of record made" in said
+
     def test_a_file_that_is_not_there(self, tmp_path):
         path = str(tmp_path / "no.yaml")
         assert path in message(lambda: load_base(path, self.known))
