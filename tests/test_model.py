@@ -319,7 +319,7 @@ def test_a_tolerance_that_makes_no_sense_is_refused(free, expected):
 
 
 def test_a_tolerance_of_what_is_not_free_is_refused():
-    with pytest.raises(InputError, match="'gain.offset', which is not free"):
+    with pytest.raises(InputError, match=r"'gain\.offset', which is not free"):
         Model(
             "m",
             Channel("u", "A"),

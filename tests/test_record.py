@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -25,6 +27,16 @@ def test_comes_back_from_its_file(tmp_path):
         "twin",
         "fit",
     )
+
+
+def test_simulated_output_comes_back_with_it(tmp_path):
+    replace(make([1, 2, 3]), simulated=np.array([1.5, 4, 6])).save(tmp_path / "r.npz")
+    back = load_record(tmp_path / "r.npz")
+    np.testing.assert_array_equal(back.simulated, [1.5, 4, 6])
+    with pytest.raises(ValueError, match="read-only"):
+        back.simulated[0] = 1
+    make([1, 2]).save(tmp_path / "bare.npz")
+    assert load_record(tmp_path / "bare.npz").simulated is None
 
 
 def test_is_evidence_that_cannot_be_changed():

@@ -44,6 +44,21 @@ def test_it_is_the_plain_loop(samples, operators):
     )
 
 
+@pytest.mark.parametrize("growth", [None, 1.5])
+def test_settled_it_has_passed_the_input_once_before(growth):
+    thresholds, weights = (0.0, 0.1, 0.25), (1.0, 2.0, -1.0)
+    block = GeneralizedPrandtlIshlinskii(
+        envelope=ENVELOPE, thresholds=thresholds, weights=weights, start="settled"
+    )
+    v = 0.6 * np.sin(np.arange(200) / 30)
+    larger = tuple(r * (growth or 1.0) for r in thresholds)
+    twice = plain_loop(np.tile(v, 2), ENVELOPE, larger, weights)
+    grown = None if growth is None else np.full(len(v), growth)
+    y = block.grow(v, v, 1e-4, grown)
+    np.testing.assert_allclose(y, twice[200:], rtol=0, atol=1e-12)
+    assert abs(y[0] - twice[0]) > 1e-3  # and that is not the start from rest
+
+
 def test_a_weight_for_each_threshold():
     with pytest.raises(InputError, match="expected 2 numbers, one a threshold, got 1"):
         GeneralizedPrandtlIshlinskii(

@@ -226,3 +226,52 @@ def test_a_transfer_function_that_cannot_be_simulated_is_refused(values, message
 def test_creep_needs_a_time_constant_for_each_magnitude():
     with pytest.raises(InputError, match="expected 2 numbers, one a time constant"):
         Creep(magnitudes=[0.1], time_constants_s=[1.0, 2.0])
+
+
+class TestStart:
+    """3 / (1 + 0.05 s) from each of the starts of a transfer function."""
+
+    dt = 0.001
+    time = dt * np.arange(1000)
+
+    def simulate(self, v, start, hold="linear"):
+        block = TransferFunction(
+            numerator=[3.0], denominator=[0.05, 1.0], start=start, hold=hold
+        )
+        return block.simulate(v, v, self.dt)
+
+    @pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+    def test_settled_a_constant_stays(self, hold):
+        v = np.full(200, 4.0)
+        np.testing.assert_allclose(self.simulate(v, "settled", hold), 12.0)
+        assert self.simulate(v, "rest", hold)[0] == pytest.approx(0.0, abs=1e-9)
+
+    def test_settled_only_what_follows_counts(self):
+        v = 4.0 + self.time
+        # The answer of a lag to a ramp from its steady state.
+        decay = np.exp(-self.time / 0.05)
+        wanted = 12.0 + 3 * (self.time - 0.05 * (1 - decay))
+        np.testing.assert_allclose(self.simulate(v, "settled"), wanted, atol=1e-9)
+
+    @pytest.mark.parametrize("phase", [0.0, 0.4, 3.0, 6.0])
+    @pytest.mark.parametrize("hold", ["linear", "band-limited"])
+    def test_moving_a_sine_shows_little_of_its_beginning(self, phase, hold):
+        angle = 2 * np.pi * 2 * self.time + phase
+        gain = 3 / (1 + 2j * np.pi * 2 * 0.05)
+        steady = (gain * np.exp(1j * angle)).imag
+        v = np.sin(angle)
+        away = {
+            start: np.abs(self.simulate(v, start, hold) - steady)[:200].max()
+            for start in ("settled", "moving")
+        }
+        # Turned about a sample, a sine keeps its value and its slope.
+        assert away["moving"] < 0.7 * away["settled"]
+        if phase == 0.0:  # turned about its zero it is itself
+            assert away["moving"] < 0.003
+
+    def test_moving_a_ramp_has_always_been_one(self):
+        v = 1.0 + 2.0 * self.time
+        wanted = 3.0 * (v - 2.0 * 0.05)
+        away = np.abs(self.simulate(v, "moving") - wanted)
+        # It has been one for a second, twenty time constants.
+        assert away.max() < 3 * 2 * 0.05 * np.exp(-19)

@@ -149,6 +149,26 @@ class TestLinear:
         again = identified_linear(Evidence("made", (known,), (spoilt,)))
         assert first == again
 
+    def test_a_record_out_of_a_motion_is_simulated_as_one(self):
+        # Force over displacement: from a constant past it would begin with a blow.
+        def system(s):
+            return (0.1 + 5 * s) / (1 + 0.05 * s)
+
+        noise = np.random.default_rng(4)
+        records = []
+        for frequency_hz in (1.5, 2.0, 2.5, 3.0):
+            count = 1500
+            sines = np.array([frequency_hz]), np.array([10.0]), np.array([0.3])
+            u = steady(sines, count=count, dt=0.01)
+            y = steady(sines, system, count=count, dt=0.01) + 100
+            y = y + 0.5 * noise.standard_normal(count)
+            records.append(record(u, y, name=f"{frequency_hz}", dt=0.01))
+        found = identified_linear(evidence(*records))
+        assert dynamics(found.model).start == "moving"
+        for item in records:
+            error = item.y - found.model.simulate(item.u, item.dt)
+            assert rms(error) < 0.1 * item.y.std()
+
     def test_the_model_file_simulates_as_the_note_says(self, tmp_path):
         sines = multisine()
         noise = np.random.default_rng(5).standard_normal(2000)
@@ -435,6 +455,13 @@ class TestLoad:
         said = message(lambda: load_base(text, self.known))
         assert repr(text) in said
         assert expected in said
+
+    def test_a_file_whose_model_runs_away_is_refused(self, tmp_path):
+        path = tmp_path / "m.yaml"
+        gains = tuple(Gain(value=1e9) for _ in range(40))
+        Model("m", self.known.input, self.known.output, gains).save(path)
+        said = message(lambda: load_base(str(path), self.known))
+        assert "not finite from 0.001 s of record made" in said
 
     def test_a_file_that_is_not_there(self, tmp_path):
         path = str(tmp_path / "no.yaml")

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock, StateSpace
 from hystbench.blocks.parameter import choice, numbers
 from hystbench.errors import InputError
-from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
+
+Start = Literal["rest", "settled", "moving"]
+STARTS: tuple[Start, ...] = ("rest", "settled", "moving")
 
 
 @dataclass(frozen=True)
@@ -19,8 +21,9 @@ class TransferFunction(LinearBlock):
     """Proper, stable transfer function in descending powers of s.
 
     ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k. With
-    ``start: settled`` the input had its first value for ever before the record: a
-    record that begins in the middle of a motion shows no jump from zero.
+    ``start: settled`` the input had its first value for ever before the record. With
+    ``moving`` it came through the first sample as it leaves it, the record turned about
+    that sample: one that begins in the middle of a motion shows neither jump nor kink.
 
     References
     ----------
@@ -42,10 +45,10 @@ class TransferFunction(LinearBlock):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the response to ``z``."""
-        if self.start == "rest" or len(z) == 0:
-            return super().simulate(z, u, dt)
+        path, before = path_from(z, self.start)
         static = self.numerator[-1] / self.denominator[-1]
-        return super().simulate(z - z[0], u, dt) + static * z[0]
+        y = super().simulate(path - before, u, dt) + static * before
+        return y[len(path) - len(z) :]
 
     def check(self) -> None:
         """Refuse an improper or unstable transfer function."""
@@ -86,3 +89,25 @@ class TransferFunction(LinearBlock):
         b = np.zeros(order)
         b[0] = scale
         return StateSpace(scale * a, b, (n - direct * d)[1:], direct)
+
+
+def path_from(z: FloatArray, start: str) -> tuple[FloatArray, float]:
+    """Put before a record what its start stands for.
+
+    Parameters
+    ----------
+    z : ndarray, shape (n,)
+    start : {"rest", "settled", "moving"}
+
+    Returns
+    -------
+    path : ndarray, shape (n,) or (2n - 1,)
+        What was before, and ``z``.
+    before : float
+        What was for ever before that.
+    """
+    if start == "rest" or len(z) == 0:
+        return z, 0.0
+    if start == "moving":
+        z = np.concatenate([2 * z[0] - z[:0:-1], z])
+    return z, float(z[0])

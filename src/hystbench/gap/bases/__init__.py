@@ -71,6 +71,7 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
             )
         except InputError as error:
             raise InputError(f"{text}: {error}") from None
+        _check_bounded(model.with_hold(evidence.hold), evidence, text)
         return model, f"base {model.name} from {text}"
     if FORM.fullmatch(text):
         return function_base(text, evidence)
@@ -79,6 +80,19 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
         f"--model: {text!r} is no model file, none of {', '.join(WORDS)}, and no "
         f"package.module:function; {nearest(text, [*WORDS, *files])}"
     )
+
+
+def _check_bounded(model: Model, evidence: Evidence, place: str) -> None:
+    """Refuse a model whose output on a fit record is not finite."""
+    for record in evidence.fit:
+        with np.errstate(over="ignore", invalid="ignore"):  # said in our own words
+            y = model.simulate(record.u, record.dt)
+        lost = np.flatnonzero(~np.isfinite(y))
+        if len(lost):
+            raise InputError(
+                f"{place}: the output is not finite from {lost[0] * record.dt:g} s of "
+                f"record {record.name} on; expected a model that stays bounded"
+            )
 
 
 def function_base(function: str, evidence: Evidence) -> tuple[Model, str]:

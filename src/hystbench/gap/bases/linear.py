@@ -8,6 +8,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.transfer_function import STARTS
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
 from hystbench.gap.evidence import Evidence
@@ -24,6 +25,8 @@ IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
 #: time before would pull the poles.
 LEAD = 0.1
+#: The plainest start is taken whose sum of squares is within this factor of the best.
+CLEARLY = 1.01
 #: Steps of least squares on simulation: of all records, then of each fold.
 ROUNDS = 20
 FOLD_ROUNDS = 4
@@ -60,9 +63,9 @@ def identified_linear(evidence: Evidence) -> Linear:
 
     A ratio of polynomials in s and a constant, in output error. Orders from 0 (a gain)
     to 6 are fitted to the spectra first, then by least squares on simulation with the
-    dataset's hold, without the first tenth of each record. The order is the lowest whose error on folds of the fit records is
-    within half a percent of the best; then the numerator is shortened by the same rule.
-    Deterministic.
+    dataset's hold, without the first tenth of each record. The order is the lowest
+    whose error on folds of the fit records is within half a percent of the best; then
+    the numerator is shortened by the same rule. Deterministic.
 
     Parameters
     ----------
@@ -163,14 +166,19 @@ def _dynamic(
     folds: tuple[Fold, ...],
 ) -> _Found:
     """Fit one order to all records, and from there to each fold's."""
+    everything = [np.ones(len(record), dtype=bool) for record in evidence.fit]
     count = sum(int(mask.sum()) for mask in whole)
     first = fit_ratio(spectra, order, zeros)
-    rest, settled = (
+    tasks = [
         OutputError(evidence.fit, evidence.hold, spectra.scale, start)
-        for start in ("rest", "settled")
+        for start in STARTS
+    ]
+    costs = [task.squares(first, everything) for task in tasks]
+    task = next(
+        task
+        for task, cost in zip(tasks, costs, strict=True)
+        if cost <= CLEARLY * min(costs)
     )
-    clearly = settled.squares(first, whole) < 0.99 * rest.squares(first, whole)
-    task = settled if clearly else rest
     ratio = task.refined(first, whole, ROUNDS)
     judged = sum(
         task.squares(task.refined(ratio, fold.train, FOLD_ROUNDS), fold.validation)

@@ -9,9 +9,9 @@ import numpy as np
 
 from hystbench.blocks.band_limited import ComplexArray
 from hystbench.blocks.held import Hold
-from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.blocks.transfer_function import TransferFunction, path_from
 from hystbench.errors import InputError
-from hystbench.gap.bases.spectral import Ratio, stable
+from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
 from hystbench.gap.folds import Mask
 from hystbench.record import FloatArray, Record
 
@@ -29,7 +29,7 @@ class OutputError:
     hold : {"zero-order", "linear", "band-limited"}
     scale : float
         Unit of the ratio's s, in rad/s.
-    start : {"rest", "settled"}
+    start : {"rest", "settled", "moving"}
         As of the block.
     """
 
@@ -109,7 +109,8 @@ class OutputError:
     def _squares_or_none(self, ratio: Ratio, masks: Sequence[Mask]) -> float | None:
         """Sum of squares; None where the block refuses so far a step."""
         try:
-            value = self.squares(ratio, masks)
+            with np.errstate(over="ignore", invalid="ignore"):  # no number is no step
+                value = self.squares(ratio, masks)
         except InputError:
             return None
         return value if np.isfinite(value) else None
@@ -124,32 +125,29 @@ class OutputError:
         triangles = []
         simulated = self.simulate(ratio)
         for record, y, mask in zip(self.records, simulated, masks, strict=True):
-            columns = [*self._derivatives(ratio, record, y), record.y - y]
+            columns = [*self._derivatives(ratio, record), record.y - y]
             own = np.column_stack(columns)[mask]
-            triangles.append(np.linalg.qr(own, mode="r"))
-        return np.linalg.qr(np.vstack(triangles), mode="r")
+            triangles.append(triangle_of(own))
+        return triangle_of(np.vstack(triangles))
 
-    def _derivatives(
-        self, ratio: Ratio, record: Record, y: FloatArray
-    ) -> list[FloatArray]:
+    def _derivatives(self, ratio: Ratio, record: Record) -> list[FloatArray]:
         """Change of the output with each a, each b and the constant."""
         a, b = ratio.a, ratio.b
-        settled = self.start == "settled"
-        u0 = float(record.u[0]) if settled else 0.0
-        y0 = ratio.offset + u0 * float(b[0] / a[0])
-        n = len(record)
+        path, before = path_from(record.u, self.start)
+        n, own = len(path), slice(len(path) - len(record), None)
         s = 2j * np.pi * np.fft.rfftfreq(2 * n, record.dt) / self.scale
         weight = 1 / np.polyval(np.append(a, 1.0)[::-1], s)
+        by_b = np.fft.rfft(path - before, 2 * n) * weight
+        by_a = -np.polyval(b[::-1], s) * weight * by_b
 
         def moves(spectrum: ComplexArray, power: int) -> FloatArray:
-            return np.fft.irfft(spectrum * weight * s**power, 2 * n)[:n]
+            return np.fft.irfft(spectrum * s**power, 2 * n)[:n][own]
 
-        out, given = np.fft.rfft(y - y0, 2 * n), np.fft.rfft(record.u - u0, 2 * n)
-        by_a = [-moves(out, power) for power in range(len(a))]
-        by_b = [moves(given, power) for power in range(len(b))]
-        by_a[0] = by_a[0] - u0 * b[0] / a[0] ** 2
-        by_b[0] = by_b[0] + u0 / a[0]
-        return [*by_a, *by_b, np.ones(n)]
+        columns = [moves(by_a, power) for power in range(len(a))]
+        columns[0] = columns[0] - before * b[0] / a[0] ** 2
+        numerator = [moves(by_b, power) for power in range(len(b))]
+        numerator[0] = numerator[0] + before / a[0]
+        return [*columns, *numerator, np.ones(len(record))]
 
 
 def _step(triangle: FloatArray, damping: float) -> FloatArray:

@@ -94,7 +94,8 @@ class Spectra:
         lines = []
         for w, u, y, constant in raw:
             cut = slice(0, max(_lines_that_matter(u), _lines_that_matter(y)))
-            lines.append(Lines(1j * w[cut] / scale, u[cut], y[cut], constant[cut]))
+            s = np.asarray(1j * w[cut] / scale, dtype=np.complex128)
+            lines.append(Lines(s, u[cut], y[cut], constant[cut]))
         return cls(tuple(lines), scale)
 
 
@@ -136,7 +137,8 @@ def fit_ratio(spectra: Spectra, order: int, zeros: int) -> Ratio:
        two complex polynomials", IEEE Trans. Automatic Control 8 (1963) 56-58.
     """
     problem = _Problem(spectra, order, zeros)
-    best = problem.solved(np.poly(-np.ones(order))[:0:-1])
+    slow = np.asarray(np.poly(-np.ones(order)), dtype=np.float64)
+    best = problem.solved(slow[:0:-1])
     a = best.a
     for _ in range(ROUNDS):
         a = stable(problem.denominator(a))
@@ -222,7 +224,7 @@ def _transformed(
     item: Stretch, hold: Hold
 ) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray]:
     n = len(item.u)
-    f = np.fft.rfftfreq(n, item.dt)
+    f = np.asarray(np.fft.rfftfreq(n, item.dt), dtype=np.float64)
     # every line but the first stands for itself and its mirror image
     size = np.sqrt(np.where(f > 0, 2.0, 1.0) / n)
     shaped = np.ones(len(f), dtype=np.complex128)
@@ -230,7 +232,7 @@ def _transformed(
         shaped *= np.sinc(f * item.dt) ** 2
     elif hold == "zero-order":
         shaped *= np.sinc(f * item.dt) * np.exp(-1j * np.pi * f * item.dt)
-    constant = np.where(f > 0, 0.0, n * size)
+    constant: FloatArray = np.where(f > 0, 0.0, n * size)
     u, y = np.fft.rfft(item.u), np.fft.rfft(item.y)
     return 2 * np.pi * f, u * shaped * size, y * size, constant
 
@@ -251,12 +253,17 @@ def _triangle(
     both = _real(np.column_stack([columns, target]))
     basis, _ = np.linalg.qr(_real(transients))
     both -= basis @ (basis.T @ both)
-    return np.linalg.qr(both, mode="r")
+    return triangle_of(both)
+
+
+def triangle_of(equations: FloatArray) -> FloatArray:
+    """Triangle whose least squares, the last column being the target, are the same."""
+    return np.asarray(np.linalg.qr(equations, mode="r"))
 
 
 def _least(triangles: Sequence[FloatArray]) -> tuple[FloatArray, float]:
     """Least squares over all stretches: the solution, and what is left."""
-    all_of_them = np.linalg.qr(np.vstack(triangles), mode="r")
+    all_of_them = triangle_of(np.vstack(triangles))
     left, right = all_of_them[:, :-1], all_of_them[:, -1]
     size = np.linalg.norm(left, axis=0)
     size[size == 0] = 1.0
