@@ -17,6 +17,7 @@ import numpy as np
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.rate_dependent_hysteresis import FORMS
 from hystbench.blocks.wrapping import HystereticBlock, WrappingBlock
 from hystbench.model import Model
 from hystbench.operators import play
@@ -24,6 +25,10 @@ from hystbench.record import FloatArray, Record
 
 #: Evaluations of a search from one start, Jacobians not counted.
 EVALUATIONS = 8
+#: Starts that a search descends from, the best of those that there are.
+DESCENTS = 2
+#: Frequencies that a mode is looked for at, over the records' band.
+MODES = 60
 #: Plays that stand for hysteresis of any shape.
 PLAYS = 10
 #: Frequencies that a mains tone is looked for at, in Hz.
@@ -166,7 +171,11 @@ def fit(task: Task, effect: str) -> Fitted | None:
     place = _place(task, effect)
     if place is None:
         return None
-    return _search(task, effect, place, _searched(task, effect))
+    searched = _searched(task, effect)
+    if effect == "rate-dependent-hysteresis":
+        forms = [_search(task, effect, place, searched, form) for form in FORMS]
+        return min(forms, key=lambda item: item.mean_square)
+    return _search(task, effect, place, searched)
 
 
 def effects() -> tuple[str, ...]:
@@ -179,13 +188,10 @@ def within_noise(
     records: Sequence[Record],
     names: Iterable[str],
     reference: str,
+    floor: float,
     noise_rms: float,
 ) -> tuple[str, ...]:
-    """Give the effects whose fit is as good as a reference's, but for the noise.
-
-    An effect is within the noise if its mean square is above the reference's by no
-    more than the noise's own. The comparison, not the residual alone: where the base
-    itself is wrong no effect comes down to the noise.
+    """Give the effects that fit records as well as the true one, but for the noise.
 
     Parameters
     ----------
@@ -193,25 +199,24 @@ def within_noise(
     records : sequence of Record
     names : iterable of str
     reference : str
-        The effect that is there.
+        The effect that is there: it needs no proof.
+    floor : float
+        Mean square that the true effect leaves: noise, and the base's own error.
     noise_rms : float
+        An effect is within the noise if it leaves no more than this above the floor,
+        in mean squares.
     """
     task = Task(model, records)
-    known = fit(task, reference)
-    least = np.inf if known is None else known.mean_square
-    out = []
-    for name in names:
-        found = known if name == reference else _fit_known(task, name)
-        # what there is needs no proof, though the plain fit may not be good enough
-        if name == reference or (
-            found is not None and found.mean_square <= least + noise_rms**2
-        ):
-            out.append(name)
-    return tuple(out)
+    return tuple(
+        name
+        for name in names
+        if name == reference or _leaves(task, name) <= floor + noise_rms**2
+    )
 
 
-def _fit_known(task: Task, name: str) -> Fitted | None:
-    return fit(task, name) if name in effects() else None
+def _leaves(task: Task, name: str) -> float:
+    found = fit(task, name) if name in effects() else None
+    return np.inf if found is None else found.mean_square
 
 
 # Where an effect acts: before the chain, just behind the hysteresis, or at its end.
@@ -258,8 +263,8 @@ def _searched(task: Task, effect: str) -> dict[str, Searched]:
     share = Searched(-1.0, 1.0, (0.02,))
     mode = {
         "frequency_hz": Searched(2.0 / span, 0.45 / step, _frequencies(step)),
-        "damping_ratio": Searched(1e-3, 0.3, (0.03,)),
-        "participation": share,
+        "damping_ratio": Searched(1e-3, 0.3, (0.05,)),
+        "participation": Searched(-1.0, 1.0, (0.1,)),
     }
     table: dict[str, dict[str, Searched]] = {
         "input-delay": {"delay_s": quick},
@@ -272,15 +277,15 @@ def _searched(task: Task, effect: str) -> dict[str, Searched]:
         "saturation": {"level": Searched(size / 2, 50 * size, (2 * size,))},
         "rate-dependent-hysteresis": {
             "coefficient": Searched(
-                1e-3 * task.rate**-0.75, task.rate**-0.75, (0.05 * task.rate**-0.75,)
+                1e-4 * task.rate**-0.75,
+                10.0 * task.rate**-0.75,
+                (0.01 * task.rate**-0.75, 0.1 * task.rate**-0.75),
             ),
             "exponent": Searched(0.3, 1.5, (0.75,)),
         },
         "resonance": mode,
         "stiffness-hardening": {
-            "coefficient": Searched(
-                -1.0 / size**2, 3.0 / size**2, (1e-3 / size**2, 0.1 / size**2)
-            )
+            "coefficient": Searched(-1.0 / size**2, 3.0 / size**2, (1e-3 / size**2, 0.1 / size**2))
         },
         "friction": {
             "coulomb": Searched(-0.2 * size, 0.2 * size, (0.01 * size,)),
@@ -309,15 +314,22 @@ def _searched(task: Task, effect: str) -> dict[str, Searched]:
 
 
 def _frequencies(step: float) -> tuple[float, ...]:
-    nyquist = 0.5 / step
-    return (0.02 * nyquist, 0.06 * nyquist, 0.18 * nyquist)
+    """Spread evenly in their logarithm over two decades below the highest."""
+    return tuple(float(f) for f in np.geomspace(0.0045 / step, 0.45 / step, MODES))
 
 
+#: The parameter that the effect is proportional to.
+_LINEAR = {
+    "resonance": "participation",
+    "friction": "coulomb",
+    "creep": "magnitudes",
+    "thermal-drift": "coefficient",
+}
 _LISTS = ("magnitudes", "time_constants_s")
 
 
 def _chain(
-    task: Task, effect: str, place: int, values: Mapping[str, float]
+    task: Task, effect: str, place: int, values: Mapping[str, float], form: str = ""
 ) -> tuple[Block, ...]:
     chain = list(task.model.chain)
     block = registry()[effect]
@@ -326,6 +338,8 @@ def _chain(
     }
     if issubclass(block, HeldBlock):
         given["hold"] = "band-limited"
+    if form:
+        given["form"] = form
     if effect == "stiffness-hardening" and place < len(chain):
         mode = chain[place].to_mapping()
         chain[place] = block.from_mapping({**mode, **given})
@@ -335,7 +349,11 @@ def _chain(
 
 
 def _search(
-    task: Task, effect: str, place: int, searched: Mapping[str, Searched]
+    task: Task,
+    effect: str,
+    place: int,
+    searched: Mapping[str, Searched],
+    form: str = "",
 ) -> Fitted:
     from scipy.optimize import least_squares  # late: imported by jobs that fit only
 
@@ -345,34 +363,41 @@ def _search(
 
     def values(x: FloatArray) -> dict[str, float]:
         return {
-            name: item.outer(v) for name, item, v in zip(names, items, x, strict=True)
+            name: item.outer(v)
+            for name, item, v in zip(names, items, x, strict=True)
         }
 
     def residual(x: FloatArray) -> FloatArray:
-        chain = _chain(task, effect, place, values(x))
+        chain = _chain(task, effect, place, values(x), form)
         error = _behind(task, chain, place, before) - task.measured
         # a mode that ran away has no output; the search is to turn back
         return np.nan_to_num(error, nan=task.size, posinf=task.size, neginf=-task.size)
 
     low = np.array([item.inner(item.low) for item in items])
     high = np.array([item.inner(item.high) for item in items])
-    best = None
-    for number in range(max(len(item.starts) for item in items)):
-        start = [
-            item.inner(item.starts[min(number, len(item.starts) - 1)]) for item in items
-        ]
-        found = least_squares(
-            residual,
-            np.clip(start, low, high),
-            bounds=(low, high),
-            max_nfev=EVALUATIONS,
-            diff_step=1e-4,
+    starts = [
+        np.clip(
+            [
+                item.inner(item.starts[min(number, len(item.starts) - 1)])
+                for item in items
+            ],
+            low,
+            high,
         )
-        if best is None or found.cost < best.cost:
-            best = found
-    assert best is not None  # noqa: S101  (each parameter has a start)
+        for number in range(max(len(item.starts) for item in items))
+    ]
+    if effect in _LINEAR:
+        number = names.index(_LINEAR[effect])
+        starts = _scaled(task, starts, number, residual, low[number], high[number])
+    found = [
+        least_squares(
+            residual, x, bounds=(low, high), max_nfev=EVALUATIONS, diff_step=1e-4
+        )
+        for x in starts[:DESCENTS]
+    ]
+    best = min(found, key=lambda item: float(item.cost))
     chosen = values(best.x)
-    chain = _chain(task, effect, place, chosen)
+    chain = _chain(task, effect, place, chosen, form)
     model = Model("fitted", task.model.input, task.model.output, chain)
     return Fitted(
         effect,
@@ -381,6 +406,27 @@ def _search(
         chosen,
         lambda record: model.simulate(record.u, record.dt),
     )
+
+
+def _scaled(
+    task: Task,
+    starts: list[FloatArray],
+    number: int,
+    residual: Callable[[FloatArray], FloatArray],
+    low: float,
+    high: float,
+) -> list[FloatArray]:
+    """Solve at each start for the parameter that scales the effect; the best first."""
+    missing = task.measured - task.base
+    rated = []
+    for x in starts:
+        added = residual(x) + missing
+        square = float(added @ added) or 1.0
+        factor = float(added @ missing) / square
+        scaled = x.copy()
+        scaled[number] = np.clip(factor * x[number], low, high)
+        rated.append((factor**2 * square, tuple(scaled)))
+    return [np.array(x) for _, x in sorted(rated, reverse=True)]
 
 
 def _before(task: Task, place: int, block: type[Block]) -> list[FloatArray] | None:
@@ -407,7 +453,7 @@ def _behind(
 
 
 def _fit_plays(task: Task, effect: str) -> Fitted | None:
-    """Add a sum of plays of the input where the hysteresis is, by linear squares."""
+    """Add plays of the input, and their squares, where the hysteresis is."""
     if (effect == "hysteresis") != (task.hysteresis is None):
         return None
     place = (task.hysteresis or 0) + 1
@@ -416,6 +462,7 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
 
     def columns(record: Record) -> FloatArray:
         plays = play(np.ascontiguousarray(record.u), thresholds)[0].T
+        plays = np.concatenate([plays, plays**2])
         out = []
         for signal in plays:
             y = np.ascontiguousarray(signal)
@@ -430,11 +477,10 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
     return Fitted(
         effect,
         float(np.mean((missing - design @ weights) ** 2)),
-        PLAYS,
+        design.shape[1],
         {},
-        lambda record: (
-            task.model.simulate(record.u, record.dt) + columns(record) @ weights
-        ),
+        lambda record: task.model.simulate(record.u, record.dt)
+        + columns(record) @ weights,
     )
 
 

@@ -4,6 +4,7 @@
 import importlib.util
 
 from hystbench.challenge.contest.plan import chunks, plan
+from hystbench.errors import nearest
 
 BLIND = "results/blind"
 CONTEST = config["blind"]
@@ -25,10 +26,10 @@ if CONTEST["transfer"]:
     BLIND_SOLVERS["transfer"] = list(
         dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
     )
-if CONTEST["solver"] not in ENTERED:
+if CONTEST["solver"] not in CONTEST["solvers"]:
     sys.exit(
-        f"hystbench: {PLACE}: blind: solver: {CONTEST['solver']!r}; expected one of "
-        + ", ".join(ENTERED)
+        f"hystbench: {PLACE}: blind: solver: {CONTEST['solver']!r}; "
+        + nearest(CONTEST["solver"], CONTEST["solvers"])
     )
 
 

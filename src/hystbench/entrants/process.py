@@ -18,6 +18,8 @@ POLL_S = 0.005
 #: Exit status of a command that cannot be begun, as a shell has it.
 NOT_FOUND = 127
 OWN = "hystbench"
+#: Beginnings of the names of environment variables that a solver does not get.
+_TELLING = ("PWD", "OLDPWD", "SNAKEMAKE")
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,9 @@ def _become(command: Sequence[str], folder: Path, log: Path) -> None:
         os.dup2(printed, 1)
         os.dup2(printed, 2)
         os.chdir(folder)
+        # a shell leaves behind where it was, and the workflow what it runs
+        for name in [key for key in os.environ if key.startswith(_TELLING)]:
+            del os.environ[name]
         if command[0] == OWN:
             status = _call(command)
         else:

@@ -75,4 +75,5 @@ def _confirmed(case: Case, names: tuple[str, ...]) -> tuple[str, ...]:
     records = [record for record in case.records if record.use == "fit"]
     hidden = case.truth["effects"][0]["name"]
     noise = float(case.truth["noise_rms_um"])
-    return within_noise(case.model, records, names, hidden, noise)
+    floor = noise**2 + float(case.truth["base_error_fit_rms_um"]) ** 2
+    return within_noise(case.model, records, names, hidden, floor, noise)

@@ -1,0 +1,129 @@
+import re
+from collections import Counter
+
+import pytest
+
+from hystbench.challenge.contest.plan import (
+    DEVELOPMENT_SEEDS,
+    SETS,
+    STRATA,
+    chunks,
+    plan,
+)
+from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY
+from hystbench.errors import InputError
+from tests.conftest import ROOT
+
+
+def seeds(name, scale=1.0):
+    return [entry.spec.seed for entry in plan(name, scale)]
+
+
+@pytest.mark.parametrize("scale", [0.05, 1.0, 4.0])
+def test_no_seed_is_used_twice_in_a_contest_or_in_another(scale):
+    every = [seed for name in SETS for seed in seeds(name, scale)]
+    assert len(set(every)) == len(every)
+
+
+def test_published_and_transfer_seeds_are_above_all_that_was_mended_on():
+    for name in ("development", "small"):
+        assert set(seeds(name)) <= set(DEVELOPMENT_SEEDS)
+    assert min(seeds("published", 4.0)) >= 1_000_000 > DEVELOPMENT_SEEDS.stop
+    assert max(seeds("published", 4.0)) < 2_000_000 <= min(seeds("transfer", 4.0))
+
+
+def test_no_test_uses_a_seed_of_the_published_score():
+    """Whatever a solver was mended on, it was not the cases that it is judged on."""
+    kept = set(seeds("published")) | set(seeds("transfer"))
+    for file in (ROOT / "tests").rglob("*.py"):
+        numbers = re.findall(r"\b[12]_?\d{3}_?\d{3}\b", file.read_text())
+        used = {int(text.replace("_", "")) for text in numbers}
+        # the first seed of each set stands here as a bound
+        assert used & kept <= {1_000_000, 2_000_000}, file
+
+
+def count(name, **wanted):
+    return sum(
+        all(getattr(entry.spec, key) == value for key, value in wanted.items())
+        for entry in plan(name)
+    )
+
+
+def test_the_published_set_is_stratified_as_asked():
+    for ratio, gpi, other in ((20.0, 200, 100), (10.0, 100, 50)):
+        for family, expected in (
+            ("gpi", gpi),
+            ("preisach", other),
+            ("jiles-atherton", other),
+        ):
+            about = {"kind": "single", "ratio_db": ratio, "family": family}
+            assert count("published", **about) == expected
+    assert count("published", kind="none") == 200
+    assert count("published", kind="pair") == 100
+    assert count("published", kind="triple") == 50
+    assert count("published", kind="unlisted") == 100
+    assert len(plan("development")) == 400
+    assert len(plan("small")) == 12
+
+
+@pytest.mark.parametrize("name", ["development", "published", "transfer"])
+@pytest.mark.parametrize("family", ["gpi", "preisach", "jiles-atherton"])
+def test_single_effects_are_balanced(name, family):
+    chosen = [
+        entry.spec.effects[0]
+        for entry in plan(name)
+        if (entry.spec.kind, entry.spec.family, entry.spec.ratio_db)
+        == ("single", family, 20.0)
+    ]
+    counts = Counter(chosen)
+    # beside a foreign plant the shape is wrong in any case
+    expected = set(VOCABULARY) - (set() if family == "gpi" else {"hysteresis-shape"})
+    assert set(counts) == expected
+    assert max(counts.values()) - min(counts.values()) <= 1
+
+
+def test_the_transfer_set_is_shifted_and_shares_no_unlisted_effect():
+    transfer = [entry.spec for entry in plan("transfer")]
+    assert {(spec.spread, spec.campaign) for spec in transfer} == {(3.0, "other")}
+
+    def unlisted(name):
+        entries = plan(name)
+        return {e.spec.effects[0] for e in entries if e.spec.kind == "unlisted"}
+
+    half = {name for name in UNLISTED if KINDS[name].use == "transfer"}
+    assert unlisted("transfer") == half
+    others = unlisted("published") | unlisted("development") | unlisted("small")
+    assert not others & half
+
+
+def test_a_larger_contest_holds_the_smaller_one():
+    assert set(seeds("published", 0.1)) < set(seeds("published"))
+
+
+def test_a_name_tells_nothing_of_the_case():
+    entries = plan("development")
+    for entry in entries:
+        assert re.fullmatch(r"case-[0-9a-f]{10}", entry.name)
+    # in the order of the names the kinds are mixed
+    kinds = [entry.spec.kind for entry in entries]
+    changes = sum(a != b for a, b in zip(kinds, kinds[1:], strict=False))
+    assert changes > 100
+
+
+def test_chunks_hold_each_case_once():
+    entries = plan("small")
+    cut = chunks(entries, 5)
+    assert [len(chunk) for chunk in cut.values()] == [5, 5, 2]
+    assert tuple(e for chunk in cut.values() for e in chunk) == entries
+
+
+def test_an_unknown_set_gets_the_nearest_name():
+    with pytest.raises(InputError, match="did you mean 'published'"):
+        plan("publishd")
+
+
+def test_a_scale_beyond_the_seeds_is_refused():
+    most = max(stratum.cases for stratum in STRATA["published"])
+    with pytest.raises(InputError, match="scale: 26"):
+        plan("published", 26.0)
+    assert most * 25.0 <= 5000

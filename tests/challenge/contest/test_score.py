@@ -1,0 +1,232 @@
+import pytest
+
+from hystbench.challenge.contest.place import share_held, where_hit
+from hystbench.challenge.contest.rows import read_rows, write_rows
+from hystbench.challenge.contest.score import judge
+from hystbench.errors import InputError
+from hystbench.gap.schema import SCHEMA
+
+from .made import (
+    AMPLITUDE,
+    BRANCH,
+    DELAY,
+    FREQUENCY,
+    TIME,
+    answer,
+    effect,
+    gap,
+    named,
+    truth,
+    view,
+)
+
+
+def everything(names):
+    return names
+
+
+def judged(about, content, confirm=everything, **more):
+    return judge("s", "c", about, answer(content, **more), SCHEMA, confirm)
+
+
+RIGHT = gap(named("resonance"), views=[view()])
+
+
+def test_a_right_answer():
+    row = judged(truth(effect()), RIGHT)
+    assert (row.top1, row.in_set, row.exact, row.all_named) == (True,) * 4
+    assert (row.where_hit, row.set_size, row.confidence) == (True, 1, 0.9)
+    assert (row.false_alarm, row.unnamed, row.lost) == (None, None, "")
+    # noise 3 and base error 4: 25 of 169 cannot go; 169 - 25 = 144 can, and did
+    assert row.shrink == pytest.approx(1.0)
+    assert (row.ratio_db, row.ratio_retuned_db) == (20.0, 18.0)
+
+
+def test_half_a_gap_closed():
+    # 169 - 97 = 72 of 144
+    row = judged(truth(effect()), gap(named("resonance"), after=97**0.5))
+    assert row.shrink == pytest.approx(0.5)
+
+
+def test_a_spurious_effect_beside_the_right_one():
+    row = judged(truth(effect()), gap(named("resonance"), named("creep")))
+    assert (row.top1, row.exact, row.all_named) == (True, False, True)
+
+
+def test_the_right_effect_second():
+    row = judged(truth(effect()), gap(named("creep"), named("resonance")))
+    assert (row.top1, row.in_set, row.exact) == (False, False, False)
+
+
+def test_a_set_counts_only_what_the_judge_confirms():
+    about = truth(effect())
+    content = gap(named("creep", ties=["resonance", "drift"]))
+    asked = []
+
+    def confirm(names):
+        asked.append(names)
+        return ("creep",)
+
+    row = judged(about, content, confirm)
+    assert asked == [("creep", "resonance", "drift")]
+    assert (row.in_set, row.in_set_raw) == (False, True)
+    assert (row.set_size, row.set_size_raw) == (1, 3)
+
+
+@pytest.mark.parametrize("family", ["gpi", "preisach"])
+def test_the_shape_beside_a_foreign_plant_is_neither_required_nor_spurious(family):
+    content = gap(named("hysteresis-shape"), named("resonance"))
+    row = judged(truth(effect(), family=family), content)
+    let_pass = family == "preisach"
+    assert (row.top1, row.exact) == (let_pass, let_pass)
+    assert (row.top1_strict, row.exact_strict) == (False, False)
+    assert judged(truth(effect(), family=family), RIGHT).exact
+
+
+@pytest.mark.parametrize(
+    ("family", "content", "alarm", "strict"),
+    [
+        ("gpi", gap(verdict="no-gap"), False, False),
+        ("gpi", gap(named("hysteresis-shape")), True, True),
+        ("preisach", gap(named("hysteresis-shape")), False, True),
+        ("preisach", gap(named("hysteresis-shape"), named("creep")), True, True),
+        ("preisach", gap(verdict="unnamed"), True, True),
+        ("gpi", gap(verdict="parameters"), True, True),
+    ],
+)
+def test_false_alarms(family, content, alarm, strict):
+    row = judged(truth(kind="none", family=family), content)
+    assert (row.false_alarm, row.false_alarm_strict) == (alarm, strict)
+    assert (row.top1, row.shrink, row.where_hit) == (None, None, None)
+
+
+def test_outside_the_vocabulary_only_unnamed_is_right():
+    about = truth(effect("dropouts", "only"), kind="unlisted")
+    row = judged(about, gap(verdict="unnamed"))
+    assert (row.unnamed, row.exact, row.top1, row.all_named) == (True, True, None, None)
+    # the shape beside what is unnamed is a name all the same
+    assert not judged(about, gap(named("hysteresis-shape"), verdict="unnamed")).exact
+    assert judged(about, RIGHT).unnamed is False
+
+
+def test_pairs():
+    about = truth(effect(), effect("creep", "one-element"), kind="pair")
+    both = judged(about, gap(named("creep"), named("resonance")))
+    assert (both.all_named, both.exact, both.top1) == (True, True, None)
+    assert judged(about, RIGHT).all_named is False
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (None, "gap.json"),
+        ({"verdict": "named"}, "expected the key"),
+        (gap(named("creep", confidence=1.5)), "confidence: 1.5"),
+        (gap(verdict="perhaps"), "'perhaps' is unknown"),
+        (gap(after=float("nan")), "after"),
+        (gap(), "without an effect"),
+        (gap(named("creep"), verdict="no-gap"), "with effects named"),
+        (RIGHT | {"truth": 1}, "unknown key 'truth'"),
+    ],
+)
+def test_a_malformed_answer_loses_the_case_with_the_reason(content, reason):
+    row = judged(truth(effect()), content)
+    assert reason in row.lost
+    assert (row.top1, row.in_set, row.exact, row.where_hit) == (False,) * 4
+    assert (row.verdict, row.shrink, row.named) == ("", 0.0, "")
+
+
+def test_no_answer_on_a_case_with_nothing_hidden_is_not_right():
+    row = judged(truth(kind="none"), None, status="no answer within 60 s")
+    assert row.lost == "no answer within 60 s"
+    assert row.false_alarm is True
+
+
+@pytest.mark.parametrize(
+    ("asked", "place", "share"),
+    [
+        (view(low=60.0, high=80.0), FREQUENCY, 0.9),
+        # half of the bin from 60 to 80 Hz, and half of the one below
+        (view(low=30.0, high=70.0), FREQUENCY, 0.05 + 0.45),
+        (view(low=90.0, high=200.0), FREQUENCY, 0.0),
+        (view("branch", "rising", "rising", ""), BRANCH, 0.7),
+        (view("branch", "falling", "rising", ""), BRANCH, 1.0),
+        (view("branch", "up", "up", ""), BRANCH, 0.0),
+        (view("delay", 0.9e-3, 1.1e-3, "s"), DELAY, 1.0),
+        (view("delay", 0.6e-3, 0.8e-3, "s"), DELAY, 1.0),
+        (view("delay", 3e-3, 4e-3, "s"), DELAY, 0.0),
+        (view("slow-time", 1.0, 9.0, "s"), TIME, 0.75),
+        (view("amplitude", "a", "b", "A"), AMPLITUDE, 0.0),
+    ],
+)
+def test_what_a_range_holds(asked, place, share):
+    assert share_held(asked, place) == pytest.approx(share)
+
+
+def test_the_first_view_must_be_of_the_right_kind():
+    # the amplitude's range holds all of the power, and tells nothing of a resonance
+    assert not where_hit(view("amplitude", -1.0, 1.0, "A"), [effect()])
+    assert where_hit(view(), [effect()])
+    assert not where_hit(view(low=0.0, high=65.0), [effect()])
+    assert not where_hit(None, [effect()])
+    row = judged(truth(effect()), gap(named("resonance"), views=[view("record", "a", "b", ""), view()]))
+    assert row.where_hit is False
+
+
+def value(number, error, unit="Hz"):
+    return {"value": number, "standard_error": error, "unit": unit}
+
+
+def test_parameters_and_their_intervals():
+    true = {"frequency_hz": 100.0, "damping_ratio": 0.02, "participation": 0.1}
+    said = {
+        # 1.5 standard errors off; 3 off; no interval
+        "frequency_hz": value(101.5, 1.0),
+        "damping_ratio": value(0.026, 0.002),
+        "participation": value(0.1, None),
+    }
+    row = judged(truth(effect(parameters=true)), gap(named("resonance", parameters=said)))
+    assert (row.parameters, row.intervals, row.covered) == (3, 2, 1)
+    # relative errors 0.015, 0.3 and 0
+    assert row.parameter_error == pytest.approx(0.015)
+
+
+def test_lists_are_compared_number_by_number():
+    true = {"magnitudes": [0.1], "time_constants_s": [2.0]}
+    said = {
+        "magnitudes": value([0.11], [0.01], "-"),
+        "time_constants_s": value([2.0, 3.0], None, "s"),
+    }
+    about = truth(effect("creep", "one-element", true))
+    row = judged(about, gap(named("creep", parameters=said)))
+    assert (row.parameters, row.intervals, row.covered) == (1, 1, 1)
+
+
+def test_another_form_has_no_true_parameters():
+    about = truth(effect("saturation", "algebraic", {"level": 40.0, "sharpness": 2.0}))
+    said = {"level": value(40.0, 1.0, "um")}
+    assert judged(about, gap(named("saturation", parameters=said))).parameters == 0
+    rod = truth(effect("eddy-diffusion", "rod", {"time_constant_s": 1e-3, "geometry": "rod"}))
+    for geometry, compared in (("slab", 0), ("rod", 1)):
+        said = {
+            "time_constant_s": value(1e-3, 1e-4, "s"),
+            "geometry": value(geometry, None, "-"),
+        }
+        row = judged(rod, gap(named("eddy-diffusion", parameters=said)))
+        assert row.parameters == compared
+
+
+def test_rows_come_back_as_they_were(tmp_path):
+    rows = [
+        judged(truth(effect()), RIGHT),
+        judged(truth(kind="none"), None, status="exit status 1: a, \"b\""),
+        judged(truth(effect("dropouts", "only"), kind="unlisted"), gap(verdict="unnamed")),
+    ]
+    write_rows(tmp_path / "rows.csv", rows)
+    assert read_rows([tmp_path / "rows.csv"]) == rows
+
+
+def test_other_columns_are_refused(tmp_path):
+    (tmp_path / "rows.csv").write_text("solver,case\na,b\n")
+    with pytest.raises(InputError, match="expected the columns solver, case, seed"):
+        read_rows([tmp_path / "rows.csv"])

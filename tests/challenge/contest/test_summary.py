@@ -1,0 +1,149 @@
+import dataclasses
+import json
+from statistics import NormalDist
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.challenge.contest import tables
+from hystbench.challenge.contest.score import judge
+from hystbench.challenge.contest.summary import calibration_error, reach, summary
+from hystbench.challenge.contest.wilson import wilson
+from hystbench.challenge.contest.writing import write_score
+from hystbench.gap.schema import SCHEMA
+
+from .made import answer, effect, gap, named, truth, view
+
+
+def row(about, content, case="c", solver="s", **more):
+    found = judge(solver, case, about, answer(content), SCHEMA, lambda names: names)
+    return dataclasses.replace(found, **more)
+
+
+def test_wilsons_interval_of_a_textbook():
+    # A. Agresti, B. A. Coull, The American Statistician 52 (1998): no success in 10
+    found = wilson(0, 10)
+    assert (found.share, found.low) == (0.0, 0.0)
+    assert found.high == pytest.approx(0.2775, abs=5e-5)
+
+
+@given(st.integers(1, 2000), st.data())
+def test_wilsons_interval_is_where_the_score_test_turns(cases, data):
+    hits = data.draw(st.integers(0, cases))
+    found = wilson(hits, cases)
+    z = NormalDist().inv_cdf(0.975)
+    assert 0 <= found.low <= found.share <= found.high <= 1
+    for end in (found.low, found.high):
+        if 1e-9 < end < 1 - 1e-9:
+            # |share - p| = z sqrt(p (1 - p) / n) at both ends
+            apart = abs(hits / cases - end)
+            assert apart == pytest.approx(z * (end * (1 - end) / cases) ** 0.5, rel=1e-6)
+
+
+def test_no_cases_no_share():
+    assert wilson(0, 0) == (None, None, None, 0)
+
+
+RESONANCE = gap(named("resonance", 0.95), views=[view()])
+CREEP = gap(named("creep", 0.75), views=[view()])
+NOTHING = gap(verdict="no-gap")
+
+
+def a_contest():
+    """Four singles (3 right), two of nothing (1 right), one pair, one unlisted."""
+    single = truth(effect())
+    foreign = truth(effect(), family="preisach")
+    pair = truth(effect(), effect("creep", "one-element"), kind="pair")
+    unlisted = truth(effect("dropouts", "only"), kind="unlisted")
+    return [
+        row(single, RESONANCE),
+        row(single, RESONANCE),
+        row(single, CREEP),
+        row(foreign, RESONANCE),
+        row(truth(kind="none"), NOTHING),
+        row(truth(kind="none"), RESONANCE),
+        row(pair, gap(named("resonance", 0.95), named("creep", 0.75))),
+        row(unlisted, gap(verdict="unnamed")),
+    ]
+
+
+def test_the_summary_by_hand():
+    told = summary(a_contest())
+    assert told["cases"] == 8
+    assert told["top1"]["20"]["gpi"]["share"] == pytest.approx(2 / 3)
+    assert told["top1"]["20"]["foreign"] == told["top1"]["20"]["preisach"]
+    assert told["top1"]["20"]["preisach"]["share"] == 1.0
+    assert "jiles-atherton" not in told["top1"]["20"]
+    assert told["exact_set"]["20"]["gpi"]["cases"] == 3
+    assert told["false_alarm"]["share"] == 0.5
+    assert told["pairs_both"]["share"] == 1.0
+    assert told["triples_all"]["share"] is None
+    assert told["unlisted_unnamed"]["share"] == 1.0
+    # named: 0.95 right 4 of 5 times, 0.75 right once of two
+    squares = 4 * 0.05**2 + 0.95**2 + 0.25**2 + 0.75**2
+    assert told["brier"] == pytest.approx(squares / 7)
+    assert told["seconds_per_case"] == 1.5
+    assert told["where_hit"]["20"]["gpi"]["share"] == 1.0
+
+
+def test_calibration_by_hand():
+    rows = a_contest()
+    bins = {item[0]: item for item in tables.reliability(rows)}
+    assert bins[0.95][2:4] == (pytest.approx(0.95), pytest.approx(0.8))
+    assert bins[0.7][2:4] == (pytest.approx(0.75), pytest.approx(0.5))
+    # 5 effects off by 0.15 and 2 off by 0.25
+    assert calibration_error(rows) == pytest.approx((5 * 0.15 + 2 * 0.25) / 7)
+
+
+def test_certainty_has_a_bin():
+    rows = [row(truth(effect()), gap(named("resonance", 1.0)))]
+    assert [item[:3] for item in tables.reliability(rows)] == [(0.95, 1.0, 1.0)]
+
+
+def test_what_was_asked_beside_what_was_reached():
+    rows = a_contest()
+    told = {item.figure: item for item in reach(rows, [])}
+    assert told["top1, GPI, 20 dB"].met is False
+    assert told["top1, foreign, 20 dB"].met is True
+    assert told["top1, GPI, 10 dB"].met is None
+    assert told["false_alarm"].met is False
+    assert told["seconds_per_case"].met is False
+    assert "transfer, top1, 20 dB" not in told
+    # 3 of 4 at home: at least 70 % elsewhere
+    away = [row(truth(effect()), RESONANCE)] * 7 + [row(truth(effect()), CREEP)] * 3
+    transfer = {item.figure: item for item in reach(rows, away)}["transfer, top1, 20 dB"]
+    assert (transfer.reached, transfer.asked, transfer.met) == (0.7, ">= 0.700", True)
+
+
+def test_the_confusion_counts_each_case_once():
+    rows = a_contest()
+    counts = tables.confusion(rows)
+    assert ("single", "resonance", "resonance", "yes", 3) in counts
+    assert ("single", "resonance", "creep", "no", 1) in counts
+    assert ("none", "none", "no-gap", "yes", 1) in counts
+    assert ("unlisted", "dropouts", "unnamed", "yes", 1) in counts
+    assert sum(item[-1] for item in counts) == 7
+
+
+def test_power_by_ratio():
+    weak = truth(effect(), ratio_db=10.0)
+    rows = [*a_contest(), row(weak, CREEP), row(weak, RESONANCE)]
+    told = {item[:3]: item[3] for item in tables.power(rows)}
+    assert told["resonance", "gpi", 10.0] == 0.5
+    assert told["all", "all", 20.0] == 0.75
+
+
+def test_the_score_as_files(tmp_path):
+    rows = a_contest() + [dataclasses.replace(a_contest()[0], solver="other")]
+    write_score(rows, [], "s", {"set": "small"}, {"absent": "needs x"}, tmp_path)
+    told = json.loads((tmp_path / "summary.json").read_text())
+    asked = "cases where_hit top1 in_set exact_set false_alarm pairs_both triples_all"
+    asked += " unlisted_unnamed shrink_median brier coverage seconds_per_case transfer"
+    assert set(asked.split()) <= set(told)
+    assert told["cases"] == 8
+    lines = (tmp_path / "rivals.csv").read_text().splitlines()
+    assert [line.split(",")[0] for line in lines] == ["solver", "s", "other", "absent"]
+    assert lines[-1].endswith("needs x")
+    reached = (tmp_path / "reach.csv").read_text()
+    assert '"top1, GPI, 20 dB",>= 0.97,0.6667' in reached

@@ -1,0 +1,137 @@
+"""Rivals answer in the format of the contest; who knows what."""
+
+import grimp
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from hystbench.challenge.case import make_case
+from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.writing import write_folder
+from hystbench.commands.rival import RIVALS
+from hystbench.entrants import gaussian_process, naive, random_namer
+from hystbench.entrants.black_box import kept
+from hystbench.entrants.sindy import simulate
+from hystbench.files import read_json
+from hystbench.gap.schema import SCHEMA
+from hystbench.record import Channel, Record
+from hystbench.refit import Task, effects, fit, within_noise
+from hystbench.schema import check_against_schema
+
+SPEC = CaseSpec(150_001, "single", ("thermal-drift",), "gpi", 20.0)
+
+
+@pytest.fixture(scope="module")
+def case():
+    return make_case(SPEC)
+
+
+@pytest.fixture(scope="module")
+def folder(case, tmp_path_factory):
+    place = tmp_path_factory.mktemp("case")
+    write_folder(case, place)
+    return place
+
+
+def solved(module, folder, out):
+    module.solve(folder / "dataset", folder / "model.yaml", out)
+    gap = read_json(out / "gap.json")
+    check_against_schema(gap, SCHEMA, "gap.json")
+    return gap
+
+
+def test_the_naive_ranker_names_a_strong_effect(folder, tmp_path):
+    gap = solved(naive, folder, tmp_path)
+    assert gap["verdict"] == "named"
+    assert gap["effects"][0]["name"] == "thermal-drift"
+    assert gap["gap"]["after"] < 0.5 * gap["gap"]["before"]
+
+
+def test_the_random_namer_says_the_same_each_time(folder, tmp_path):
+    first = solved(random_namer, folder, tmp_path / "a")
+    assert solved(random_namer, folder, tmp_path / "b") == first
+    assert first["gap"]["after"] == first["gap"]["before"]
+
+
+@pytest.mark.filterwarnings("ignore::sklearn.exceptions.ConvergenceWarning")
+def test_a_black_box_names_nothing(folder, tmp_path):
+    gap = solved(gaussian_process, folder, tmp_path)
+    assert (gap["verdict"], gap["effects"]) == ("unnamed", [])
+
+
+@pytest.mark.parametrize(("name", "needed"), [("sindy", "pysindy"), ("narx", "sysidentpy")])
+def test_optional_rivals_answer_where_they_are_installed(folder, tmp_path, name, needed):
+    pytest.importorskip(needed)
+    module = __import__(f"hystbench.entrants.{RIVALS[name]}", fromlist=["solve"])
+    assert solved(module, folder, tmp_path)["verdict"] == "unnamed"
+
+
+def test_sparse_dynamics_are_integrated():
+    # dr/dt = -r + 2 u, from rest, u = sin t: a textbook's first-order lag
+    dt = 1e-3
+    time = np.arange(3000) * dt
+    powers = np.array([[0, 0], [1, 0], [0, 1], [2, 0]])
+    weights = np.array([0.0, -1.0, 2.0, -0.1])
+    found = simulate(weights, powers, np.sin(time)[:, None], dt)
+    known = solve_ivp(
+        lambda t, r: -r + 2 * np.sin(t) - 0.1 * r**2,
+        (0, time[-1]),
+        [0.0],
+        t_eval=time,
+        rtol=1e-9,
+        atol=1e-9,
+    ).y[0]
+    # the drive is held over a step
+    np.testing.assert_allclose(found, known, atol=2 * dt)
+
+
+def test_dynamics_that_run_away_end_at_the_limit():
+    weights, powers = np.array([1.0, 5.0]), np.array([[0, 0], [2, 0]])
+    found = simulate(weights, powers, np.zeros((4000, 1)), 1e-2)
+    assert np.isnan(found[-1])
+    channel = Channel("y", "um")
+    record = Record("r", 1e-2, found * 0, np.ones(4000), channel, channel, "twin", "fit")
+    assert np.abs(kept(found, record)).max() == 10.0
+
+
+def test_every_effect_of_the_vocabulary_can_be_fitted(case):
+    records = [r for r in case.records if r.use == "fit"][:2]
+    task = Task(case.model, records)
+    base = float(np.mean((task.base - task.measured) ** 2))
+    found = {name: fit(task, name) for name in effects()}
+    assert len(found) == 22
+    assert [name for name, item in found.items() if item is None] == ["hysteresis"]
+    # a fit of squares with the base inside its bounds, or at them, is no worse
+    for name in ("thermal-drift", "creep", "calibration-error", "drift"):
+        assert found[name].mean_square <= base
+
+
+@pytest.mark.parametrize("effect", ["resonance", "sensor-lag", "friction", "stiffness-hardening"])
+def test_a_plain_fit_finds_what_is_hidden(effect):
+    case = make_case(CaseSpec(150_002, "single", (effect,), "gpi", 20.0))
+    records = [r for r in case.records if r.use == "fit"]
+    found = fit(Task(case.model, records), effect)
+    # the noise, and at most a tenth of the effect's power
+    gap = case.truth["effects"][0]["rms_um"] ** 2
+    assert found.mean_square <= case.truth["noise_rms_um"] ** 2 + 0.1 * gap
+
+
+def test_a_set_of_the_judge_holds_what_mimics_and_not_what_does_not(case):
+    records = [r for r in case.records if r.use == "fit"]
+    noise = case.truth["noise_rms_um"]
+    names = ("thermal-drift", "backlash", "no-effect-at-all")
+    given = (case.model, records, names, "thermal-drift", noise**2, noise)
+    assert within_noise(*given) == ("thermal-drift",)
+    # where anything is within the noise, all that can be fitted is
+    loud = (*given[:-1], 1e3)
+    assert within_noise(*loud) == ("thermal-drift", "backlash")
+
+
+def test_no_rival_knows_the_plant_the_truth_or_the_solver():
+    graph = grimp.build_graph("hystbench", cache_dir=None)
+    for command in ("rival", "blind_solve"):
+        known = graph.find_upstream_modules(f"hystbench.commands.{command}")
+        assert not [m for m in known if m.startswith(("hystbench.challenge", "hystbench.gap"))]
+    for module in graph.find_descendants("hystbench.entrants"):
+        known = graph.find_upstream_modules(module)
+        assert not [m for m in known if m.startswith(("hystbench.challenge", "hystbench.gap"))]
