@@ -74,10 +74,11 @@ def test_a_seed_is_another_draw_of_noise_and_of_the_random_sum(settings, twin_fi
         for s in (0, 1)
     )
     sine, random = "sine-100hz", "multisine-random-0-100hz"
-    np.testing.assert_array_equal(first[sine].u, other[sine].u)
-    difference = first[sine].y - other[sine].y
-    # two draws of 0.02 um differ by sqrt(2) times as much
-    assert difference.std() == pytest.approx(0.02 * 2**0.5, rel=0.1)
+    # two draws of a noise differ by sqrt(2) times as much
+    rms = {"u": job["measure"]["input_noise"], "y": 0.02}
+    for name, each in rms.items():
+        difference = getattr(first[sine], name) - getattr(other[sine], name)
+        assert difference.std() == pytest.approx(each * 2**0.5, rel=0.1)
     assert np.abs(first[random].u - other[random].u).max() > 0.1
 
 
