@@ -131,6 +131,36 @@ def test_a_neutral_variant_changes_nothing_where_all_is_zero(chain, variant):
         assert max(moved) > 0
 
 
+# What an effect is where there is none of it. Left out: rate-dependent-hysteresis. It
+# is NOT the chain at a coefficient of zero: with a band-limited input it computes the
+# hysteresis on a finer grid, and what that gains is named where nothing is hidden.
+NOTHING = {
+    "input-delay": {"delay_s": 0.0},
+    "drive-lag": {"time_constant_s": 1e-7},
+    "eddy-diffusion": {"time_constant_s": 1e-7},
+    "drive-saturation": {"limit": 1e6},
+    "slew-limit": {"rate": 1e8},
+    "dead-zone": {"half_width": 0.0},
+    "saturation": {"level": 1e8, "sharpness": 2.0},
+    "backlash": {"half_width": 0.0},
+    "sensor-lag": {"time_constant_s": 1e-7},
+}
+
+
+@pytest.mark.parametrize(
+    ("chain", "variant"), [x for x in ALL if x.values[1].effect in NOTHING]
+)
+def test_nothing_of_an_effect_is_the_chain(chain, variant):
+    """Otherwise how it is computed would be taken for what it is."""
+    scene = Scene(chains()[chain], records())
+    there = {key: NOTHING[variant.effect][key] for key in variant.grids}
+    outputs = scene.tail(variant.start, variant.build(there))
+    size = scene.largest(len(scene.chain))
+    for one, other in zip(outputs, scene.output, strict=True):
+        # A lag starts from rest, beside an offset with a jump at the first sample.
+        assert np.abs(one - other)[1:].max() < 1e-3 * size
+
+
 def state_with_free(name):
     """A state in which every number of the first and last block is free already."""
     chain = chains()[name]

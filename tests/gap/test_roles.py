@@ -1,0 +1,150 @@
+"""Hold-out records decide nothing, and the generator is out of sight."""
+
+import ast
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.challenge.case import make_case
+from hystbench.challenge.spec import CaseSpec
+from hystbench.challenge.writing import write_case
+from hystbench.gap.evidence import load_evidence
+from hystbench.gap.run import close_gap
+from hystbench.model import load_model
+
+READ_LAST = ("gap", "records", "ladder", "black_box")
+"""Keys of gap.json that the hold-out records fill."""
+
+
+def short(item):
+    """Keep a quarter of a record, to save time."""
+    end = len(item) // 4
+    return replace(item, u=item.u[:end].copy(), y=item.y[:end].copy())
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A case of records of several rates, as files."""
+    there = tmp_path_factory.mktemp("roles")
+    case = make_case(CaseSpec(1, "single", ("creep",), "gpi", 20.0))
+    case = replace(case, records=tuple(map(short, case.records)), period_samples={})
+    write_case(case, there / "case", there / "truth.json")
+    return there
+
+
+def closed(folder, evidence, out):
+    base = load_model(folder / "case" / "model.yaml")
+    close_gap(evidence, base, folder / out, report=False)
+    content = json.loads((folder / out / "gap.json").read_text())
+    files = {
+        str(item.relative_to(folder / out))
+        for item in (folder / out).rglob("*")
+        if item.is_file()
+    }
+    return content, (folder / out / "model.yaml").read_bytes(), files
+
+
+@pytest.fixture(scope="module")
+def told(folder):
+    return closed(folder, load_evidence(folder / "case" / "dataset"), "told")
+
+
+@pytest.fixture(scope="module")
+def spoilt(folder):
+    """The same, the outputs of the hold-out files replaced by noise."""
+    rng = np.random.default_rng(0)
+    evidence = load_evidence(folder / "case" / "dataset")
+    for record in evidence.hold_out:
+        file = folder / "case" / "dataset" / f"{record.name}.csv"
+        header, *rows = file.read_text().splitlines()
+        noise = 30 * rng.standard_normal(len(rows))
+        rows = [
+            f"{row.rpartition(',')[0]},{value:.3f}"
+            for row, value in zip(rows, noise, strict=True)
+        ]
+        file.write_text("\n".join([header, *rows]) + "\n")
+    return closed(folder, load_evidence(folder / "case" / "dataset"), "spoilt")
+
+
+def test_noise_for_hold_out_outputs_changes_nothing_that_is_decided(told, spoilt):
+    (content, model, _), (other, other_model, _) = told, spoilt
+    decided = {key: value for key, value in content.items() if key not in READ_LAST}
+    assert decided == {k: v for k, v in other.items() if k not in READ_LAST}
+    assert {"verdict", "effects", "where", "ranking", "next_experiment"} <= set(decided)
+    assert content["verdict"] == "named"
+    assert content["effects"][0]["parameters"]
+    assert model == other_model
+    # What the hold-out records do show is another thing: they were read.
+    assert content["gap"]["after"] < content["gap"]["before"]
+    assert other["gap"]["before"] > 10 * content["gap"]["before"]
+
+
+def test_records_of_several_rates_are_used_together(folder, told):
+    evidence = load_evidence(folder / "case" / "dataset")
+    assert len({record.dt for record in (*evidence.fit, *evidence.hold_out)}) > 2
+    assert told[0]["effects"][0]["name"] == "creep"
+
+
+def test_files_are_whole_and_the_hold_out_tables_say_before_and_after(folder, told):
+    names = {record.name for record in load_evidence(folder / "case/dataset").hold_out}
+    tables = {f"holdout/{name}.csv" for name in names}
+    assert told[2] == {"gap.json", "model.yaml", "curves.json", *tables}
+    for name in tables:
+        header = (folder / "told" / name).read_text().splitlines()[0]
+        assert header == "time_s,measured,before,after"
+    augmented = load_model(folder / "told" / "model.yaml")
+    table = np.loadtxt(folder / "told/holdout/chirp.csv", delimiter=",", skiprows=1)
+    given = np.loadtxt(
+        folder / "case/dataset/chirp.csv", delimiter=",", skiprows=1, usecols=1
+    )
+    after = augmented.with_hold("band-limited").simulate(given, table[1, 0])
+    assert table[:, 3] == pytest.approx(after, abs=1e-6)
+
+
+def modules_of(folder):
+    for file in folder.rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                yield from (item.name for item in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                yield node.module or ""
+                yield from (f"{node.module}.{item.name}" for item in node.names)
+
+
+def test_no_module_of_the_gap_imports_the_generator_at_any_depth(root):
+    found = set(modules_of(root / "src" / "hystbench" / "gap"))
+    assert "hystbench.gap.scene" in found
+    assert not [item for item in found if item.startswith("hystbench.challenge")]
+
+
+def test_the_contract_keeps_the_gap_from_the_generator(root):
+    """tests/challenge/test_writing.py breaks it and sees it fail."""
+    tool = tomllib.loads((root / "pyproject.toml").read_text())["tool"]["importlinter"]
+    (wall,) = [
+        item
+        for item in tool["contracts"]
+        if "hystbench.challenge" in item.get("protected_modules", ())
+    ]
+    assert wall["type"] == "protected"
+    assert wall["allowed_importers"] == ["hystbench.commands"]
+
+
+def test_a_run_of_the_gap_does_not_load_the_generator(root):
+    code = (
+        "import sys, hystbench.gap.run, hystbench.gap.effects as e; e.effects();"
+        "print([m for m in sys.modules if m.startswith('hystbench.challenge')])"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(root / "src")},
+    )
+    assert found.stdout.strip() == "[]"
