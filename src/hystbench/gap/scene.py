@@ -93,10 +93,14 @@ class Scene:
 
     @cached_property
     def behind_hysteresis(self) -> int:
-        """Place behind the hysteresis and what wraps it; 0 without a hysteresis."""
+        """Place behind the hysteresis and what wraps it; 0 without a hysteresis.
+
+        Behind what cannot be run again, at least: nothing can be put before that.
+        """
+        stored = [k + 1 for k, block in enumerate(self.chain) if not block.reruns]
         if self.hysteresis is None:
-            return 0
-        k = self.hysteresis + 1
+            return max(stored, default=0)
+        k = max([self.hysteresis + 1, *stored])
         while k < len(self.chain) and isinstance(self.chain[k], WrappingBlock):
             k += 1
         return k

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from hystbench.gap.effects.base import Declined, Effect
+from hystbench.blocks.simulated_column import NEEDS_RERUN
+from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
@@ -23,11 +24,13 @@ class Work:
     ) -> tuple[list[Tried], str]:
         """Score every variant of an effect over its grid; or say why it declines."""
         try:
-            attempts = [
-                Attempt(state, item, score) for item in effect.variants(state.scene)
-            ]
+            variants = list(effect.variants(state.scene))
         except Declined as reason:
             return [], str(reason)
+        runnable = [item for item in variants if not _needs_rerun(state, item)]
+        if variants and not runnable:
+            return [], NEEDS_RERUN
+        attempts = [Attempt(state, item, score) for item in runnable]
         return [(attempt, coarse(attempt)) for attempt in attempts], ""
 
     def fine(self, attempt: Attempt, trial: Trial) -> Trial:
@@ -47,6 +50,12 @@ class Work:
     def finished(self, state: State, score: Score) -> tuple[State, float]:
         """Simulate a model exactly and refit it to the end."""
         return finished(state, score)
+
+
+def _needs_rerun(state: State, variant: Variant) -> bool:
+    """Tell whether a variant changes what enters a block whose output is stored."""
+    behind = state.chain[variant.start :]
+    return variant.beside is None and not all(block.reruns for block in behind)
 
 
 IN_PROCESS = Work()

@@ -38,7 +38,9 @@ def test_wilsons_interval_is_where_the_score_test_turns(cases, data):
         if 1e-9 < end < 1 - 1e-9:
             # |share - p| = z sqrt(p (1 - p) / n) at both ends
             apart = abs(hits / cases - end)
-            assert apart == pytest.approx(z * (end * (1 - end) / cases) ** 0.5, rel=1e-6)
+            assert apart == pytest.approx(
+                z * (end * (1 - end) / cases) ** 0.5, rel=1e-6
+            )
 
 
 def test_no_cases_no_share():
@@ -112,7 +114,9 @@ def test_what_was_asked_beside_what_was_reached():
     assert "transfer, top1, 20 dB" not in told
     # 3 of 4 at home: at least 70 % elsewhere
     away = [row(truth(effect()), RESONANCE)] * 7 + [row(truth(effect()), CREEP)] * 3
-    transfer = {item.figure: item for item in reach(rows, away)}["transfer, top1, 20 dB"]
+    transfer = {item.figure: item for item in reach(rows, away)}[
+        "transfer, top1, 20 dB"
+    ]
     assert (transfer.reached, transfer.asked, transfer.met) == (0.7, ">= 0.700", True)
 
 
