@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -168,10 +168,11 @@ def _finer(samples: bytes) -> FloatArray:
 def _plain(step: Block | Wrapped) -> Block | Wrapped:
     """Let what takes shorter steps by itself take those that it is given."""
     if isinstance(step, Wrapped):
-        by = step.by
-        if isinstance(by, HeldBlock):
-            by = replace(by, hold="linear")
-        return Wrapped(cast(Hysteresis, _plain(cast(Block, step.inner))), by)
+        inner = cast(Hysteresis, _plain(cast(Block, step.inner)))
+        if "hold" in step.by.parameters():
+            straight: dict[str, Any] = {"hold": "linear"}
+            return Wrapped(inner, replace(step.by, **straight))
+        return Wrapped(inner, step.by)
     return step
 
 
