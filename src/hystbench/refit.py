@@ -285,7 +285,9 @@ def _searched(task: Task, effect: str) -> dict[str, Searched]:
         },
         "resonance": mode,
         "stiffness-hardening": {
-            "coefficient": Searched(-1.0 / size**2, 3.0 / size**2, (1e-3 / size**2, 0.1 / size**2))
+            "coefficient": Searched(
+                -1.0 / size**2, 3.0 / size**2, (1e-3 / size**2, 0.1 / size**2)
+            )
         },
         "friction": {
             "coulomb": Searched(-0.2 * size, 0.2 * size, (0.01 * size,)),
@@ -363,8 +365,7 @@ def _search(
 
     def values(x: FloatArray) -> dict[str, float]:
         return {
-            name: item.outer(v)
-            for name, item, v in zip(names, items, x, strict=True)
+            name: item.outer(v) for name, item, v in zip(names, items, x, strict=True)
         }
 
     def residual(x: FloatArray) -> FloatArray:
@@ -479,8 +480,9 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
         float(np.mean((missing - design @ weights) ** 2)),
         design.shape[1],
         {},
-        lambda record: task.model.simulate(record.u, record.dt)
-        + columns(record) @ weights,
+        lambda record: (
+            task.model.simulate(record.u, record.dt) + columns(record) @ weights
+        ),
     )
 
 

@@ -59,8 +59,12 @@ def test_a_black_box_names_nothing(folder, tmp_path):
     assert (gap["verdict"], gap["effects"]) == ("unnamed", [])
 
 
-@pytest.mark.parametrize(("name", "needed"), [("sindy", "pysindy"), ("narx", "sysidentpy")])
-def test_optional_rivals_answer_where_they_are_installed(folder, tmp_path, name, needed):
+@pytest.mark.parametrize(
+    ("name", "needed"), [("sindy", "pysindy"), ("narx", "sysidentpy")]
+)
+def test_optional_rivals_answer_where_they_are_installed(
+    folder, tmp_path, name, needed
+):
     pytest.importorskip(needed)
     module = __import__(f"hystbench.entrants.{RIVALS[name]}", fromlist=["solve"])
     assert solved(module, folder, tmp_path)["verdict"] == "unnamed"
@@ -90,7 +94,9 @@ def test_dynamics_that_run_away_end_at_the_limit():
     found = simulate(weights, powers, np.zeros((4000, 1)), 1e-2)
     assert np.isnan(found[-1])
     channel = Channel("y", "um")
-    record = Record("r", 1e-2, found * 0, np.ones(4000), channel, channel, "twin", "fit")
+    record = Record(
+        "r", 1e-2, found * 0, np.ones(4000), channel, channel, "twin", "fit"
+    )
     assert np.abs(kept(found, record)).max() == 10.0
 
 
@@ -106,7 +112,9 @@ def test_every_effect_of_the_vocabulary_can_be_fitted(case):
         assert found[name].mean_square <= base
 
 
-@pytest.mark.parametrize("effect", ["resonance", "sensor-lag", "friction", "stiffness-hardening"])
+@pytest.mark.parametrize(
+    "effect", ["resonance", "sensor-lag", "friction", "stiffness-hardening"]
+)
 def test_a_plain_fit_finds_what_is_hidden(effect):
     case = make_case(CaseSpec(150_002, "single", (effect,), "gpi", 20.0))
     records = [r for r in case.records if r.use == "fit"]
@@ -131,7 +139,11 @@ def test_no_rival_knows_the_plant_the_truth_or_the_solver():
     graph = grimp.build_graph("hystbench", cache_dir=None)
     for command in ("rival", "blind_solve"):
         known = graph.find_upstream_modules(f"hystbench.commands.{command}")
-        assert not [m for m in known if m.startswith(("hystbench.challenge", "hystbench.gap"))]
+        assert not [
+            m for m in known if m.startswith(("hystbench.challenge", "hystbench.gap"))
+        ]
     for module in graph.find_descendants("hystbench.entrants"):
         known = graph.find_upstream_modules(module)
-        assert not [m for m in known if m.startswith(("hystbench.challenge", "hystbench.gap"))]
+        assert not [
+            m for m in known if m.startswith(("hystbench.challenge", "hystbench.gap"))
+        ]

@@ -48,4 +48,3 @@ def criterion(found: Fitted, task: Task, noise: float) -> float:
     return samples * found.mean_square / noise**2 + found.freedom * float(
         np.log(samples)
     )
-

@@ -116,7 +116,7 @@ def _become(command: Sequence[str], folder: Path, log: Path) -> None:
             status = _call(command)
         else:
             os.execvp(command[0], list(command))  # noqa: S606  (no shell is wanted)
-    except BaseException as error:  # noqa: BLE001  (the process ends here in any case)
+    except BaseException as error:
         os.write(2, f"{type(error).__name__}: {error}\n".encode())
         status = status or 1
     finally:

@@ -42,6 +42,8 @@ def draw(*, table: Path) -> Figure:
     axes.set_ylim(-2.0, 102.0)
     style.letter([axes, below])
     line = Line2D([], [], color=style.GREY, linewidth=2.6, label="as stated")
-    reached = Line2D([], [], color=style.BLUE, marker="o", label="reached, 95 % interval")
+    reached = Line2D(
+        [], [], color=style.BLUE, marker="o", label="reached, 95 % interval"
+    )
     style.legend_above(figure, [line, reached])
     return figure

@@ -169,7 +169,10 @@ def test_the_first_view_must_be_of_the_right_kind():
     assert where_hit(view(), [effect()])
     assert not where_hit(view(low=0.0, high=65.0), [effect()])
     assert not where_hit(None, [effect()])
-    row = judged(truth(effect()), gap(named("resonance"), views=[view("record", "a", "b", ""), view()]))
+    row = judged(
+        truth(effect()),
+        gap(named("resonance"), views=[view("record", "a", "b", ""), view()]),
+    )
     assert row.where_hit is False
 
 
@@ -185,7 +188,9 @@ def test_parameters_and_their_intervals():
         "damping_ratio": value(0.026, 0.002),
         "participation": value(0.1, None),
     }
-    row = judged(truth(effect(parameters=true)), gap(named("resonance", parameters=said)))
+    row = judged(
+        truth(effect(parameters=true)), gap(named("resonance", parameters=said))
+    )
     assert (row.parameters, row.intervals, row.covered) == (3, 2, 1)
     # relative errors 0.015, 0.3 and 0
     assert row.parameter_error == pytest.approx(0.015)
@@ -206,7 +211,9 @@ def test_another_form_has_no_true_parameters():
     about = truth(effect("saturation", "algebraic", {"level": 40.0, "sharpness": 2.0}))
     said = {"level": value(40.0, 1.0, "um")}
     assert judged(about, gap(named("saturation", parameters=said))).parameters == 0
-    rod = truth(effect("eddy-diffusion", "rod", {"time_constant_s": 1e-3, "geometry": "rod"}))
+    rod = truth(
+        effect("eddy-diffusion", "rod", {"time_constant_s": 1e-3, "geometry": "rod"})
+    )
     for geometry, compared in (("slab", 0), ("rod", 1)):
         said = {
             "time_constant_s": value(1e-3, 1e-4, "s"),
@@ -219,8 +226,10 @@ def test_another_form_has_no_true_parameters():
 def test_rows_come_back_as_they_were(tmp_path):
     rows = [
         judged(truth(effect()), RIGHT),
-        judged(truth(kind="none"), None, status="exit status 1: a, \"b\""),
-        judged(truth(effect("dropouts", "only"), kind="unlisted"), gap(verdict="unnamed")),
+        judged(truth(kind="none"), None, status='exit status 1: a, "b"'),
+        judged(
+            truth(effect("dropouts", "only"), kind="unlisted"), gap(verdict="unnamed")
+        ),
     ]
     write_rows(tmp_path / "rows.csv", rows)
     assert read_rows([tmp_path / "rows.csv"]) == rows

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.challenge.contest import tables
+from hystbench.challenge.contest import experiments, tables
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import calibration_error, reach, summary
 from hystbench.challenge.contest.wilson import wilson
@@ -38,7 +38,9 @@ def test_wilsons_interval_is_where_the_score_test_turns(cases, data):
         if 1e-9 < end < 1 - 1e-9:
             # |share - p| = z sqrt(p (1 - p) / n) at both ends
             apart = abs(hits / cases - end)
-            assert apart == pytest.approx(z * (end * (1 - end) / cases) ** 0.5, rel=1e-6)
+            assert apart == pytest.approx(
+                z * (end * (1 - end) / cases) ** 0.5, rel=1e-6
+            )
 
 
 def test_no_cases_no_share():
@@ -112,7 +114,9 @@ def test_what_was_asked_beside_what_was_reached():
     assert "transfer, top1, 20 dB" not in told
     # 3 of 4 at home: at least 70 % elsewhere
     away = [row(truth(effect()), RESONANCE)] * 7 + [row(truth(effect()), CREEP)] * 3
-    transfer = {item.figure: item for item in reach(rows, away)}["transfer, top1, 20 dB"]
+    transfer = {item.figure: item for item in reach(rows, away)}[
+        "transfer, top1, 20 dB"
+    ]
     assert (transfer.reached, transfer.asked, transfer.met) == (0.7, ">= 0.700", True)
 
 
@@ -126,6 +130,26 @@ def test_the_confusion_counts_each_case_once():
     assert sum(item[-1] for item in counts) == 7
 
 
+def test_what_was_confused_and_what_would_tell_it_apart():
+    found = tables.confused(a_contest())
+    assert found == [("resonance", "creep", 1, 4, experiments.UNKNOWN)]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "told"),
+    [
+        ("drive-lag", "sensor-lag", experiments.RATES),
+        ("eddy-diffusion", "input-delay", experiments.BAND),
+        ("drift", "creep", experiments.REPEAT),
+        ("creep", "thermal-drift", experiments.HOLD),
+        ("dropouts", "creep", experiments.UNKNOWN),
+    ],
+)
+def test_experiments_go_both_ways(one, other, told):
+    assert experiments.experiment(one, other) == told
+    assert experiments.experiment(other, one) == told
+
+
 def test_power_by_ratio():
     weak = truth(effect(), ratio_db=10.0)
     rows = [*a_contest(), row(weak, CREEP), row(weak, RESONANCE)]
@@ -135,7 +159,7 @@ def test_power_by_ratio():
 
 
 def test_the_score_as_files(tmp_path):
-    rows = a_contest() + [dataclasses.replace(a_contest()[0], solver="other")]
+    rows = [*a_contest(), dataclasses.replace(a_contest()[0], solver="other")]
     write_score(rows, [], "s", {"set": "small"}, {"absent": "needs x"}, tmp_path)
     told = json.loads((tmp_path / "summary.json").read_text())
     asked = "cases where_hit top1 in_set exact_set false_alarm pairs_both triples_all"

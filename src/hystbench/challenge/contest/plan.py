@@ -21,7 +21,12 @@ FIRST_SEED = {
     "transfer": 2_000_000,
 }
 #: Seeds set aside for a stratum, so that a larger contest holds the smaller one.
-PER_STRATUM = {"development": 5_000, "small": 100, "published": 5_000, "transfer": 5_000}
+PER_STRATUM = {
+    "development": 5_000,
+    "small": 100,
+    "published": 5_000,
+    "transfer": 5_000,
+}
 
 
 @dataclass(frozen=True)
@@ -183,5 +188,3 @@ _STRIDE = 31
 
 def _hash(name: str, seed: int) -> str:
     return "case-" + hashlib.sha256(f"{name} {seed}".encode()).hexdigest()[:10]
-
-

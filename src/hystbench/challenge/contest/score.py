@@ -141,7 +141,9 @@ def judge(
     effects = [e for e in gap["effects"] if not (tolerated and e["name"] == SHAPE)]
     named = [effect["name"] for effect in effects]
     single, one = kind == "single", effects[0] if effects else None
-    members = tuple(dict.fromkeys([one["name"], *one["cannot_be_told_from"]])) if one else ()
+    members = (
+        tuple(dict.fromkeys([one["name"], *one["cannot_be_told_from"]])) if one else ()
+    )
     if tolerated:
         members = tuple(name for name in members if name != SHAPE)
     confirmed = confirm(members) if single and len(members) > 1 else members
@@ -175,7 +177,9 @@ def judge(
         set_size_raw=len(members) if single and one else None,
         exact=right,
         exact_strict=right_strict,
-        all_named=set(hidden) <= set(named) if set(hidden) <= set(VOCABULARY) and hidden else None,
+        all_named=set(hidden) <= set(named)
+        if set(hidden) <= set(VOCABULARY) and hidden
+        else None,
         false_alarm=not right if kind == "none" else None,
         false_alarm_strict=not right_strict if kind == "none" else None,
         unnamed=gap["verdict"] == "unnamed" if kind == "unlisted" else None,
