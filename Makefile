@@ -51,7 +51,7 @@ test: lint
 	$(BIN)/pytest -n 2
 
 docs: $(READY)
-	$(BIN)/snakemake --cores all all pressure structures held_out
+	$(BIN)/snakemake --cores all all pressure structures held_out gap blind
 	test -f results/benchmarks/imports.csv || $(MAKE) bench
 	$(BIN)/hystbench docs
 

@@ -25,11 +25,8 @@ number = int(hashlib.sha256(model.read_bytes()).hexdigest(), 16)
 ANSWER = """
 out.mkdir()
 gap = {
-    "dataset": "d", "model": "m", "unit": "um", "verdict": "named", "reason": reason,
-    "effects": [{
-        "name": "creep", "place": "mechanics", "parameters": {}, "confidence": 0.9,
-        "cannot_be_told_from": [],
-    }],
+    "dataset": "d", "model": "m", "unit": "um", "verdict": "unnamed", "reason": reason,
+    "effects": [],
     "where": [], "ranking": [], "next_experiment": None,
     "gap": {
         "before": 1.0, "after": 0.5, "noise_floor": 0.1, "floor_method": "repeats",
@@ -79,7 +76,7 @@ def contest(folder, solvers, solver):
     config["blind"] |= {
         "set": "small",
         "transfer": False,
-        "chunk": 6,
+        "chunk": 12,
         "solver": solver,
         "solvers": {**solvers, "absent": absent},
     }
@@ -112,7 +109,7 @@ def table(workflow, name):
 
 def test_all_jobs_run_and_leave_their_files(held):
     workflow, done = held
-    assert (done["blind_make"], done["blind_solve"], done["blind_judge"]) == (2, 4, 2)
+    assert (done["blind_make"], done["blind_solve"], done["blind_judge"]) == (1, 2, 1)
     blind = workflow.folder / "results" / "blind"
     summary = json.loads((blind / "summary.json").read_text())
     assert (summary["cases"], summary["lost"]) == (12, 0)
@@ -162,11 +159,6 @@ def test_a_solver_that_looks_for_the_truth_finds_none(held):
 
 def test_a_solver_job_has_the_data_as_its_only_input(held):
     workflow, _ = held
-    result = workflow.snakemake("blind", "--forceall", "--dry-run", "--verbose")
-    printed = result.stdout + result.stderr
-    rules = (workflow.folder / ".snakemake").parent
-    assert rules.exists()
-    assert result.returncode == 0, printed
     detailed = workflow.snakemake(
         "results/blind/answers/small/spy/0000.json", "--forceall", "--detailed-summary"
     )
@@ -203,7 +195,6 @@ def test_the_gaps_own_solver_in_the_contest(tmp_path):
     workflow.folder.mkdir()
     own = small_config()["blind"]["solvers"]["gap"]
     config = contest(tmp_path, {"gap": own}, "gap")
-    config["blind"]["chunk"] = 12
     workflow.configure(config)
     workflow.environment["OPENBLAS_NUM_THREADS"] = "1"
     workflow.run("blind")

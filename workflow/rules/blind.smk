@@ -165,6 +165,7 @@ rule blind_summary:
                 "cases",
                 "transfer-cases",
                 "confusion",
+                "confused",
                 "effects",
                 "power",
                 "reliability",

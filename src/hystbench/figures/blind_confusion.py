@@ -23,7 +23,8 @@ _WRONG = LinearSegmentedColormap.from_list("wrong", ["white", style.VERMILION])
 def draw(*, table: Path) -> Figure:
     """Draw the confusion matrix: a row a hidden effect, a column a first answer.
 
-    Colour goes with the root of the share of the row's cases; in each cell stands how many there are.
+    Colour goes with the root of the share of the row's cases; in each cell stands how
+    many there are.
 
     Parameters
     ----------

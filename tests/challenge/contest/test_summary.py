@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.challenge.contest import tables
+from hystbench.challenge.contest import experiments, tables
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import calibration_error, reach, summary
 from hystbench.challenge.contest.wilson import wilson
@@ -130,6 +130,26 @@ def test_the_confusion_counts_each_case_once():
     assert sum(item[-1] for item in counts) == 7
 
 
+def test_what_was_confused_and_what_would_tell_it_apart():
+    found = tables.confused(a_contest())
+    assert found == [("resonance", "creep", 1, 4, experiments.UNKNOWN)]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "told"),
+    [
+        ("drive-lag", "sensor-lag", experiments.RATES),
+        ("eddy-diffusion", "input-delay", experiments.BAND),
+        ("drift", "creep", experiments.REPEAT),
+        ("creep", "thermal-drift", experiments.HOLD),
+        ("dropouts", "creep", experiments.UNKNOWN),
+    ],
+)
+def test_experiments_go_both_ways(one, other, told):
+    assert experiments.experiment(one, other) == told
+    assert experiments.experiment(other, one) == told
+
+
 def test_power_by_ratio():
     weak = truth(effect(), ratio_db=10.0)
     rows = [*a_contest(), row(weak, CREEP), row(weak, RESONANCE)]
@@ -139,7 +159,7 @@ def test_power_by_ratio():
 
 
 def test_the_score_as_files(tmp_path):
-    rows = a_contest() + [dataclasses.replace(a_contest()[0], solver="other")]
+    rows = [*a_contest(), dataclasses.replace(a_contest()[0], solver="other")]
     write_score(rows, [], "s", {"set": "small"}, {"absent": "needs x"}, tmp_path)
     told = json.loads((tmp_path / "summary.json").read_text())
     asked = "cases where_hit top1 in_set exact_set false_alarm pairs_both triples_all"

@@ -48,7 +48,7 @@ def share_held(view: Mapping[str, Any], place: Mapping[str, Any]) -> float:
         The truth's entry of the same view.
     """
     ends = view["from"], view["to"]
-    if isinstance(place["shares"] if "shares" in place else None, Mapping):
+    if isinstance(place.get("shares", None), Mapping):
         names = list(place["shares"])
         if any(end not in names for end in ends):
             return 0.0

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
+from hystbench.challenge.contest.experiments import experiment
 from hystbench.challenge.contest.score import SHAPE, Row
 from hystbench.challenge.contest.wilson import Share, share, wilson
 
 #: Edges of the bins of stated confidence.
 CONFIDENCES = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)
+#: First answers that are no effect.
+NO_EFFECT = ("no-gap", "unnamed", "parameters", "lost")
 
 
 def confusion(rows: Iterable[Row]) -> list[tuple[str, str, str, str, int]]:
@@ -42,6 +46,26 @@ def confusion(rows: Iterable[Row]) -> list[tuple[str, str, str, str, int]]:
             counts.items(), key=lambda item: (order.index(item[0][0]), item[0])
         )
     ]
+
+
+def confused(rows: Sequence[Row]) -> list[tuple[str, str, int, int, str]]:
+    """List single effects that were taken for another, the most frequent first.
+
+    Returns
+    -------
+    list of (hidden, answered, cases, of, experiment)
+        ``of`` is how often the effect was hidden.
+    """
+    counts = confusion(rows)
+    hidden: Counter[str] = Counter()
+    for kind, name, _, _, cases in counts:
+        hidden[name] += cases if kind == "single" else 0
+    wrong = [
+        (name, answered, cases, hidden[name], experiment(name, answered))
+        for kind, name, answered, right, cases in counts
+        if kind == "single" and right == "no" and answered not in NO_EFFECT
+    ]
+    return sorted(wrong, key=lambda item: -item[2])
 
 
 def _first(row: Row) -> str:
@@ -120,7 +144,7 @@ def reliability(rows: Iterable[Row]) -> list[tuple[Any, ...]]:
         ``stated`` is the mean.
     """
     pairs = stated(rows)
-    edges = list(zip(CONFIDENCES[:-1], CONFIDENCES[1:], strict=True))
+    edges = list(itertools.pairwise(CONFIDENCES))
     out: list[tuple[Any, ...]] = []
     for low, high in edges:
         inside = [

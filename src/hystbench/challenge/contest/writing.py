@@ -57,8 +57,8 @@ def write_score(
         Solvers that did not enter, and why.
     out : Path
         Folder: ``summary.json``, ``reach.csv``, ``cases.csv``, ``transfer-cases.csv``,
-        ``confusion.csv``, ``effects.csv``, ``power.csv``, ``reliability.csv`` and
-        ``rivals.csv``.
+        ``confusion.csv``, ``confused.csv``, ``effects.csv``, ``power.csv``,
+        ``reliability.csv`` and ``rivals.csv``.
     """
     own = [row for row in rows if row.solver == solver]
     asked = reach(own, transfer)
@@ -67,6 +67,11 @@ def write_score(
     write_rows(out / "transfer-cases.csv", transfer)
     counts = tables.confusion(own)
     write_csv(out / "confusion.csv", _CONFUSION, counts)
+    write_csv(
+        out / "confused.csv",
+        ("hidden", "answered", "cases", "of", "experiment"),
+        tables.confused(own),
+    )
     write_csv(
         out / "effects.csv",
         ("effect", "family", "figure", *_SHARE),
