@@ -69,7 +69,10 @@ class Restorer:
             self.records,
             self.sample,
             tuple(
-                Free(**item | {"low": limit(item["low"], -1), "high": limit(item["high"])})
+                Free(
+                    **item
+                    | {"low": limit(item["low"], -1), "high": limit(item["high"])}
+                )
                 for item in content["free"]
             ),
             tuple(_added(item) for item in content["added"]),

@@ -16,7 +16,6 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect, Variant
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import Say, _silent
 from hystbench.gap.fit import Attempt, Trial, score_of
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import (
@@ -27,7 +26,15 @@ from hystbench.gap.kept import (
     progress_mapping,
     state_mapping,
 )
-from hystbench.gap.name import NEAR, Named, Progress, advance, make_score, settled
+from hystbench.gap.name import (
+    NEAR,
+    Named,
+    Progress,
+    Say,
+    advance,
+    make_score,
+    settled,
+)
 from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
@@ -113,7 +120,10 @@ def try_one(evidence: Evidence, before: Mapped, name: str) -> Mapped:
 
 
 def choose(
-    evidence: Evidence, before: Mapped, tried: Mapping[str, Mapped], say: Say = _silent
+    evidence: Evidence,
+    before: Mapped,
+    tried: Mapping[str, Mapped],
+    say: Say = lambda line: None,
 ) -> Mapped:
     """Rank the effects of a round and add the one that pays, if any does.
 
@@ -141,7 +151,7 @@ def choose(
 
 
 def named_by(
-    evidence: Evidence, content: Mapped, start: State, say: Say = _silent
+    evidence: Evidence, content: Mapped, start: State, say: Say = lambda line: None
 ) -> tuple[Named, Floor]:
     """Give what the rounds named, and the floor that they were judged by.
 

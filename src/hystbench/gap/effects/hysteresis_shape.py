@@ -31,7 +31,7 @@ class HysteresisShape(Effect):
         size = 1e-3 * scene.largest(scene.behind_hysteresis)
         unit = (
             dict.fromkeys(weights, size / amplitude)
-            | dict.fromkeys(squares, size / amplitude ** 2)
+            | dict.fromkeys(squares, size / amplitude**2)
             | {name: size / amplitude**k for k, name in enumerate(powers, start=1)}
         )
         yield self.inserted(
