@@ -119,6 +119,7 @@ if config["gap"]["jobs"] == "effects":
         input:
             dataset=of_case("dataset"),
             fit=of_case("fit"),
+            base=rules.gap_start.output.base,
             before=lambda wildcards: (
                 f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
             ),
@@ -133,13 +134,14 @@ if config["gap"]["jobs"] == "effects":
             "{wildcards.effect} on {wildcards.case}, round {wildcards.round}"
         shell:
             "hystbench gap-candidate {wildcards.effect:q} --dataset {input.dataset:q}"
-            " --before {input.before:q} --out {output:q} 2> {log:q}"
+            " --base {input.base:q} --before {input.before:q} --out {output:q} 2> {log:q}"
 
     # How many rounds there are is known when the last is done.
     checkpoint gap_choose:
         input:
             dataset=of_case("dataset"),
             fit=of_case("fit"),
+            base=rules.gap_start.output.base,
             before=lambda wildcards: (
                 f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
             ),
@@ -157,7 +159,7 @@ if config["gap"]["jobs"] == "effects":
             "choice on {wildcards.case}, round {wildcards.round}"
         shell:
             "hystbench gap-choose {input.candidates:q} --dataset {input.dataset:q}"
-            " --before {input.before:q} --out {output:q} 2> {log:q}"
+            " --base {input.base:q} --before {input.before:q} --out {output:q} 2> {log:q}"
 
 
 def last_round(wildcards):
