@@ -243,20 +243,30 @@ rule gap_report:
         "hystbench gap-report {params.folder:q} 2> {log:q}"
 
 
+# Verdicts side by side, and what the twin's model file adds to its hysteresis: no
+# other job reads that file.
 rule gap_summary:
     input:
         gaps=expand(rules.gap_show.output.gap, case=GAP_CASES),
+        twin=SETTINGS.model_file if TWIN else [],
         code=code("hystbench.commands.gap_summary"),
     output:
         summary=f"{GAP}/summary.csv",
         effects=f"{GAP}/effects.csv",
+        adds=[f"{GAP}/twin-adds.csv"] if TWIN else [],
     log:
         f"{RESULTS}/logs/gap/summary.log",
+    params:
+        twin=lambda wildcards, input, output: (
+            f"--twin {shlex.quote(input.twin)} --adds {shlex.quote(output.adds[0])}"
+            if TWIN
+            else ""
+        ),
     message:
         "verdicts side by side"
     shell:
-        "hystbench gap-summary {input.gaps:q} --effects {output.effects:q}"
-        " --out {output.summary:q} 2> {log:q}"
+        "hystbench gap-summary {input.gaps:q} {params.twin}"
+        " --effects {output.effects:q} --out {output.summary:q} 2> {log:q}"
 
 
 rule gap:
