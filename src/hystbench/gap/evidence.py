@@ -68,8 +68,8 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     dataset = load_dataset(path)
     if not any(dataset.use(name) == "hold-out" for name in dataset.record_files):
         raise InputError(
-            f"{dataset.path}: records: none has 'use: hold-out'; expected at least one, "
-            "to show by how much the gap shrinks"
+            f"{dataset.path}: records: none has 'use: hold-out'; expected at least "
+            "one, to show by how much the gap shrinks"
         )
     records = [
         dataset.read(name)
