@@ -119,6 +119,7 @@ if config["gap"]["jobs"] == "effects":
         input:
             dataset=of_case("dataset"),
             fit=of_case("fit"),
+            base=rules.gap_start.output.base,
             before=lambda wildcards: (
                 f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
             ),
@@ -133,13 +134,14 @@ if config["gap"]["jobs"] == "effects":
             "{wildcards.effect} on {wildcards.case}, round {wildcards.round}"
         shell:
             "hystbench gap-candidate {wildcards.effect:q} --dataset {input.dataset:q}"
-            " --before {input.before:q} --out {output:q} 2> {log:q}"
+            " --base {input.base:q} --before {input.before:q} --out {output:q} 2> {log:q}"
 
     # How many rounds there are is known when the last is done.
     checkpoint gap_choose:
         input:
             dataset=of_case("dataset"),
             fit=of_case("fit"),
+            base=rules.gap_start.output.base,
             before=lambda wildcards: (
                 f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
             ),
@@ -157,7 +159,7 @@ if config["gap"]["jobs"] == "effects":
             "choice on {wildcards.case}, round {wildcards.round}"
         shell:
             "hystbench gap-choose {input.candidates:q} --dataset {input.dataset:q}"
-            " --before {input.before:q} --out {output:q} 2> {log:q}"
+            " --base {input.base:q} --before {input.before:q} --out {output:q} 2> {log:q}"
 
 
 def last_round(wildcards):
@@ -241,20 +243,30 @@ rule gap_report:
         "hystbench gap-report {params.folder:q} 2> {log:q}"
 
 
+# Verdicts side by side, and what the twin's model file adds to its hysteresis: no
+# other job reads that file.
 rule gap_summary:
     input:
         gaps=expand(rules.gap_show.output.gap, case=GAP_CASES),
+        twin=SETTINGS.model_file if TWIN else [],
         code=code("hystbench.commands.gap_summary"),
     output:
         summary=f"{GAP}/summary.csv",
         effects=f"{GAP}/effects.csv",
+        adds=[f"{GAP}/twin-adds.csv"] if TWIN else [],
     log:
         f"{RESULTS}/logs/gap/summary.log",
+    params:
+        twin=lambda wildcards, input, output: (
+            f"--twin {shlex.quote(input.twin)} --adds {shlex.quote(output.adds[0])}"
+            if TWIN
+            else ""
+        ),
     message:
         "verdicts side by side"
     shell:
-        "hystbench gap-summary {input.gaps:q} --effects {output.effects:q}"
-        " --out {output.summary:q} 2> {log:q}"
+        "hystbench gap-summary {input.gaps:q} {params.twin}"
+        " --effects {output.effects:q} --out {output.summary:q} 2> {log:q}"
 
 
 rule gap:

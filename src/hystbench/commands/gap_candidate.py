@@ -9,6 +9,7 @@ import click
 from hystbench import options
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json, write_json
+from hystbench.gap.bases import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.stages import try_one
@@ -17,13 +18,17 @@ from hystbench.gap.stages import try_one
 @click.command()
 @click.argument("effect")
 @click.option("--dataset", type=click.Path(path_type=Path), required=True)
+@click.option("--base", type=options.FILE, required=True, help="Model file.")
 @click.option(
     "--before", type=options.FILE, required=True, help="Progress before the round."
 )
 @options.out
-def gap_candidate(effect: str, dataset: Path, before: Path, out: Path) -> None:
+def gap_candidate(
+    effect: str, dataset: Path, base: Path, before: Path, out: Path
+) -> None:
     """Try EFFECT at every place where it makes sense; opens fit records alone."""
     if effect not in effects():
         raise InputError(f"no effect {effect!r}; {nearest(effect, effects())}")
     evidence = load_evidence(dataset, "fit")
-    write_json(out, try_one(evidence, read_json(before), effect))
+    model, _ = load_base(str(base), evidence)
+    write_json(out, try_one(evidence, model, read_json(before), effect))

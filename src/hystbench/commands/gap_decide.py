@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from hystbench import options
+from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import decide_in
-from hystbench.model import load_model
 
 
 @click.command()
@@ -26,10 +26,12 @@ def gap_decide(dataset: Path, base: Path, named: Path | None, out: Path) -> None
 
     Writes model.yaml, curves.json, stages/decision.json and stages/named.json to OUT.
     """
+    evidence = load_evidence(dataset, "fit")
+    model, _ = load_base(str(base), evidence)
     decide_in(
         out,
-        load_evidence(dataset, "fit"),
-        load_model(base),
+        evidence,
+        model,
         named,
         say=lambda line: click.echo(line, err=True),
     )

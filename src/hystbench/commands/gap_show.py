@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from hystbench import options
+from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import show_in
-from hystbench.model import load_model
 
 
 @click.command()
@@ -21,4 +21,6 @@ def gap_show(dataset: Path, base: Path, out: Path) -> None:
 
     Reads what hystbench gap-decide wrote to OUT; writes gap.json and holdout/ there.
     """
-    show_in(out, load_evidence(dataset), load_model(base))
+    evidence = load_evidence(dataset)
+    model, _ = load_base(str(base), evidence)
+    show_in(out, evidence, model)

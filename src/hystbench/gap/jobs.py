@@ -43,7 +43,7 @@ def decide_in(
     if progress is None:
         named = name(start, floor.rms, say)
     else:
-        named, floor = named_by(evidence, read_json(progress), start, say)
+        named, floor = named_by(evidence, base, read_json(progress), start, say)
     finding = decide(evidence.name, base, start, floor, named, say)
     finding.model.save(folder / "model.yaml")
     write_json(folder / "curves.json", finding.curves)
@@ -64,7 +64,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
-    state = Restorer(evidence.fit).state(kept["state"])
+    state = Restorer(evidence.fit, base).state(kept["state"])
     start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
     shown = show(base, state, floor, box, evidence.hold_out)

@@ -19,6 +19,7 @@ from hystbench.gap.name import Candidate, Progress, Round
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Added, Free, State
+from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
 Mapped = dict[str, Any]
@@ -55,17 +56,21 @@ class Restorer:
     ----------
     records : tuple of Record
         The fit records.
+    base : Model
+        Gives its own blocks back: one may hold more than a file does, such as the
+        output of a simulator that ran elsewhere.
     """
 
-    def __init__(self, records: tuple[Record, ...]) -> None:
+    def __init__(self, records: tuple[Record, ...], base: Model) -> None:
         self.records, self.sample = records, Sample.of(records)
+        self._own = base.chain
         self._corrections: dict[tuple[Block, ...], FloatArray | None] = {}
 
     def state(self, content: Mapped) -> State:
         """Give the model that :func:`state_mapping` wrote."""
         hold = content["hold"]
         state = State(
-            _chain(content["chain"]),
+            self._chain(content["chain"]),
             self.records,
             self.sample,
             tuple(
@@ -75,7 +80,7 @@ class Restorer:
                 )
                 for item in content["free"]
             ),
-            tuple(_added(item) for item in content["added"]),
+            tuple(self._added(item) for item in content["added"]),
             hold=hold,
         )
         beside = tuple(
@@ -85,7 +90,7 @@ class Restorer:
         at = content["corrected_at"]
         if at is None:
             return _replaced(state, beside)
-        chain = _chain(at)
+        chain = self._chain(at)
         if chain not in self._corrections:
             settled = State(chain, self.records, self.sample, hold=hold).settled()
             self._corrections[chain] = settled.correction
@@ -103,6 +108,26 @@ class Restorer:
                 for effect, ranking in content["reasons"].items()
             },
             content["closed"],
+        )
+
+    def _block(self, content: Mapping[str, Any]) -> Block:
+        ((name, values),) = content.items()
+        block = registry()[name].from_mapping(values)
+        kept = _block_mapping(block)
+        own = (item for item in self._own if _block_mapping(item) == kept)
+        return next(own, block)
+
+    def _chain(self, content: Sequence[Mapping[str, Any]]) -> tuple[Block, ...]:
+        return tuple(self._block(item) for item in content)
+
+    def _added(self, content: Mapped) -> Added:
+        old = content["replaced"]
+        return Added(
+            **content
+            | {
+                "blocks": tuple(content["blocks"]),
+                "replaced": None if old is None else self._block(old),
+            }
         )
 
     def _round(self, content: Mapped) -> Round:
@@ -176,26 +201,6 @@ def _block_mapping(block: Block) -> Mapped:
 
 def _chain_mapping(chain: Sequence[Block]) -> list[Mapped]:
     return [_block_mapping(block) for block in chain]
-
-
-def _block(content: Mapping[str, Any]) -> Block:
-    ((name, values),) = content.items()
-    return registry()[name].from_mapping(values)
-
-
-def _chain(content: Sequence[Mapping[str, Any]]) -> tuple[Block, ...]:
-    return tuple(_block(item) for item in content)
-
-
-def _added(content: Mapped) -> Added:
-    old = content["replaced"]
-    return Added(
-        **content
-        | {
-            "blocks": tuple(content["blocks"]),
-            "replaced": None if old is None else _block(old),
-        }
-    )
 
 
 def _beside(effect: str, order: int, scene: Scene) -> Beside:

@@ -1,10 +1,11 @@
 """Naming cut into jobs: a start, one job an effect and round, and a choice a round.
 
-The jobs compute; the choice decides, by the code that decides in one process too. An
-effect's job cannot know how well the others do, so it searches around its own best
-variants and refits its best one. The choice leaves out what lies too far from the best
-of all, as one process does, and simulates the finalists exactly. So both ways name the
-same, and the jobs do some work that one process is spared.
+The jobs compute; the choice decides, by the code that decides in one process too. One
+process searches around the likely variants alone and refits the finalists alone; an
+effect's job cannot know how well the others do, so it searches around all its variants
+and refits the best. The choice then looks up what one process would have computed, and
+simulates the finalists exactly. So both ways name the same, and the jobs together do
+more work.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect, Variant
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import Say, _silent
 from hystbench.gap.fit import Attempt, Trial, score_of
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import (
@@ -27,7 +27,14 @@ from hystbench.gap.kept import (
     progress_mapping,
     state_mapping,
 )
-from hystbench.gap.name import NEAR, Named, Progress, advance, make_score, settled
+from hystbench.gap.name import (
+    Named,
+    Progress,
+    Say,
+    advance,
+    make_score,
+    settled,
+)
 from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
@@ -64,13 +71,14 @@ def floor_mapping(floor: Floor) -> Mapped:
     }
 
 
-def try_one(evidence: Evidence, before: Mapped, name: str) -> Mapped:
+def try_one(evidence: Evidence, base: Model, before: Mapped, name: str) -> Mapped:
     """Try one effect beside the model of a round.
 
     Parameters
     ----------
     evidence : Evidence
         Only its fit records are read.
+    base : Model
     before : dict
         The progress before the round.
     name : str
@@ -80,11 +88,10 @@ def try_one(evidence: Evidence, before: Mapped, name: str) -> Mapped:
     -------
     dict
         ``effect``; ``declined``: why, or empty; ``variants``, each with its best point
-        of the grid (``coarse``) and the best around it (``fine``, None where another
-        variant is better by far); ``added``: the best variant refitted with the whole
-        model, or why a block refuses it.
+        of the grid (``coarse``) and the best around it (``fine``); ``added``: the best
+        variant refitted with the whole model, or why a block refuses it.
     """
-    state = Restorer(evidence.fit).state(before["state"])
+    state = Restorer(evidence.fit, base).state(before["state"])
     found: Mapped = {"effect": name, "declined": "", "variants": [], "added": None}
     if name in {item.effect for item in state.added}:
         return found | {"declined": "added already"}
@@ -92,28 +99,29 @@ def try_one(evidence: Evidence, before: Mapped, name: str) -> Mapped:
     tried, declined = IN_PROCESS.tried(effects()[name], state, score)
     if declined:
         return found | {"declined": declined}
-    limit_of_search = min(trial.score for _, trial in tried) + NEAR
     best: tuple[int, Trial] | None = None
     for place, (attempt, trial) in enumerate(tried):
-        likely = trial.score < limit_of_search
-        finer = IN_PROCESS.fine(attempt, trial) if likely else None
+        finer = IN_PROCESS.fine(attempt, trial)
         found["variants"].append(
             {
                 "form": trial.variant.form,
                 "coarse": _trial_mapping(trial),
-                "fine": None if finer is None else _trial_mapping(finer),
+                "fine": _trial_mapping(finer),
             }
         )
-        reached = trial if finer is None else finer
-        if best is None or reached.score < best[1].score:
-            best = place, reached
+        if best is None or finer.score < best[1].score:
+            best = place, finer
     if best is not None and best[1].score < score_of(state, score):
         found["added"] = _added(state, best, score)
     return found
 
 
 def choose(
-    evidence: Evidence, before: Mapped, tried: Mapping[str, Mapped], say: Say = _silent
+    evidence: Evidence,
+    base: Model,
+    before: Mapped,
+    tried: Mapping[str, Mapped],
+    say: Say = lambda line: None,
 ) -> Mapped:
     """Rank the effects of a round and add the one that pays, if any does.
 
@@ -121,6 +129,7 @@ def choose(
     ----------
     evidence : Evidence
         Only its fit records are read.
+    base : Model
     before : dict
         The progress before the round.
     tried : mapping
@@ -133,7 +142,7 @@ def choose(
     dict
         The progress after the round.
     """
-    restorer = Restorer(evidence.fit)
+    restorer = Restorer(evidence.fit, base)
     progress = restorer.progress(before)
     work = Recorded(progress.state, tried, restorer)
     after = advance(progress, before["floor"]["rms"], say, work=work)
@@ -141,7 +150,11 @@ def choose(
 
 
 def named_by(
-    evidence: Evidence, content: Mapped, start: State, say: Say = _silent
+    evidence: Evidence,
+    base: Model,
+    content: Mapped,
+    start: State,
+    say: Say = lambda line: None,
 ) -> tuple[Named, Floor]:
     """Give what the rounds named, and the floor that they were judged by.
 
@@ -153,7 +166,7 @@ def named_by(
     InputError
         If the last round was not the last.
     """
-    progress = Restorer(evidence.fit).progress(content)
+    progress = Restorer(evidence.fit, base).progress(content)
     if not progress.done:
         raise InputError(
             f"round {len(progress.rounds)}: an effect was added; expected the progress "
@@ -204,7 +217,7 @@ class Recorded(Work):
     def fine(self, attempt: Attempt, trial: Trial) -> Trial:
         """Look up the best around the best point of a variant's grid."""
         entry = self._entry(trial.variant)
-        if entry is None or entry["fine"] is None:
+        if entry is None:
             return super().fine(attempt, trial)
         return _trial(trial.variant, entry["fine"])
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.files import write_csv
+from hystbench.model import Model
 
 Content = Mapping[str, Any]
 
@@ -37,6 +38,9 @@ EFFECT_COLUMNS = (
 )
 
 
+ADDS_COLUMNS = ("block", "parameter", "value", "unit")
+
+
 def write_summary(contents: Sequence[Content], path: Path) -> None:
     """Write one row a dataset: the verdict, and RMS over its hold-out records."""
     write_csv(path, COLUMNS, [_row(content) for content in contents])
@@ -46,6 +50,27 @@ def write_effects(contents: Sequence[Content], path: Path) -> None:
     """Write one row a parameter of each named effect."""
     rows = [row for content in contents for row in _effect_rows(content)]
     write_csv(path, EFFECT_COLUMNS, rows)
+
+
+def write_adds(model: Model, path: Path) -> None:
+    """Write what a model adds behind its hysteresis: one row a parameter.
+
+    Beside what was named on the model's records it shows which of it was found.
+    """
+    units = {"U": model.input.unit, "Y": model.output.unit}
+    rows = [
+        [
+            label,
+            name,
+            _any(about.plain(getattr(block, name))),
+            units.get(about.unit, about.unit),
+        ]
+        for label, block in model.labelled()
+        if not block.hysteretic
+        for name, about in block.parameters().items()
+        if name != "hold"
+    ]
+    write_csv(path, ADDS_COLUMNS, rows)
 
 
 def _row(content: Content) -> list[str]:

@@ -1,0 +1,117 @@
+"""The jobs around naming: what they read, what they write, the tables of all."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.gap.evidence import load_evidence
+from hystbench.gap.example import slow_loop_model
+from hystbench.gap.jobs import DECISION, decide_in, show_in
+from hystbench.gap.run import close_gap
+from hystbench.gap.summary import write_adds, write_effects, write_summary
+from hystbench.model import Model, load_model
+from hystbench.record import Channel
+
+from .tiny import BASE, LAG_S, write_tiny
+
+
+@pytest.fixture(scope="module")
+def decided(tmp_path_factory):
+    """A folder in which the verdict was given while hold-out records were garbage."""
+    folder = tmp_path_factory.mktemp("jobs")
+    data, base = write_tiny(folder)
+    kept = (data / "unseen.csv").read_bytes()
+    (data / "unseen.csv").write_text("no record\n")
+    with pytest.raises(InputError, match="unseen"):
+        load_evidence(data)
+    out = folder / "out"
+    decide_in(out, load_evidence(data, "fit"), load_model(base), None)
+    (data / "unseen.csv").write_bytes(kept)
+    return folder, data, base, out
+
+
+def rows(path):
+    with path.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_nothing_of_hold_out_records_is_read_to_decide(decided, tmp_path):
+    _, data, base, out = decided
+    show_in(out, load_evidence(data), load_model(base))
+    close_gap(load_evidence(data), load_model(base), tmp_path, report=False)
+    for file in ("gap.json", "model.yaml", "curves.json", "holdout/unseen.csv"):
+        assert (out / file).read_bytes() == (tmp_path / file).read_bytes(), file
+
+
+def test_showing_changes_nothing_that_was_decided(decided, tmp_path):
+    _, data, base, out = decided
+    content = json.loads((out / DECISION).read_text())
+    noise = shutil.copytree(data, tmp_path / "noise")
+    lines = (noise / "unseen.csv").read_text().splitlines()
+    cells = [line.split(",") for line in lines[1:]]
+    reversed_outputs = [row[2] for row in reversed(cells)]
+    text = [
+        f"{t},{u},{y}" for (t, u, _), y in zip(cells, reversed_outputs, strict=True)
+    ]
+    (noise / "unseen.csv").write_text("\n".join([lines[0], *text]) + "\n")
+    other = shutil.copytree(out, tmp_path / "other")
+    show_in(other, load_evidence(noise), load_model(base))
+    shown = json.loads((other / "gap.json").read_text())
+    for key in ("verdict", "effects", "ranking", "where", "next_experiment"):
+        assert shown[key] == content[key]
+    # Outputs backward in time fit no model.
+    assert shown["gap"]["after"] > 10 * shown["gap"]["noise_floor"]
+
+
+def test_tables_hold_what_gap_json_holds(decided, tmp_path):
+    _, data, base, out = decided
+    show_in(out, load_evidence(data), load_model(base))
+    content = json.loads((out / "gap.json").read_text())
+    write_summary([content, content], tmp_path / "summary.csv")
+    write_effects([content], tmp_path / "effects.csv")
+    one, other = rows(tmp_path / "summary.csv")
+    assert one == other
+    assert (one["dataset"], one["verdict"], one["effects"]) == (
+        "tiny",
+        "named",
+        "drive-lag",
+    )
+    for key in ("before", "after", "noise_floor"):
+        assert float(one[key]) == pytest.approx(content["gap"][key], rel=1e-3)
+    (parameter,) = rows(tmp_path / "effects.csv")
+    assert parameter["parameter"] == "time_constant_s"
+    assert float(parameter["value"]) == pytest.approx(LAG_S, rel=0.02)
+
+
+def test_what_a_model_adds_leaves_its_hysteresis_out(tmp_path):
+    chain = [*BASE["chain"], {"sensor-lag": {"time_constant_s": 0.25}}]
+    write_adds(Model.from_mapping(BASE | {"chain": chain}, "m"), tmp_path / "adds.csv")
+    assert rows(tmp_path / "adds.csv") == [
+        {
+            "block": "sensor-lag",
+            "parameter": "time_constant_s",
+            "value": "0.25",
+            "unit": "s",
+        }
+    ]
+
+
+@pytest.mark.parametrize("offset", [0.0, -0.5])
+def test_the_slow_loop_becomes_a_model_with_its_offset(offset):
+    identified = {
+        **BASE["chain"][0]["gpi"],
+        "offset": offset,
+        "start": "rest",
+    }
+    given, measured = Channel("current", "A"), Channel("displacement", "um")
+    model = slow_loop_model(identified, given, measured)
+    plain = Model.from_mapping(BASE, "base")
+    assert model.chain[0] == plain.chain[0]
+    assert [block.name for block in model.chain[1:]] == ["gain"] * (offset != 0)
+    if offset:
+        assert model.value("gain.offset") == offset

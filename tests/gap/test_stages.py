@@ -1,0 +1,163 @@
+"""Naming in jobs, with files between them, beside naming in one process."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Declined
+from hystbench.gap.evidence import load_evidence
+from hystbench.gap.finding import decide
+from hystbench.gap.fit import Attempt, coarse
+from hystbench.gap.kept import Restorer, state_mapping
+from hystbench.gap.name import make_score, name
+from hystbench.gap.stages import begin, choose, named_by, try_one
+from hystbench.gap.start import start_state
+from hystbench.gap.state import with_effect
+from hystbench.gap.work import Work
+from hystbench.model import load_model
+
+from .tiny import LAG_S, write_tiny
+
+
+def through_a_file(content):
+    return json.loads(json.dumps(content, allow_nan=False))
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    data, base = write_tiny(tmp_path_factory.mktemp("tiny"))
+    evidence = load_evidence(data, "fit")
+    model = load_model(base)
+    start, floor = start_state(evidence.fit, model, evidence.hold, evidence.noise_rms)
+    return evidence, model, start, floor
+
+
+@pytest.fixture(scope="module")
+def whole(tiny):
+    _, _, start, floor = tiny
+    return name(start, floor.rms)
+
+
+@pytest.fixture(scope="module")
+def staged(tiny):
+    """The progress after each round, and what was tried in it."""
+    evidence, model, _, _ = tiny
+    progress = [through_a_file(begin(evidence, model))]
+    tried = []
+    while not progress[-1]["done"]:
+        before = progress[-1]
+        tried.append(
+            {
+                effect: through_a_file(try_one(evidence, model, before, effect))
+                for effect in effects()
+            }
+        )
+        progress.append(through_a_file(choose(evidence, model, before, tried[-1])))
+    return progress, tried
+
+
+def test_both_ways_name_what_was_put_in(whole):
+    (item,) = whole.state.added
+    assert item.effect == "drive-lag"
+    (block,) = (whole.state.chain[k] for k in item.blocks)
+    assert block.time_constant_s == pytest.approx(LAG_S, rel=0.02)
+
+
+def test_jobs_and_one_process_rank_and_name_alike(tiny, whole, staged):
+    evidence, model, start, floor = tiny
+    progress, _ = staged
+    found, kept_floor = named_by(evidence, model, progress[-1], start)
+    assert kept_floor == floor
+    assert found.state.chain == whole.state.chain
+    assert found.state.added == whole.state.added
+    assert found.state.free == whole.state.free
+    assert len(found.rounds) == len(whole.rounds)
+    for here, there in zip(found.rounds, whole.rounds, strict=True):
+        assert here.taken == there.taken
+        for one, other in zip(here.ranking, there.ranking, strict=True):
+            for key in ("effect", "place", "form", "score", "gain", "declined"):
+                assert getattr(one, key) == getattr(other, key), one.effect
+            assert (one.state is None) == (other.state is None)
+    decided = [
+        decide("tiny", model, start, floor, named).content for named in (found, whole)
+    ]
+    assert decided[0] == decided[1]
+
+
+def test_the_choice_searches_nothing_again(tiny, staged, monkeypatch):
+    evidence, model, _, _ = tiny
+    progress, tried = staged
+    again: list[str] = []
+    added = Work.added
+
+    def added_again(self, state, trial, score):
+        again.append(trial.variant.effect)
+        return added(self, state, trial, score)
+
+    for step in ("tried", "fine"):
+        monkeypatch.setattr(Work, step, lambda self, *given: pytest.fail("again"))
+    monkeypatch.setattr(Work, "added", added_again)
+    after = through_a_file(choose(evidence, model, progress[0], tried[0]))
+    assert after == progress[1]
+    # What one process does not search around it refits from the grid: so must we.
+    ranking = after["rounds"][0]["ranking"]
+    finalists = {item["effect"] for item in ranking if item["state"]}
+    assert finalists - set(again)
+
+
+def test_an_effect_without_a_job_is_tried_by_the_choice(tiny, staged):
+    evidence, model, _, _ = tiny
+    progress, tried = staged
+    short = {key: tried[0][key] for key in tried[0] if key != "drive-lag"}
+    assert through_a_file(choose(evidence, model, progress[0], short)) == progress[1]
+
+
+def test_an_effect_that_is_there_declines(staged):
+    _, tried = staged
+    assert tried[1]["drive-lag"]["declined"] == "added already"
+
+
+def test_before_the_last_round_nothing_is_decided(tiny, staged):
+    evidence, model, start, _ = tiny
+    progress, _ = staged
+    assert len(progress) == 3
+    with pytest.raises(InputError, match="round 1: an effect was added; expected"):
+        named_by(evidence, model, progress[1], start)
+
+
+#: What an effect needs in the chain, and those that a chain with hysteresis refuses.
+NEEDS = {"stiffness-hardening": ["resonance"]}
+DECLINE = {"hysteresis"}
+
+
+@pytest.mark.parametrize("added", sorted(effects()))
+def test_a_model_comes_back_from_its_file(tiny, added):
+    """Every effect, added to a chain that lags: it simulates the same."""
+    _, model, state, floor = tiny
+    score = make_score(state, floor.rms)
+    chain = ["drive-lag", *NEEDS.get(added, []), added]
+    for effect in dict.fromkeys(chain):
+        try:
+            variants = list(effects()[effect].variants(state.scene))
+        except Declined:
+            assert effect in DECLINE
+            return
+        trial = coarse(Attempt(state, variants[-1], score))
+        state = with_effect(state, trial.variant, trial.values)
+    state = state.settled()
+    changes = {k: 1e-3 * step for k, step in enumerate(state.steps)}
+    moved = replace(state, chain=state.moved(changes))
+    restored = Restorer(moved.records, model).state(
+        through_a_file(state_mapping(moved))
+    )
+    assert restored.chain == moved.chain
+    assert restored.free == moved.free
+    assert restored.added == moved.added
+    np.testing.assert_array_equal(restored.residual, moved.residual)
+    np.testing.assert_array_equal(restored.beside_columns, moved.beside_columns)

@@ -1,0 +1,134 @@
+"""The gap through Snakemake: in one job and in a job an effect, and what runs again."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from tests.gap.tiny import LAG_S, write_tiny
+
+from .conftest import Workflow
+
+PAGE = "results/gap/tiny/report.html"
+GAP = "results/gap/tiny/gap.json"
+#: Rounds of the small case: the lag is added, then nothing pays.
+ROUNDS = 2
+
+
+def configured(folder, config, jobs: str) -> Workflow:
+    workflow = Workflow(folder, {"OPENBLAS_NUM_THREADS": "1"})
+    write_tiny(folder / "tiny")
+    config["gap"] |= {
+        "jobs": jobs,
+        "datasets": [
+            {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
+        ],
+    }
+    workflow.configure(config)
+    return workflow
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    from .conftest import small_config
+
+    workflow = configured(tmp_path_factory.mktemp("whole"), small_config(), "whole")
+    workflow.done = workflow.run(PAGE)
+    return workflow
+
+
+def load(workflow):
+    return json.loads((workflow.folder / GAP).read_text())
+
+
+def test_one_job_names_the_lag_and_closes_the_gap(whole):
+    assert whole.done == {
+        "gap_start": 1,
+        "gap_decide": 1,
+        "gap_show": 1,
+        "gap_report": 1,
+    }
+    content = load(whole)
+    assert content["verdict"] == "named"
+    (effect,) = content["effects"]
+    assert effect["name"] == "drive-lag"
+    assert effect["parameters"]["time_constant_s"]["value"] == pytest.approx(
+        LAG_S, rel=0.02
+    )
+    assert content["gap"]["after"] < 0.1 * content["gap"]["before"]
+    assert (whole.folder / PAGE).read_text().startswith("<!")
+
+
+def test_gap_json_holds_the_rms_of_the_hold_out_record(whole):
+    table = np.loadtxt(
+        whole.folder / "results/gap/tiny/holdout/unseen.csv",
+        delimiter=",",
+        skiprows=1,
+    )
+    measured, before, after = table[:, 1:].T
+    gap = load(whole)["gap"]
+    for key, simulated in (("before", before), ("after", after)):
+        rms = np.sqrt(np.mean((measured - simulated) ** 2))
+        assert gap[key] == pytest.approx(rms, rel=1e-6)
+
+
+def test_a_job_an_effect_gives_the_same(whole, tmp_path_factory, config):
+    workflow = configured(tmp_path_factory.mktemp("effects"), config, "effects")
+    workflow.run(PAGE)
+    stages = workflow.folder / "results/gap/tiny/stages"
+    rounds = [stages / f"round-{number}" for number in range(1, ROUNDS + 1)]
+    assert sorted(path for path in stages.iterdir() if path.is_dir()) == rounds
+    assert {path.stem for path in rounds[0].iterdir()} == {
+        item["name"] for item in load(whole)["ranking"]
+    }
+    assert load(workflow) == load(whole)
+    assert workflow.would_run(PAGE) == {}
+
+
+def test_hold_out_records_are_read_by_one_job(whole):
+    with (whole.folder / "tiny/dataset/unseen.csv").open("a") as stream:
+        stream.write("")
+    (whole.folder / "tiny/dataset/unseen.csv").touch()
+    assert whole.would_run(PAGE) == {"gap_show": 1, "gap_report": 1}
+    (whole.folder / "tiny/dataset/slow.csv").touch()
+    assert whole.would_run(PAGE) == {
+        "gap_start": 1,
+        "gap_decide": 1,
+        "gap_show": 1,
+        "gap_report": 1,
+    }
+
+
+def test_the_worked_example_is_planned_from_the_twin(workflow):
+    planned = workflow.would_run("gap")
+    assert planned["gap_twin"] == 1
+    assert planned["gap_summary"] == 1
+    assert planned["gap_show"] == 1
+
+
+def test_a_signal_in_both_roles_is_one_line(workflow, config):
+    config["gap"]["twin"] = {"fit": ["sine-100hz"], "hold_out": ["sine-100hz"]}
+    workflow.configure(config)
+    refused = workflow.snakemake("gap")
+    assert refused.returncode != 0
+    assert (
+        "hystbench: config.yaml: gap: twin: 'sine-100hz' is in fit and in hold_out; "
+        "expected it in one of them"
+    ) in refused.stderr.splitlines()
+
+
+def test_the_example_runs_from_identification_to_summary(workflow, config):
+    config["gap"]["twin"] = {"fit": ["sine-100hz"], "hold_out": ["sine-200hz"]}
+    workflow.configure(config)
+    workflow.run("results/gap/summary.csv")
+    gap = workflow.folder / "results" / "gap"
+    with (gap / "summary.csv").open(newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    content = json.loads((gap / "twin" / "gap.json").read_text())
+    assert (row["dataset"], row["verdict"]) == ("twin", content["verdict"])
+    assert float(row["before"]) == pytest.approx(content["gap"]["before"], rel=1e-3)
+    names = [item["name"] for item in content["effects"]]
+    assert row["effects"] == (" + ".join(names) or "none")
