@@ -22,8 +22,8 @@ from hystbench.gap.state import State
 from hystbench.gap.verdict import judge, what_is_left
 
 SEED = 1
-NEXT = 2
-"""Effects that are tried again when the right one is taken out: the next best."""
+NEXT = 1
+"""Of the other effects, those tried again without the right one: the next best."""
 
 
 @cache
