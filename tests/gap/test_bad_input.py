@@ -189,7 +189,7 @@ def test_a_fit_record_of_a_few_samples(rig):
     refused(rig, "one", "samples", records=records)
 
 
-# Left out: a base whose output is not finite. It ends in an IndexError deep in the views
+# Left out: a base whose output is not finite. It ends in an IndexError in the views
 # where a line that names the base and the record is expected.
 
 

@@ -1,0 +1,102 @@
+"""The word of the verdict and the confidence of a name, at and around their limits."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.gap.finding import near
+from hystbench.gap.name import TIE, Candidate
+from hystbench.gap.verdict import ABOVE, LOOSE, Left, confidence, judge, what_is_left
+from tests.gap.small import block, measured, state_of
+
+SIZES = st.floats(-1.0, 1e6)
+SHARES = st.floats(0.0, 1.0)
+
+
+def left(after, before=100.0):
+    return Left(before, after, before, after)
+
+
+@given(SIZES, SIZES, SIZES, SIZES, st.booleans(), st.none() | SHARES)
+def test_every_finding_has_a_word_and_a_reason(before, after, one, other, named, box):
+    found = Left(before, after, one, other)
+    word, reason = judge(found, named, box)
+    assert word in ("named", "no-gap", "unnamed")
+    assert (word == "no-gap") <= (not named)
+    assert reason
+    assert "\n" not in reason
+    assert 0 <= found.loose <= 1
+
+
+@given(st.floats(-1, ABOVE), st.none() | SHARES)
+def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
+    assert judge(left(after), False, box)[0] == "no-gap"
+
+
+@given(st.floats(1.01 * ABOVE, 1e6), st.none() | SHARES)
+def test_a_gap_that_nothing_takes_away_is_unnamed(after, box):
+    assert judge(left(after), False, box)[0] == "unnamed"
+
+
+def test_what_stays_decides_whether_a_name_holds():
+    assert judge(left(0.0), True, 1.0)[0] == "named"
+    assert judge(left(90 * LOOSE), True, None)[0] == "named"
+    assert judge(left(110 * LOOSE), True, None)[0] == "unnamed"
+
+
+@given(st.floats(0.0, 100.0), SHARES, SHARES)
+def test_a_better_black_box_never_makes_a_name_hold(after, box, more):
+    low, high = sorted((box, more))
+    if judge(left(after), True, low)[0] == "unnamed":
+        assert judge(left(after), True, high)[0] == "unnamed"
+
+
+@given(st.lists(st.floats(0, 200), min_size=1, max_size=6), st.floats(0, 100))
+def test_confidence_is_a_probability_that_rivals_and_rest_take_from(gaps, after):
+    first = Candidate("creep", "mechanics", score=-500.0)
+    others = [
+        Candidate(f"other {k}", "drive", score=-500.0 + g) for k, g in enumerate(gaps)
+    ]
+    sure = confidence(first, [first, *others], left(after))
+    assert 0 <= sure <= 1
+    assert sure <= confidence(first, [first, *others[1:]], left(after))
+    assert sure <= confidence(first, [first, *others], left(after / 2))
+    refused = Candidate("slew-limit", "drive", declined="too short")
+    assert confidence(first, [first, *others, refused], left(after)) == sure
+
+
+def test_two_that_score_alike_share_the_confidence():
+    one, other = (Candidate(name, "drive", score=-10.0) for name in ("a", "b"))
+    both = [confidence(item, [one, other], left(0.0)) for item in (one, other)]
+    assert both[0] == both[1] <= 0.5
+
+
+def test_the_set_of_those_that_cannot_be_told_apart():
+    state = state_of((block("gain", value=12.0),))
+    scores = {"a": 0.0, "b": 0.9 * TIE, "c": 1.1 * TIE}
+    ranking = [Candidate(k, "drive", score=v, state=state) for k, v in scores.items()]
+    ranking.append(Candidate("d", "drive", score=0.1))  # not refitted: no finalist
+    assert near(ranking[0], ranking) == ("b",)
+    assert near(ranking[2], ranking) == ("a", "b")
+
+
+def test_what_is_left_of_a_gap_is_counted_in_floors():
+    noise = 0.05
+    records = measured((block("gain", value=12.0),), noise)
+    there = state_of((block("gain", value=12.0),), records, count=600)
+    wrong = state_of(
+        (block("gain", value=12.0), block("sensor-lag", time_constant_s=0.01)),
+        records,
+        count=600,
+    )
+    found = what_is_left(wrong, there, noise)
+    plain = np.mean(
+        [np.mean(wrong.residual[part] ** 2) for part in wrong.sample.slices]
+    )
+    assert found.all_before == pytest.approx(plain / noise**2 - 1)
+    # A mean of 1200 squares scatters by sqrt(2 / 1200), about 4 %.
+    assert abs(found.all_after) < 0.2
+    assert abs(found.after) < 0.2
+    assert found.before <= found.all_before
+    assert found.loose < 0.05
