@@ -37,11 +37,18 @@ def main() -> None:
 def dry_run(folder: str, cases: int) -> tuple[float, float]:
     """CPU time and peak memory of a dry run over so many jobs."""
     words = ["-n", "--quiet", "all", "--config", f"cases={cases}"]
-    started = subprocess.Popen([sys.executable, "-m", "snakemake", *words], cwd=folder)
-    _, status, used = os.wait4(started.pid, 0)
+    log = Path(folder, "log")
+    with log.open("wb") as stream:
+        started = subprocess.Popen(
+            [sys.executable, "-m", "snakemake", *words],
+            cwd=folder,
+            stdout=stream,
+            stderr=stream,
+        )
+        _, status, used = os.wait4(started.pid, 0)
     started.returncode = os.waitstatus_to_exitcode(status)
     if started.returncode:
-        raise SystemExit(f"snakemake {' '.join(words)}: {started.returncode}")
+        raise SystemExit(log.read_text(encoding="utf-8"))
     return used.ru_utime + used.ru_stime, used.ru_maxrss / 1024
 
 
