@@ -16,7 +16,8 @@ from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error
 from hystbench.model import load_model
 from hystbench.order_errors import filters_by_order, order_errors
-from hystbench.pressure.ensemble import fit_rdgpi, run_ensemble
+from hystbench.pressure.ensemble import run_ensemble
+from hystbench.pressure.fits import fit_rdgpi
 from hystbench.pressure.twins import read_twins
 from hystbench.rdgpi import identify_rdgpi
 from hystbench.schema import load_yaml

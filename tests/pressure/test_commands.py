@@ -13,7 +13,8 @@ from hystbench.commands.twin_runs import twin_runs
 from hystbench.commands.twins import twins
 from hystbench.compare.twins import read_holdings, read_spreads
 from hystbench.errors import InputError
-from hystbench.pressure.ensemble import fit_rdgpi, run_ensemble
+from hystbench.pressure.ensemble import run_ensemble
+from hystbench.pressure.fits import fit_rdgpi
 from hystbench.pressure.report import write_twins
 from hystbench.pressure.twins import read_twins
 

@@ -15,7 +15,7 @@ from hystbench.pressure.contest import (
     rank,
     run_grid,
 )
-from hystbench.pressure.ensemble import draw_signals, measure_twin
+from hystbench.pressure.runs import draw_signals, measure_twin
 from hystbench.pressure.twins import read_twins
 
 from .conftest import SIGNALS

@@ -4,14 +4,9 @@ import numpy as np
 import pytest
 
 from hystbench.adaptive import make_filter, run_filter
-from hystbench.pressure.ensemble import (
-    draw_signals,
-    fit_rdgpi,
-    measure_twin,
-    run_ensemble,
-    scaled,
-    step_choices,
-)
+from hystbench.pressure.ensemble import run_ensemble, step_choices
+from hystbench.pressure.fits import fit_rdgpi
+from hystbench.pressure.runs import draw_signals, measure_twin, scaled
 from hystbench.pressure.twins import read_twins
 
 from .conftest import SIGNALS

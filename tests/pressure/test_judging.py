@@ -6,8 +6,8 @@ import pytest
 
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.evidence import Evidence
-from hystbench.pressure.ensemble import Ensemble
 from hystbench.pressure.judging import count, holds, on_signals, press, pressed_claims
+from hystbench.pressure.runs import Ensemble
 from tests.compare.made import published_runs
 
 FILTERS = ("gpo", "backlash", "volterra", "delayed")

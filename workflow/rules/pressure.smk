@@ -8,7 +8,8 @@ FILTER_MODULES = [f"hystbench.filters.{name}" for name in SETTINGS.filters]
 if TWIN:
 
     # As configured, for the spread of each cell and for where each claim holds. A
-    # changed step size runs its filter again on the twins, and no other.
+    # changed step size runs its filter again on the twins, and no other. What takes
+    # longest goes first, so that no core waits for it at the end.
     rule twin_fits:
         input:
             twins=SETTINGS.twin_files,
@@ -19,6 +20,7 @@ if TWIN:
             f"{RESULTS}/logs/twins/fits.log",
         benchmark:
             f"{RESULTS}/logs/benchmarks/twin_fits.tsv"
+        priority: 1
         params:
             settings=settings_text(SETTINGS.twin_fits_job),
         message:
@@ -40,6 +42,7 @@ if TWIN:
             f"{RESULTS}/logs/twins/{{filter}}.log",
         benchmark:
             f"{RESULTS}/logs/benchmarks/twin_runs/{{filter}}.tsv"
+        priority: 1
         params:
             settings=lambda wildcards: settings_text(
                 SETTINGS.twin_runs_job(wildcards.filter)
@@ -63,6 +66,7 @@ if TWIN:
             f"{RESULTS}/logs/twins/claims.log",
         benchmark:
             f"{RESULTS}/logs/benchmarks/twins.tsv"
+        priority: 1
         params:
             settings=settings_text(SETTINGS.twins_job),
             runs=lambda wildcards, input: options("--runs", input.runs),

@@ -61,9 +61,13 @@ CONF
 }
 
 stop_slurm() {
-  local folder=$1 file
+  local folder=$1 file daemon
   for file in slurmd.pid slurmctld.pid munge/pid; do
-    [ ! -s "$folder/$file" ] || kill "$(cat "$folder/$file")" || true
+    [ -s "$folder/$file" ] || continue
+    daemon=$(cat "$folder/$file")
+    kill "$daemon" || continue
+    # Until it has ended it writes into the folder.
+    while kill -0 "$daemon" 2> /dev/null; do sleep 0.2; done
   done
   [ "$(readlink /etc/slurm/slurm.conf)" != "$folder/slurm.conf" ] || rm /etc/slurm/slurm.conf
 }

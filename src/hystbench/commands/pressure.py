@@ -11,14 +11,11 @@ import click
 from hystbench import options
 from hystbench.compare.claims.claim import Claim
 from hystbench.compare.comparison import held_out_signals
-from hystbench.pressure.ensemble import (
-    filter_jobs,
-    fit_rdgpi,
-    run_ensemble,
-    step_choices,
-)
+from hystbench.pressure.ensemble import run_ensemble, step_choices
+from hystbench.pressure.fits import fit_rdgpi
 from hystbench.pressure.judging import Count, count, press, pressed_claims
 from hystbench.pressure.report import write_pressure
+from hystbench.pressure.runs import filter_jobs
 from hystbench.pressure.twins import read_twins
 
 

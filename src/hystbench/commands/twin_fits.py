@@ -9,7 +9,7 @@ import click
 
 from hystbench import options
 from hystbench.files import write_json
-from hystbench.pressure.configured import fit
+from hystbench.pressure.fits import fit
 from hystbench.pressure.twins import read_twins
 
 

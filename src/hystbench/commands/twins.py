@@ -10,8 +10,8 @@ import click
 from hystbench import options
 from hystbench.files import read_json
 from hystbench.pressure.configured import join
-from hystbench.pressure.ensemble import draw_signals
 from hystbench.pressure.report import write_twins
+from hystbench.pressure.runs import draw_signals
 from hystbench.pressure.twins import read_twins
 
 

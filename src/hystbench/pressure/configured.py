@@ -1,8 +1,9 @@
 """All models on each twin as configured, in parts that can be made again alone.
 
-What no step size changes (:func:`fit`) takes the most time and is one part; each
-filter (:func:`run`) is another. The parts are JSON; :func:`join` puts them together.
-Records are simulated anew for each: that takes less time than to read them.
+What no step size changes takes the most time and is one part
+(:func:`hystbench.pressure.fits.fit`); each filter (:func:`run`) is another. The parts
+are JSON; :func:`join` puts them together. Each simulates the records that it needs:
+kept in files, those of all twins would be a hundred megabytes.
 """
 
 from __future__ import annotations
@@ -15,16 +16,13 @@ from typing import Any
 from hystbench.compare.evidence import Evidence, OrderPoint, Run, identification_of
 from hystbench.errors import InputError, nearest
 from hystbench.order_errors import filters_by_order
-from hystbench.pressure.ensemble import (
+from hystbench.pressure.runs import (
     Ensemble,
     Settings,
     compare_envelopes,
     draw_signals,
     filter_jobs,
-    fit_rdgpi_records,
-    identify_records,
     measure_twin,
-    run_rdgpi,
     run_records,
     sweep_orders,
 )
@@ -35,30 +33,6 @@ Part = dict[str, dict[str, Any]]
 """What was found on each twin, by its name."""
 
 
-def fit(twins: Sequence[Twin], settings: Settings) -> Part:
-    """Run Algorithm 1 and the RDGPI model on each twin.
-
-    Parameters
-    ----------
-    twins : sequence of Twin
-    settings : mapping
-        ``signals`` (definitions by name), ``asked`` (names of those to run),
-        ``measure``, ``identification`` (settings, ``signal`` among them) and
-        ``rdgpi`` (the same with ``fit_signals``, or None).
-    """
-    signals = draw_signals(settings["signals"], 0)
-    part: Part = {}
-    for twin in twins:
-        records = measure_twin(twin, signals.values(), settings["measure"], 0)
-        asked = {name: records[name] for name in settings["asked"]}
-        rdgpi = run_rdgpi(fit_rdgpi_records(records, settings), asked)
-        part[twin.name] = {
-            "identified": identify_records(records, settings),
-            "runs": [asdict(run) for run in rdgpi.values()],
-        }
-    return part
-
-
 def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
     """Run one filter on each twin: the signals, Figure 7 and both envelopes.
 
@@ -66,10 +40,11 @@ def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
     ----------
     twins : sequence of Twin
     settings : mapping
-        ``signals``, ``asked`` and ``measure`` as for :func:`fit`; ``filters``, with
-        the settings of the one filter; and ``order_sweep``.
+        ``signals``, ``asked`` and ``measure`` as for
+        :func:`hystbench.pressure.fits.fit`; ``filters``, with the settings of the
+        one filter; and ``order_sweep``.
     fitted : mapping
-        What :func:`fit` found.
+        What :func:`hystbench.pressure.fits.fit` found.
 
     Raises
     ------
@@ -106,7 +81,7 @@ def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
 def join(
     twin: Twin, signals: Iterable[Signal], settings: Settings, parts: Sequence[Part]
 ) -> Ensemble:
-    """Put the parts of one twin together, what :func:`fit` found first.
+    """Put the parts of one twin together; the first is what was fitted.
 
     Raises
     ------

@@ -20,7 +20,7 @@ from hystbench.adaptive import make_filter, step_bounds, step_names
 from hystbench.errors import InputError
 from hystbench.filters import AdaptiveFilter, run_many
 from hystbench.metrics import mean_square_error
-from hystbench.pressure.ensemble import (
+from hystbench.pressure.runs import (
     Settings,
     draw_signals,
     filter_jobs,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import BornOut, Claim, NotTestable
 from hystbench.compare.evidence import Evidence
-from hystbench.pressure.ensemble import Ensemble, Steps
+from hystbench.pressure.runs import Ensemble, Steps
 
 
 @dataclass(frozen=True)

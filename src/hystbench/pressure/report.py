@@ -10,8 +10,8 @@ from tabulate import tabulate
 
 from hystbench.compare.twins import CLAIM_COLUMNS, ERROR_COLUMNS
 from hystbench.files import write_csv, write_json, write_text
-from hystbench.pressure.ensemble import Ensemble
 from hystbench.pressure.judging import Count, Pressed, born_out, holds, pressed_claims
+from hystbench.pressure.runs import Ensemble
 
 COLUMNS = (
     "claim",
