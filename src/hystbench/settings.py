@@ -371,10 +371,10 @@ def read_settings(
     ]
     if config["source"] == "twin":
         _check_names(place, named, excitations)
-        _check_names(place, _gap_signals(place, config), excitations)
         # The calibration and the trial of structures run all signals of the tables.
         for pair in load():
             _check_names(place, [("excitations", pair.signal)], excitations)
+        _check_names(place, _gap_signals(place, config), excitations)
         _check_lengths(place, config, excitations)
         _check_model(place, "twin: model", config["twin"]["model"])
         _check_twin(place, config)
