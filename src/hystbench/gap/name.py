@@ -159,6 +159,8 @@ def rank(
         found += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
+    if not found:
+        return tuple(declined)
     best = min(trial.score for _, trial in found)
     refined = []
     for attempt, trial in found:

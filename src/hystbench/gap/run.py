@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.errors import InputError
 from hystbench.files import write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.evidence import Evidence, check_units
@@ -53,6 +54,8 @@ def close_gap(
         If units do not match or the base does not run; nothing is written then.
     """
     check_units(evidence, base, place)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{folder}: a file; expected a folder to write into")
     finding = find(
         evidence.name,
         evidence.fit,

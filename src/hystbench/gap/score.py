@@ -132,6 +132,8 @@ class Score:
         k = columns.shape[1]
         if k == 0:
             return Amplitudes(np.zeros(0), self.of(residual, freedom))
+        if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
+            return Amplitudes(np.zeros(k), np.inf)  # a model that runs away
         scale = np.sqrt(np.mean(columns**2, axis=0))
         scale[scale == 0] = 1.0
         rest, inside = self.split(np.column_stack([residual, columns / scale]))
@@ -144,8 +146,6 @@ class Score:
         within = inside.T @ inside
         charge = np.zeros(k) if stiffness is None else stiffness / scale**2
         grams = np.array(parts)
-        if not (np.isfinite(grams).all() and np.isfinite(within).all()):
-            return Amplitudes(np.zeros(k), np.inf)  # a model that runs away
         beta = np.zeros(k)
         best = (np.inf, beta)
         for _ in range(ROUNDS + 1):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from hystbench.blocks.held import Hold
+from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor, noise_floor
 from hystbench.gap.sample import Sample
@@ -36,10 +39,17 @@ def start_state(
     """
     base = base.with_hold(hold)
     chain = base.chain
+    exact = Scene(chain, records, hold, fine=True).output
+    for record, simulated in zip(records, exact, strict=True):
+        lost = np.flatnonzero(~np.isfinite(simulated))
+        if len(lost):
+            raise InputError(
+                f"{base.name}: the output is not finite from {lost[0] * record.dt:g} s "
+                f"of {record.name} on; expected a base that stays bounded"
+            )
     state = State(
         chain, records, Sample.of(records), free=free_numbers(base), hold=hold
     ).settled()
-    exact = Scene(chain, records, hold, fine=True).output
     compared = [
         Compared(record, simulated)
         for record, simulated in zip(records, exact, strict=True)

@@ -13,6 +13,8 @@ from hystbench.record import FloatArray
 
 SAMPLES = 4000
 """Scored samples of a record: more than naming needs, as errors shrink with them."""
+SHOWN = 1e-6
+"""Of the noise: what a change of a whole number must do to be known at all."""
 STRETCHES = 20
 """Of a record, within which residuals may be correlated in any way."""
 
@@ -53,7 +55,11 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     columns = columns - share * (score.directions @ (score.directions.T @ columns))
     residual = residual - share * (score.directions @ inside)
     scale = np.sqrt(np.mean(columns**2, axis=0))
-    usable = scale > 0
+    # What the output shows of a number must be more than rounding.
+    values = np.array([abs(state.value(free)) for free in state.free])
+    shown = scale.copy()
+    shown[: len(values)] *= np.maximum(values, 1e-12)
+    usable = shown > SHOWN * np.sqrt(score.floor)
     columns = columns[:, usable] / scale[usable]
     weights = np.empty(len(residual))
     for part in state.sample.slices:
