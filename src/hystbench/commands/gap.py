@@ -6,6 +6,10 @@ from pathlib import Path
 
 import click
 
+from hystbench.gap.bases import load_base
+from hystbench.gap.evidence import load_evidence
+from hystbench.gap.run import close_gap
+
 
 @click.command()
 @click.argument("dataset", type=click.Path(path_type=Path))
@@ -21,10 +25,6 @@ def gap(dataset: Path, model: str, out: Path, report: bool) -> None:
 
     Writes OUT/gap.json, model.yaml, holdout/ and report.html.
     """
-    from hystbench.gap.bases import load_base
-    from hystbench.gap.evidence import load_evidence
-    from hystbench.gap.run import close_gap
-
     evidence = load_evidence(dataset)
     base, note = load_base(model, evidence)
     if note:

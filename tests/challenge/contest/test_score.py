@@ -163,6 +163,17 @@ def test_what_a_range_holds(asked, place, share):
     assert share_held(asked, place) == pytest.approx(share)
 
 
+def test_a_magnitude_is_of_both_signs():
+    inner = AMPLITUDE | {"edges": [-2.0, -1.0, 1.0, 2.0], "shares": [0.2, 0.5, 0.3]}
+    outer = view("amplitude", 1.0, 2.0, "A")
+    assert share_held(outer, inner) == pytest.approx(0.3)
+    assert share_held(outer | {"axis": "magnitude of the input"}, inner) == (
+        pytest.approx(0.5)
+    )
+    whole = view("amplitude", 0.0, 2.0, "A") | {"axis": "abs(u)"}
+    assert share_held(whole, inner) == pytest.approx(1.0)
+
+
 def test_the_first_view_must_be_of_the_right_kind():
     # the amplitude's range holds all of the power, and tells nothing of a resonance
     assert not where_hit(view("amplitude", -1.0, 1.0, "A"), [effect()])

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hystbench.challenge.where import HALF, held
+
+#: An amplitude's axis may be the input, or its magnitude.
+_MAGNITUDE = re.compile(r"magnitude|abs|\|")
 
 
 def where_hit(
@@ -65,4 +69,7 @@ def share_held(view: Mapping[str, Any], place: Mapping[str, Any]) -> float:
         # the last bin holds all that came later
         last_edge = place["edges"][-1]
         high = high if high < last_edge else last_edge
+    if place["view"] == "amplitude" and _MAGNITUDE.search(view["axis"]):
+        # both signs of the input, and zero once
+        return held(place, max(low, 0.0), high) + held(place, -high, -max(low, 0.0))
     return held(place, low, high)

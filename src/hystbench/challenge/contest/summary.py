@@ -107,19 +107,19 @@ def reach(rows: Sequence[Row], transfer: Sequence[Row]) -> list[Asked]:
     unlisted = _of(rows, "unlisted")
     hidden = [row for row in rows if row.kind in ("single", "pair", "triple")]
     found = [
-        _least("top1, GPI, 20 dB", shares(gpi_20, "top1"), 0.97),
-        _least("top1, foreign, 20 dB", shares(foreign_20, "top1"), 0.95),
-        _least("in_set, 20 dB", shares(at_20, "in_set"), 0.99),
-        _least("top1, GPI, 10 dB", shares(gpi_10, "top1"), 0.92),
-        _least("top1, foreign, 10 dB", shares(foreign_10, "top1"), 0.80),
-        _least("exact_set, GPI, 20 dB", shares(gpi_20, "exact"), 0.92),
-        _least("exact_set, foreign, 20 dB", shares(foreign_20, "exact"), 0.88),
+        _least("top1 GPI 20 dB", shares(gpi_20, "top1"), 0.97),
+        _least("top1 foreign 20 dB", shares(foreign_20, "top1"), 0.95),
+        _least("in_set 20 dB", shares(at_20, "in_set"), 0.99),
+        _least("top1 GPI 10 dB", shares(gpi_10, "top1"), 0.92),
+        _least("top1 foreign 10 dB", shares(foreign_10, "top1"), 0.80),
+        _least("exact_set GPI 20 dB", shares(gpi_20, "exact"), 0.92),
+        _least("exact_set foreign 20 dB", shares(foreign_20, "exact"), 0.88),
         _most("false_alarm", shares(_of(rows, "none"), "false_alarm"), 0.01),
         _least("pairs_both", shares(_of(rows, "pair"), "all_named"), 0.88),
         _least("triples_all", shares(_of(rows, "triple"), "all_named"), 0.70),
         _least("unlisted_unnamed", shares(unlisted, "unnamed"), 0.90),
         _most("unlisted_confident", _confident(unlisted), 0.03),
-        _least("where_hit, 20 dB", shares(at_20, "where_hit"), 0.90),
+        _least("where_hit 20 dB", shares(at_20, "where_hit"), 0.90),
         _number("shrink_median", middle(hidden, lambda r: r.shrink), hidden, 0.95),
         _calibrated(rows),
         _covering(coverage(hidden)),
@@ -226,8 +226,6 @@ def _transferred(rows: Sequence[Row], transfer: Sequence[Row]) -> Asked:
         for each in (rows, transfer)
     )
     if here.share is None or there.share is None:
-        return Asked("transfer, top1, 20 dB", "", None, None, None, there.cases, None)
+        return Asked("transfer top1 20 dB", "", None, None, None, there.cases, None)
     least = here.share - 0.05
-    return Asked(
-        "transfer, top1, 20 dB", f">= {least:.3f}", *there, there.share >= least
-    )
+    return Asked("transfer top1 20 dB", f">= {least:.3f}", *there, there.share >= least)
