@@ -1,5 +1,6 @@
 """What every effect owes the search, checked over all effects and their variants."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -261,6 +262,13 @@ def test_a_trial_scores_as_the_model_that_it_stands_for(chain, variant):
     for values in values_of(variant):
         trial = Attempt(state, variant, score).at(tuple(values.values()))
         model = with_effect(state, variant, values)
+        if variant.zero is not None:
+            # Only what differs from the effect's own zero counts: the rest is how
+            # finely it steps through the hysteresis.
+            nothing = with_effect(state, variant, {**values, **variant.zero})
+            own = state.sample.take(nothing.scene.output)
+            chain_s = state.sample.take(state.scene.output)
+            model = replace(model, correction=chain_s - own)
         assert trial.score == pytest.approx(score_of(model, score), rel=1e-9)
 
 

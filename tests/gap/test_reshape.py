@@ -6,12 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.gap.reshape import (
-    FINER,
     OPERATORS,
     SMALLEST,
     directions,
     orthonormal,
-    step_error,
 )
 from tests.gap.examples import plain_play
 from tests.gap.small import chains, records, state_of
@@ -111,15 +109,3 @@ def test_without_a_hysteresis_gain_and_offset_are_what_can_be_wrong():
     )
     assert rest < 1e-9 * whole
     assert np.isfinite(output).all()
-
-
-def test_the_step_error_is_that_of_shorter_steps():
-    """Of a linear chain with a band-limited input steps of any length are exact."""
-    static = state_of(chains()["gain"])
-    assert np.abs(step_error(static.scene, static.sample)).max() < 1e-9
-    assert FINER > 1
-    wrapped = state_of(chains()["wrapped"])
-    error = step_error(wrapped.scene, wrapped.sample)
-    assert error.shape == (len(wrapped.sample), 1)
-    size = np.sqrt(np.mean(wrapped.sample.take(wrapped.scene.output) ** 2))
-    assert 0 < np.sqrt(np.mean(error**2)) < 0.05 * size

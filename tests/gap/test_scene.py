@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.scene import Scene
 from hystbench.model import Model
@@ -89,10 +90,21 @@ def test_a_second_wrapping_block_goes_around_the_first():
 def test_quick_with_its_correction_is_exact_for_the_chain_itself(name, hold):
     model = Model("whole", CURRENT, DISPLACEMENT, chains()[name]).with_hold(hold)
     state = state_of(model.chain, hold=hold)
-    exact = [model.simulate(one.u, one.dt) for one in records()]
+    exact = Scene(model.chain, records(), hold, fine=True).output
     size = max(np.abs(y).max() for y in exact)
     residual = state.measured - state.sample.take(exact)
     assert state.residual == pytest.approx(residual, abs=1e-11 * size)
+
+
+def test_plain_is_the_model_and_fine_steps_through_the_hysteresis_alone():
+    model = Model("whole", CURRENT, DISPLACEMENT, chains()["hysteresis"])
+    chain = model.with_hold("band-limited").chain
+    same(Scene(chain, records(), "band-limited").output, from_scratch(chain))
+    finer = []
+    for one in records():
+        u = interpolate(one.u, 8)
+        finer.append(model.simulate(u, one.dt / 8)[::8])
+    same(Scene(chain, records(), "band-limited", fine=True).output, finer)
 
 
 def test_quick_is_not_exact_where_a_mode_takes_a_band_limited_signal():

@@ -41,11 +41,11 @@ def directions(scene: Scene, sample: Sample, more: FloatArray) -> FloatArray:
     Returns
     -------
     ndarray, shape (scored samples, d)
-        Without a hysteresis in the chain, what a gain and an offset could do.
+        Without a hysteresis in the chain, only what ``more`` holds.
     """
     place = scene.hysteresis
     if place is None:
-        columns = [np.ones(len(sample)), sample.take(scene.output)]
+        columns = []
     else:
         behind = scene.chain[scene.behind_hysteresis :]
         columns = [
@@ -56,6 +56,8 @@ def directions(scene: Scene, sample: Sample, more: FloatArray) -> FloatArray:
 
 def orthonormal(columns: FloatArray) -> FloatArray:
     """Give an orthonormal basis of columns, each scaled to one first."""
+    if not columns.shape[1]:
+        return columns
     size = np.linalg.norm(columns, axis=0)
     usable = np.isfinite(size) & (size > 0)
     columns = columns[:, usable] / size[usable]
