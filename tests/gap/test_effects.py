@@ -268,7 +268,7 @@ def test_a_trial_scores_as_the_model_that_it_stands_for(chain, variant):
             nothing = with_effect(state, variant, {**values, **variant.zero})
             own = state.sample.take(nothing.scene.output)
             chain_s = state.sample.take(state.scene.output)
-            model = replace(model, correction=chain_s - own)
+            model = replace(model, correction=state.correction + chain_s - own)
         assert trial.score == pytest.approx(score_of(model, score), rel=1e-9)
 
 

@@ -99,13 +99,7 @@ def test_reshaping_passes_the_blocks_behind():
     assert through < around
 
 
-def test_without_a_hysteresis_gain_and_offset_are_what_can_be_wrong():
+def test_without_a_hysteresis_nothing_can_be_of_a_wrong_shape():
     state = state_of(chains()["gain and mode"])
     basis = directions(state.scene, state.sample, np.zeros((len(state.sample), 0)))
-    assert basis.shape[1] == 2
-    output = state.sample.take(state.scene.output)
-    rest, whole = left_over(
-        basis, [3.0 * y - 2.0 for y in state.scene.output], state.sample
-    )
-    assert rest < 1e-9 * whole
-    assert np.isfinite(output).all()
+    assert basis.shape == (len(state.sample), 0)

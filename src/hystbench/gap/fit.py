@@ -176,7 +176,7 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
     for _ in range(rounds if state.free else 0):
         columns = np.hstack([state.tangents, state.beside_columns])
         count = len(state.free)
-        size = np.array([max(abs(state.value(free)), 1e-12) for free in state.free])
+        size = sizes(state)
         before = best
         for damping in DAMPING:
             stiffness = np.zeros(columns.shape[1])
@@ -196,6 +196,18 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
         if before - best < ENOUGH:
             break
     return state, best
+
+
+def sizes(state: State) -> FloatArray:
+    """Give the size of each free number: its value, or what moves the output a tenth.
+
+    The second is for those that are zero, or nearly.
+    """
+    output = state.measured - state.residual
+    moved = np.sqrt(np.mean(state.tangents**2, axis=0))
+    tenth = 0.1 * np.sqrt(np.mean(output**2)) / np.maximum(moved, 1e-300)
+    values = np.array([abs(state.value(free)) for free in state.free])
+    return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, 1e6))
 
 
 def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
