@@ -7,7 +7,9 @@ from pathlib import Path
 import click
 
 from hystbench.gap.bases import load_base
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.evidence import Evidence, load_evidence
+from hystbench.gap.excitations import write_experiment as save
+from hystbench.gap.finding import Finding
 from hystbench.gap.run import close_gap
 
 
@@ -19,8 +21,15 @@ from hystbench.gap.run import close_gap
     help="Model file, gpi, linear, column, or package.module:function.",
 )
 @click.option("--out", type=click.Path(path_type=Path), required=True)
+@click.option(
+    "--write-experiment",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write the excitation that would tell likely effects apart as a CSV signal.",
+)
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
-def gap(dataset: Path, model: str, out: Path, report: bool) -> None:
+def gap(
+    dataset: Path, model: str, out: Path, write_experiment: Path | None, report: bool
+) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
 
     Writes OUT/gap.json, model.yaml, holdout/ and report.html.
@@ -37,6 +46,16 @@ def gap(dataset: Path, model: str, out: Path, report: bool) -> None:
         report=report,
         say=lambda line: click.echo(line, err=True),
     )
+    if write_experiment is not None:
+        _write_experiment(finding, evidence, write_experiment)
     effects = [item["name"] for item in finding.content["effects"]]
     named = f": {', '.join(effects)}" if effects else ""
     click.echo(f"{out / 'gap.json'}: {finding.content['verdict']}{named}")
+
+
+def _write_experiment(finding: Finding, evidence: Evidence, path: Path) -> None:
+    if finding.experiment is None:
+        click.echo(f"{path}: not written: no effects that cannot be told apart")
+        return
+    save(finding.experiment.excitation, evidence.input, path)
+    click.echo(f"{path}: {finding.experiment.sentence}")

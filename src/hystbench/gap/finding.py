@@ -14,7 +14,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.gap.compared import Compared
 from hystbench.gap.effects import effects
-from hystbench.gap.experiment import next_experiment, parameter_tangents
+from hystbench.gap.experiment import Experiment, next_experiment, parameter_tangents
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.locate import curves, locate
@@ -59,6 +59,8 @@ class Finding:
         What gap.json holds, but for what the hold-out records show.
     curves : mapping
         What the pictures of where the gap is are drawn from.
+    experiment : Experiment, optional
+        What would tell a set of likely effects apart.
     """
 
     base: Model
@@ -69,6 +71,7 @@ class Finding:
     black_box: BlackBox
     content: Mapping[str, Any]
     curves: Mapping[str, Any]
+    experiment: Experiment | None
 
 
 def find(
@@ -144,6 +147,7 @@ def decide(
     errors = standard_errors(finer, score)
     by_effect = named.reasons
     model = augmented(base, state)
+    experiment = _experiment(base, named, by_effect, records, floor)
     content = {
         "dataset": dataset,
         "model": base.name,
@@ -156,12 +160,20 @@ def decide(
         ],
         "where": [view.to_mapping() for view in views],
         "ranking": _ranking(named),
-        "next_experiment": _experiment(base, named, by_effect, records, floor),
+        "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": _base_parameters(base, state),
         "black_box": {"explained_on_folds": box.explained_on_folds},
     }
     return Finding(
-        base, model, state, floor, left, box, content, curves(compared, floor)
+        base,
+        model,
+        state,
+        floor,
+        left,
+        box,
+        content,
+        curves(compared, floor),
+        experiment,
     )
 
 
@@ -352,7 +364,7 @@ def _experiment(
     by_effect: Mapping[str, Sequence[Candidate]],
     records: Sequence[Record],
     floor: Floor,
-) -> dict[str, Any] | None:
+) -> Experiment | None:
     """Look for the excitation that tells a set of likely effects apart."""
     if not all(block.reruns for block in base.chain):
         return None
@@ -365,6 +377,5 @@ def _experiment(
             continue
         models = [(x.effect, augmented(base, x.state)) for x in usable[:3] if x.state]
         tangents = parameter_tangents([(model, model.free) for _, model in models])
-        found = next_experiment(models, records, floor.rms, tangents=tangents)
-        return found.mapping()
+        return next_experiment(models, records, floor.rms, tangents=tangents)
     return None
