@@ -13,6 +13,8 @@ from hystbench.record import FloatArray
 
 SAMPLES = 4000
 """Scored samples of a record: more than naming needs, as errors shrink with them."""
+RANK = 1e-9
+"""Directions that weigh less than this share are not told apart: they are left out."""
 SHOWN = 1e-6
 """Of the noise: what a change of a whole number must do to be known at all."""
 STRETCHES = 20
@@ -64,7 +66,7 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     weights = np.empty(len(residual))
     for part in state.sample.slices:
         weights[part] = 1.0 / max(float(np.mean(residual[part] ** 2)), score.floor)
-    bread = np.linalg.pinv(columns.T @ (weights[:, None] * columns), rcond=1e-12)
+    bread = np.linalg.pinv(columns.T @ (weights[:, None] * columns), rcond=RANK)
     meat = np.zeros_like(bread)
     clusters = 0
     for part in state.sample.slices:
