@@ -1,0 +1,81 @@
+# The blind contest: `snakemake blind`. Data are made, solved and thrown away chunk by
+# chunk. A solver's job has the data as its only input; the truth is in no file until
+# the judge, who has the answers as input, makes it anew from the seeds.
+import importlib.util
+
+from hystbench.challenge.contest.plan import chunks, plan
+from hystbench.errors import nearest
+
+BLIND = "results/blind"
+CONTEST = config["blind"]
+PLANT_KERNELS = sorted(map(str, PACKAGE.glob("challenge/kernels/*.so")))
+# Solvers that need a package that is not there, and those that enter.
+MISSING = {
+    name: [needed for needed in about["needs"] if not importlib.util.find_spec(needed)]
+    for name, about in CONTEST["solvers"].items()
+}
+SKIPPED = {
+    name: f"not entered: needs {' and '.join(needed)} (pip install hystbench[rivals])"
+    for name, needed in MISSING.items()
+    if needed
+}
+ENTERED = [name for name in CONTEST["solvers"] if name not in SKIPPED]
+# The set that is judged, with all solvers, and the transfer set, with one.
+BLIND_SOLVERS = {CONTEST["set"]: ENTERED}
+if CONTEST["transfer"]:
+    BLIND_SOLVERS["transfer"] = list(
+        dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
+    )
+if CONTEST["solver"] not in CONTEST["solvers"]:
+    sys.exit(
+        f"hystbench: {PLACE}: blind: solver: {CONTEST['solver']!r}; "
+        + nearest(CONTEST["solver"], CONTEST["solvers"])
+    )
+
+
+def blind_chunks(name):
+    """Numbers of the chunks of a set."""
+    return list(chunks(plan(name, CONTEST["scale"]), CONTEST["chunk"]))
+
+
+def blind_case_settings(wildcards):
+    """Which cases a chunk holds."""
+    return settings_text(
+        {
+            "set": wildcards.set,
+            "scale": CONTEST["scale"],
+            "size": CONTEST["chunk"],
+            "chunk": wildcards.chunk,
+        }
+    )
+
+
+def blind_solver_settings(wildcards):
+    """How a solver is run."""
+    about = CONTEST["solvers"][wildcards.solver]
+    return settings_text(
+        {
+            "name": wildcards.solver,
+            "command": about["command"],
+            "time_limit_s": about["time_limit_s"],
+            "keep": CONTEST["keep"],
+        }
+    )
+
+
+def blind_solver_code(wildcards):
+    """Source of a solver of hystbench's own; of others only the command is known."""
+    command = CONTEST["solvers"][wildcards.solver]["command"]
+    modules = ["hystbench.commands.blind_solve"]
+    if command[0] == "hystbench":
+        called = f"hystbench.commands.{command[1].replace('-', '_')}"
+        modules += [called] if called in GRAPH.modules else []
+        if command[1] == "gap":
+            # Effects are found by name, so that no import tells of them.
+            modules += sorted(GRAPH.find_descendants("hystbench.gap"))
+    return code(*modules)
+
+
+def blind_data(path):
+    """Thrown away when solved, unless the settings keep it."""
+    return directory(path) if CONTEST["keep_data"] else temp(directory(path))

@@ -1,0 +1,23 @@
+# What the rules of gap.smk look up for a case.
+
+
+def of_case(key):
+    """Files of a case, by its name."""
+    return lambda wildcards: GAP_CASES[wildcards.case][key]
+
+
+def model_of_case(wildcards):
+    """The model file of a case; a base that is identified has none."""
+    model = GAP_CASES[wildcards.case]["model"]
+    return [model] if model.endswith((".yaml", ".yml")) else []
+
+
+def last_round(wildcards):
+    """The progress after the last round; nothing where one job names all effects."""
+    if config["gap"]["jobs"] == "whole":
+        return []
+    for number in range(1, 10):
+        done = checkpoints.gap_choose.get(case=wildcards.case, round=number).output[0]
+        if json.loads(Path(done).read_text())["done"]:
+            return done
+    raise ValueError(f"{wildcards.case}: more rounds than there may be effects")
