@@ -1,9 +1,8 @@
 """The blind contest through the real workflow: a dozen cases, solvers good and bad."""
 
-from __future__ import os
-
 import csv
 import json
+import os
 import sys
 
 import pytest
