@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.finding import near
-from hystbench.gap.name import TIE, Candidate
+from hystbench.gap.name import TIE, Candidate, near
 from hystbench.gap.verdict import ABOVE, LOOSE, Left, confidence, judge, what_is_left
 from tests.gap.small import block, measured, state_of
 

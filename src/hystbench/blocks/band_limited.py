@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -81,6 +82,22 @@ def interpolate(v: FloatArray, factor: int) -> FloatArray:
     series = sine_series(v)
     count = (len(v) - 1) * factor + 1
     return series.line(count, 0.0, factor) + series.sines(count, 1.0, factor)
+
+
+def finer(v: FloatArray, factor: int) -> FloatArray:
+    """Do what :func:`interpolate` does, once for a signal that comes back.
+
+    A fit sends the same signal through hysteresis with other parameters. The result is
+    shared: it must not be written to.
+    """
+    return _finer(v.tobytes(), factor)
+
+
+@lru_cache(maxsize=32)
+def _finer(samples: bytes, factor: int) -> FloatArray:
+    fine = interpolate(np.frombuffer(samples), factor)
+    fine.setflags(write=False)
+    return fine
 
 
 def straight_lines(v: FloatArray, factor: int) -> FloatArray:

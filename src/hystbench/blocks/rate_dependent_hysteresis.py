@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.band_limited import interpolate
+from hystbench.blocks.band_limited import finer
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import choice, number
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
@@ -75,8 +74,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         fine = OVERSAMPLING if self.holding == "band-limited" and len(v) > 2 else 1
         if fine > 1:
             place = np.arange((len(v) - 1) * fine + 1) / fine
-            # A fit comes back with the same v and another coefficient.
-            v, u = _finer(v.tobytes()), np.interp(place, np.arange(len(u)), u)
+            v, u = finer(v, fine), np.interp(place, np.arange(len(u)), u)
             if growth is not None:
                 growth = np.interp(place, np.arange(len(growth)), growth)
         rate = np.gradient(v, dt / fine)
@@ -86,8 +84,3 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         else:
             growth = 1.0 + effect if growth is None else (1.0 + effect) * growth
         return inner.grow(v, u, dt / fine, growth)[::fine].copy()
-
-
-@lru_cache(maxsize=16)
-def _finer(samples: bytes) -> FloatArray:
-    return interpolate(np.frombuffer(samples), OVERSAMPLING)

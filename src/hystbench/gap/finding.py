@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,7 +18,7 @@ from hystbench.gap.experiment import Experiment, next_experiment, parameter_tang
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.locate import curves, locate
-from hystbench.gap.name import Candidate, Named, make_score, name
+from hystbench.gap.name import Candidate, Named, Say, make_score, name, near, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.start import start_state
 from hystbench.gap.state import Added, State
@@ -32,12 +32,6 @@ from hystbench.gap.verdict import (
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
-
-Say = Callable[[str], None]
-
-
-def _silent(line: str) -> None:
-    """Say nothing."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +74,7 @@ def find(
     base: Model,
     hold: Hold = "band-limited",
     declared: float | None = None,
-    say: Say = _silent,
+    say: Say = silent,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
 
@@ -113,7 +107,7 @@ def decide(
     start: State,
     floor: Floor,
     named: Named,
-    say: Say = _silent,
+    say: Say = silent,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
 
@@ -275,19 +269,6 @@ def _effect(
         "confidence": 0.0 if own is None else confidence(own, ranking, left),
         "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
     }
-
-
-def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
-    """Give the effects that score within the tie of one that was added."""
-    from hystbench.gap.name import TIE
-
-    return tuple(
-        item.effect
-        for item in ranking
-        if item.effect != first.effect
-        and item.state is not None
-        and item.score < first.score + TIE
-    )
 
 
 def _parameters(item: Added, state: State, errors: FloatArray) -> dict[str, Any]:

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from hystbench.files import read_json, write_json
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import Say, _silent, black_box, decide
+from hystbench.gap.finding import black_box, decide
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
-from hystbench.gap.name import name
+from hystbench.gap.name import Say, name, silent
 from hystbench.gap.run import show, write_shown
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
@@ -24,7 +24,7 @@ def decide_in(
     evidence: Evidence,
     base: Model,
     progress: Path | None,
-    say: Say = _silent,
+    say: Say = silent,
 ) -> None:
     """Give the verdict and write it, the model and the curves to a folder.
 

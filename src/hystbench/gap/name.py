@@ -38,7 +38,29 @@ WORSE = 0.1
 Without this a gain near zero would leave all to the reshaping of the hysteresis.
 """
 
+EXACT = 3
+"""Of the finalists, those that are simulated exactly before one is taken."""
+FURTHER = 100.0
+"""By how much a further effect must lower the score."""
+MATTERS = 0.01
+"""Share of the gap's power that makes a further effect matter."""
+CERTAIN = 250.0
+"""By how much one that matters less must lower the score."""
+BESIDE_SHAPE = 0.1
+"""Share that matters beside a hysteresis of the wrong shape."""
+MOST_OF_IT = 0.3
+"""Share that makes a wrong shape of the hysteresis matter, dear as it is charged."""
+SWAP = 3.0
+"""By how much a rival must score better to take an effect's place."""
+CLOSE = 0.6
+"""Rivals are those with this share of the gain of the best of a round."""
+SHAPE = "hysteresis-shape"
+
 Say = Callable[[str], None]
+
+
+def silent(line: str) -> None:
+    """Say nothing."""
 
 
 @dataclass(frozen=True)
@@ -86,15 +108,16 @@ class Round:
     ranking: tuple[Candidate, ...]
     taken: bool
 
-    @property
-    def rivals(self) -> tuple[str, ...]:
-        """Effects that cannot be told from the first."""
-        first = self.ranking[0]
-        return tuple(
-            item.effect
-            for item in self.ranking[1:]
-            if item.state is not None and item.score < first.score + TIE
-        )
+
+def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
+    """Give the effects that score within the tie of one that was added."""
+    return tuple(
+        item.effect
+        for item in ranking
+        if item.effect != first.effect
+        and item.state is not None
+        and item.score < first.score + TIE
+    )
 
 
 @dataclass(frozen=True)
@@ -215,11 +238,7 @@ def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:
     return replace(item, state=after, score=value, gain=now - value)
 
 
-EXACT = 3
-"""Of the finalists, those that are simulated exactly before one is taken."""
-
-
-def name(state: State, floor_rms: float, say: Say = lambda line: None) -> Named:
+def name(state: State, floor_rms: float, say: Say = silent) -> Named:
     """Add effects to a model for as long as one pays."""
     return settled(_path(state, floor_rms, say), state, floor_rms, say)
 
@@ -239,15 +258,6 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
     return Named(state, found.rounds, found.reasons)
-
-
-SHAPE = "hysteresis-shape"
-MATTERS = 0.01
-"""Share of the gap's power that makes a further effect matter."""
-CERTAIN = 250.0
-"""By how much one that matters less must lower the score."""
-BESIDE_SHAPE = 0.1
-"""Share that matters beside a hysteresis of the wrong shape."""
 
 
 @dataclass(frozen=True)
@@ -374,12 +384,6 @@ def _pays(item: Candidate, state: State, floor: float, gap: float) -> bool:
     return item.gain > CERTAIN or (item.gain > FURTHER and share > matters)
 
 
-MOST_OF_IT = 0.3
-"""Share that makes a wrong shape of the hysteresis matter, dear as it is charged."""
-FURTHER = 100.0
-"""By how much a further effect must lower the score."""
-
-
 def reconsidered(
     state: State, rounds: Sequence[Round], floor_rms: float, say: Say
 ) -> tuple[State, dict[str, tuple[Candidate, ...]]]:
@@ -412,11 +416,6 @@ def reconsidered(
             return best.state or state, {**rankings, best.effect: ranking}
         rankings[item.effect] = ranking
     return state, rankings
-
-
-SWAP = 3.0
-CLOSE = 0.6
-"""Rivals are those with this share of the gain of the best of a round."""
 
 
 def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,9 @@ from hystbench.errors import InputError
 from hystbench.files import write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.evidence import Evidence, check_units
-from hystbench.gap.finding import Finding, Say, _silent, find
+from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
+from hystbench.gap.name import Say, silent
 from hystbench.gap.nuisance import Nuisance, left_over, offset_and_mains
 from hystbench.gap.scene import Scene
 from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink
@@ -31,7 +33,7 @@ def close_gap(
     *,
     place: str = "model",
     report: bool = True,
-    say: Say = _silent,
+    say: Say = silent,
 ) -> Finding:
     """Find what the base lacks, show on hold-out records how the gap shrinks, write it.
 
@@ -103,13 +105,20 @@ def write_shown(
     write_json(folder / "gap.json", {**decided, **shown.content})
 
 
+@dataclass(frozen=True)
 class Shown:
-    """What the hold-out records show."""
+    """What the hold-out records show.
 
-    def __init__(
-        self, content: dict[str, Any], outputs: list[tuple[FloatArray, FloatArray]]
-    ) -> None:
-        self.content, self.outputs = content, outputs
+    Parameters
+    ----------
+    content : dict
+        ``gap``, ``records``, ``ladder`` and ``black_box`` of gap.json.
+    outputs : list of (ndarray, ndarray)
+        Outputs before and after, of each record.
+    """
+
+    content: dict[str, Any]
+    outputs: list[tuple[FloatArray, FloatArray]]
 
 
 def show(

@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from hystbench.blocks.band_limited import interpolate
+from hystbench.blocks.band_limited import finer
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
@@ -156,13 +156,8 @@ FINER = 8
 
 def _finely(step: Block | Wrapped, z: FloatArray, dt: float) -> FloatArray:
     """Simulate hysteresis, which does not look at the model's input, in short steps."""
-    v = _finer(z.tobytes())
+    v = finer(z, FINER)
     return _plain(step).simulate(v, v, dt / FINER)[::FINER].copy()
-
-
-@lru_cache(maxsize=32)
-def _finer(samples: bytes) -> FloatArray:
-    return interpolate(np.frombuffer(samples), FINER)
 
 
 def _plain(step: Block | Wrapped) -> Block | Wrapped:

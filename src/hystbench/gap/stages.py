@@ -34,6 +34,7 @@ from hystbench.gap.name import (
     advance,
     make_score,
     settled,
+    silent,
 )
 from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
@@ -121,7 +122,7 @@ def choose(
     base: Model,
     before: Mapped,
     tried: Mapping[str, Mapped],
-    say: Say = lambda line: None,
+    say: Say = silent,
 ) -> Mapped:
     """Rank the effects of a round and add the one that pays, if any does.
 
@@ -154,7 +155,7 @@ def named_by(
     base: Model,
     content: Mapped,
     start: State,
-    say: Say = lambda line: None,
+    say: Say = silent,
 ) -> tuple[Named, Floor]:
     """Give what the rounds named, and the floor that they were judged by.
 
