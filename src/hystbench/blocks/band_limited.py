@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-from typing import NamedTuple
+import weakref
+from collections.abc import Callable
+from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,45 @@ from numpy.typing import NDArray
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]
+
+
+Result = TypeVar("Result")
+
+
+class Kept:
+    """Results for signals that cannot change: a fit sends the same one in many times.
+
+    A signal is known by its place in memory for as long as it lives. One that may be
+    written to is never kept.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[int, str, int], object] = {}
+        self._watched: dict[int, weakref.ref[FloatArray]] = {}
+
+    def get(
+        self, v: FloatArray, kind: str, number: int, compute: Callable[[], Result]
+    ) -> Result:
+        """Look up what was computed of a signal, or compute it."""
+        if v.flags.writeable or v.base is not None:
+            return compute()
+        key = (id(v), kind, number)
+        if key not in self._known:
+            if id(v) not in self._watched:
+                self._watched[id(v)] = weakref.ref(v, self._forget(id(v)))
+            self._known[key] = compute()
+        return cast("Result", self._known[key])
+
+    def _forget(self, place: int) -> Callable[[object], None]:
+        def forget(_: object) -> None:
+            self._watched.pop(place, None)
+            for key in [key for key in self._known if key[0] == place]:
+                del self._known[key]
+
+        return forget
+
+
+_kept = Kept()
 
 
 class SineSeries(NamedTuple):
@@ -57,8 +97,12 @@ def sine_series(v: FloatArray) -> SineSeries:
     Parameters
     ----------
     v : ndarray, shape (n,)
-        At least two samples.
+        At least two samples. Of one that cannot be written to, the series is kept.
     """
+    return _kept.get(v, "series", 1, lambda: _sine_series(v))
+
+
+def _sine_series(v: FloatArray) -> SineSeries:
     from scipy.fft import next_fast_len  # late: a filter's process never needs it
 
     n = len(v)
@@ -85,19 +129,17 @@ def interpolate(v: FloatArray, factor: int) -> FloatArray:
 
 
 def finer(v: FloatArray, factor: int) -> FloatArray:
-    """Do what :func:`interpolate` does, once for a signal that comes back.
+    """Do what :func:`interpolate` does, once for a signal that cannot be written to.
 
-    A fit sends the same signal through hysteresis with other parameters. The result is
-    shared: it must not be written to.
+    The result cannot be written to either.
     """
-    return _finer(v.tobytes(), factor)
 
+    def compute() -> FloatArray:
+        fine = interpolate(v, factor)
+        fine.setflags(write=False)
+        return fine
 
-@lru_cache(maxsize=32)
-def _finer(samples: bytes, factor: int) -> FloatArray:
-    fine = interpolate(np.frombuffer(samples), factor)
-    fine.setflags(write=False)
-    return fine
+    return _kept.get(v, "finer", factor, compute)
 
 
 def straight_lines(v: FloatArray, factor: int) -> FloatArray:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock, StateSpace
 from hystbench.blocks.parameter import choice, number
+from hystbench.record import FloatArray
 
 MODES = 24
 """Modes that are kept; what is left of the static gain goes to the last of them."""
@@ -41,10 +43,17 @@ class EddyDiffusion(LinearBlock):
             poles = ((2 * np.arange(MODES) + 1) * np.pi / 2) ** 2
             shares = 2 / poles
         else:
-            from scipy.special import jn_zeros  # late: a filter never needs it
-
-            poles = jn_zeros(0, MODES) ** 2
+            poles = _zeros() ** 2
             shares = 4 / poles
         shares[-1] += 1 - shares.sum()
         rates = poles / self.time_constant_s
         return StateSpace(np.diag(-rates), rates, shares, 0.0)
+
+
+@lru_cache(maxsize=1)
+def _zeros() -> FloatArray:
+    """Give the first zeros of the Bessel function J0."""
+    from scipy.special import jn_zeros  # late: a filter never needs it
+
+    zeros: FloatArray = jn_zeros(0, MODES)
+    return zeros

@@ -55,7 +55,10 @@ class Scene:
             start = k
             while isinstance(self.chain[start], WrappingBlock):
                 start -= 1
-            stages.append(self.run(self.chain[start : k + 1], stages[start]))
+            signals = self.run(self.chain[start : k + 1], stages[start])
+            for z in signals:
+                z.setflags(write=False)  # so that what it is made of can be kept
+            stages.append(signals)
         return tuple(stages)
 
     @cached_property
@@ -77,7 +80,9 @@ class Scene:
         for z, record in zip(signals, self.records, strict=True):
             for step in steps:
                 if finely and (isinstance(step, Wrapped) or step.hysteretic):
-                    z = _finely(step, z, record.dt)
+                    z = _finely(step, z, record.dt, FINER)
+                elif self.quick and _takes_short_steps(step):
+                    z = _finely(step, z, record.dt, QUICK)
                 else:
                     z = step.simulate(z, record.u, record.dt)
             out.append(z)
@@ -151,13 +156,27 @@ def _quick(block: Block) -> Block:
 
 LIMITED = "band-limited"
 FINER = 8
-"""Steps through the hysteresis in a sampling interval."""
+"""Steps through the hysteresis in a sampling interval, where exact."""
+QUICK = 2
+"""The same for hysteresis that depends on the rate, where quick."""
 
 
-def _finely(step: Block | Wrapped, z: FloatArray, dt: float) -> FloatArray:
+def _takes_short_steps(step: Block | Wrapped) -> bool:
+    """Tell whether hysteresis takes short steps by itself."""
+    if not isinstance(step, Wrapped):
+        return False
+    by = step.by
+    return (isinstance(by, HeldBlock) and by.holding == LIMITED) or (
+        isinstance(step.inner, Wrapped) and _takes_short_steps(step.inner)
+    )
+
+
+def _finely(
+    step: Block | Wrapped, z: FloatArray, dt: float, factor: int
+) -> FloatArray:
     """Simulate hysteresis, which does not look at the model's input, in short steps."""
-    v = finer(z, FINER)
-    return _plain(step).simulate(v, v, dt / FINER)[::FINER].copy()
+    v = finer(z, factor)
+    return _plain(step).simulate(v, v, dt / factor)[::factor].copy()
 
 
 def _plain(step: Block | Wrapped) -> Block | Wrapped:

@@ -8,6 +8,9 @@
 
 #include <math.h>
 #include <stddef.h>
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
 
 #define INLINE static inline __attribute__((always_inline))
 #define EXPORT __attribute__((visibility("default")))
@@ -69,15 +72,37 @@ INLINE double sum(lanes v)
 #endif
 }
 
+/* a < b ? a : b and a > b ? a : b, lane by lane. */
+#if defined(__AVX512F__)
+INLINE lanes lesser(lanes a, lanes b) { return (lanes)_mm512_min_pd(a, b); }
+INLINE lanes greater(lanes a, lanes b) { return (lanes)_mm512_max_pd(a, b); }
+#elif defined(__AVX__)
+INLINE lanes lesser(lanes a, lanes b) { return (lanes)_mm256_min_pd(a, b); }
+INLINE lanes greater(lanes a, lanes b) { return (lanes)_mm256_max_pd(a, b); }
+#else
+INLINE lanes lesser(lanes a, lanes b)
+{
+    for (int i = 0; i < LANES; i++) a[i] = a[i] < b[i] ? a[i] : b[i];
+    return a;
+}
+INLINE lanes greater(lanes a, lanes b)
+{
+    for (int i = 0; i < LANES; i++) a[i] = a[i] > b[i] ? a[i] : b[i];
+    return a;
+}
+#endif
+
 /* Eq. 4: every generalized play operator to max(gr - r, min(gl + r, w)).
  * Operator i reads the envelopes at [i * pace], pace being 0 or 1. */
 INLINE void play_step(index_t size, const double *left, const double *right,
                       index_t pace, const double *restrict r, double *restrict w)
 {
-    for (index_t i = 0; i < size; i++) {
-        double low = right[i * pace] - r[i], high = left[i * pace] + r[i];
-        double lower = high < w[i] ? high : w[i];
-        w[i] = low > lower ? low : lower;
+    UNROLL
+    for (index_t i = 0; i < size; i += LANES) {
+        lanes gl = pace ? load(left + i) : (lanes){0} + left[0];
+        lanes gr = pace ? load(right + i) : (lanes){0} + right[0];
+        lanes own = load(r + i);
+        store(w + i, greater(gr - own, lesser(gl + own, load(w + i))));
     }
 }
 
