@@ -324,8 +324,8 @@ def state_space(
     columns[:size, :size] = matrix.T
     y = np.empty(len(u))
     arrays = (columns, kernels.pad(b), kernels.pad(c))
-    vectors = len(x) // kernels.WIDTH
-    kernels.call("hb_state_space", len(u), vectors, *arrays, float(d), u, x, y)
+    sizes = (len(u), len(x) // kernels.WIDTH, size)
+    kernels.call("hb_state_space", *sizes, *arrays, float(d), u, x, y)
     return y, x[:size].copy()
 
 

@@ -32,6 +32,10 @@ PARAMETER = 4.0
 """Charge for a fitted parameter."""
 ROUNDS = 4
 """Of reweighting: amplitudes change little after."""
+STILL = 1e-3
+"""A round that changes the score by less is the last."""
+FEW = 12
+"""Columns of which none is looked for that is zero in a record."""
 
 
 class Amplitudes(NamedTuple):
@@ -134,19 +138,13 @@ class Score:
             return Amplitudes(np.zeros(0), self.of(residual, freedom))
         if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
             return Amplitudes(np.zeros(k), np.inf)  # a model that runs away
-        scale = np.sqrt(np.mean(columns**2, axis=0))
+        scale = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
         scale[scale == 0] = 1.0
-        rest, inside = self.split(np.column_stack([residual, columns / scale]))
-        if self.used is None:  # views of the samples, not copies
-            pieces = [rest[part] for part in self.sample.slices]
-        else:
-            pieces = [rest[part] for part in self.parts]
-        parts = [piece.T @ piece for piece in pieces]
-        counts = np.array([len(piece) for piece in pieces])
-        within = inside.T @ inside
+        grams, within = self._products(np.column_stack([residual, columns / scale]))
+        counts = np.array([len(part) for part in self.parts])
         charge = np.zeros(k) if stiffness is None else stiffness / scale**2
-        grams = np.array(parts)
-        beta = np.zeros(k)
+        d = max(self.directions.shape[1], 1)
+        beta, last = np.zeros(k), np.inf
         best = (np.inf, beta)
         for _ in range(ROUNDS + 1):
             full = np.concatenate([[1.0], -beta])
@@ -155,13 +153,68 @@ class Score:
             value = self._value(squares, power, freedom) + float(charge @ beta**2)
             if value < best[0]:
                 best = (value, beta)
+            if abs(last - value) < STILL:
+                break
+            last = value
             weights = self.weight / (counts * np.maximum(squares, self.floor))
-            d = max(self.directions.shape[1], 1)
             inner = d / max(power, d * self.floor)
             normal = np.tensordot(weights, grams, 1) + inner * within
-            matrix = normal[1:, 1:] + np.diag(charge + 1e-12 * np.diag(normal)[1:])
+            matrix = normal[1:, 1:].copy()
+            np.fill_diagonal(matrix, matrix.diagonal() * (1 + 1e-12) + charge)
             beta = _solve(matrix, normal[1:, 0], positive)
         return Amplitudes(best[1] / scale, best[0])
+
+    @cached_property
+    def _rows(self) -> tuple[FloatArray, ...]:
+        """Rows of the directions that count, by record."""
+        return tuple(self.directions[_place(part)] for part in self.parts)
+
+    @cached_property
+    def _spread(self) -> tuple[FloatArray, ...]:
+        """Products of the directions with each other, by record."""
+        return tuple(rows.T @ rows for rows in self._rows)
+
+    def _products(self, table: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Give products of columns with each other, of the rest and inside.
+
+        Returns
+        -------
+        grams : ndarray, shape (parts, k, k)
+            Of what is left of the columns beyond the directions, by record.
+        within : ndarray, shape (k, k)
+            Of the amplitudes of the directions.
+
+        Notes
+        -----
+        What is left is never computed: with ``Q`` a record's rows of the directions,
+        ``C`` of the columns and ``A`` the amplitudes, its products are
+        ``C'C - A'Q'C - C'Q A + A'Q'Q A``. Columns that are zero in a record, as those
+        of a signal that each record has of its own, cost nothing there.
+        """
+        pieces = []
+        for part, directions in zip(self.parts, self._rows, strict=True):
+            rows = table[_place(part)]
+            there = np.flatnonzero(rows.any(axis=0)) if rows.shape[1] > FEW else None
+            own = rows if there is None else rows[:, there]
+            pieces.append((there, own.T @ own, directions.T @ own))
+        k, d = table.shape[1], self.directions.shape[1]
+        if self.used is None:
+            inside = np.zeros((d, k))
+            for there, _, across in pieces:
+                inside[:, slice(None) if there is None else there] += across
+        else:
+            inside = self.directions.T @ table
+        grams = np.empty((len(pieces), k, k))
+        for gram, spread, (there, own, across) in zip(
+            grams, self._spread, pieces, strict=True
+        ):
+            np.matmul(inside.T, spread @ inside, out=gram)
+            place = slice(None) if there is None else there
+            mixed = inside.T @ across
+            gram[:, place] -= mixed
+            gram[place] -= mixed.T
+            gram[place if there is None else np.ix_(there, there)] += own
+        return grams, inside.T @ inside
 
     def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
         d = self.directions.shape[1]
@@ -170,17 +223,25 @@ class Score:
         return outside + float(inside) + PARAMETER * freedom
 
 
+def _place(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:
+    """Give a view's slice where samples stand in one piece, as they mostly do."""
+    whole = part[-1] - part[0] + 1 == len(part)
+    return slice(part[0], part[-1] + 1) if whole else part
+
+
 def _solve(
     matrix: FloatArray, vector: FloatArray, positive: Sequence[int]
 ) -> FloatArray:
     """Solve normal equations; amplitudes that must not be negative are set to zero."""
     active = np.ones(len(vector), dtype=bool)
     for _ in range(len(vector) + 1):
-        beta = np.zeros(len(vector))
-        keep = np.flatnonzero(active)
-        beta[keep] = np.linalg.lstsq(
-            matrix[np.ix_(keep, keep)], vector[keep], rcond=1e-13
-        )[0]
+        if active.all():
+            beta = np.linalg.lstsq(matrix, vector, rcond=1e-13)[0]
+        else:
+            beta = np.zeros(len(vector))
+            keep = np.flatnonzero(active)
+            part = matrix[np.ix_(keep, keep)]
+            beta[keep] = np.linalg.lstsq(part, vector[keep], rcond=1e-13)[0]
         negative = [k for k in positive if active[k] and beta[k] < 0]
         if not negative:
             return beta

@@ -35,7 +35,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_lms_play": (_SIZE, "iiaaiaafffaaaa"),
     "hb_play_rows": (None, "iiaaiaaa"),
     "hb_lms_volterra": (_SIZE, "iiiaaffffaaaa"),
-    "hb_state_space": (None, "iiaaafaaa"),
+    "hb_state_space": (None, "iiiaaafaaa"),
     "hb_modes": (_SIZE, "iiaaafaaa"),
     "hb_slew_limit": (None, "ifaa"),
     "hb_hardening": (_SIZE, "iffffaa"),

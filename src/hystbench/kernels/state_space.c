@@ -1,6 +1,8 @@
 /* Simulation of a discrete linear state-space system, one input, one output. */
 #include "lanes.h"
 
+#define FEW 4 /* states */
+
 INLINE void simulate(index_t n, const double *a, const double *b, const double *c,
                      double d, const double *u, double *state, double *y,
                      index_t vectors)
@@ -30,13 +32,48 @@ INLINE void simulate(index_t n, const double *a, const double *b, const double *
     copy(size, x, state);
 }
 
+/* The same of few states, each in a register of its own: less to wait for. */
+INLINE void simulate_few(index_t n, const double *a, const double *b, const double *c,
+                         double d, const double *u, double *state, double *y,
+                         index_t states)
+{
+    double x[FEW], next[FEW], own_a[FEW * FEW], own_b[FEW], own_c[FEW];
+    for (index_t i = 0; i < states; i++) {
+        x[i] = state[i], own_b[i] = b[i], own_c[i] = c[i];
+        for (index_t j = 0; j < states; j++) own_a[j * states + i] = a[j * WIDTH + i];
+    }
+    for (index_t k = 0; k < n; k++) {
+        double output = d * u[k];
+        UNROLL
+        for (index_t i = 0; i < states; i++) {
+            output += own_c[i] * x[i];
+            next[i] = own_b[i] * u[k];
+            UNROLL
+            for (index_t j = 0; j < states; j++)
+                next[i] += own_a[j * states + i] * x[j];
+        }
+        y[k] = output;
+        UNROLL
+        for (index_t i = 0; i < states; i++) x[i] = next[i];
+    }
+    copy(states, x, state);
+}
+
 /* x(k+1) = A x(k) + B u(k), y(k) = C x(k) + D u(k); a holds the columns of A,
  * and all is padded with zeros to a multiple of WIDTH states. */
-EXPORT void hb_state_space(index_t n, index_t wide, const double *a, const double *b,
-                           const double *c, double d, const double *u, double *state,
-                           double *y)
+EXPORT void hb_state_space(index_t n, index_t wide, index_t states, const double *a,
+                           const double *b, const double *c, double d, const double *u,
+                           double *state, double *y)
 {
-    if (wide == 1)
+    if (states == 1)
+        simulate_few(n, a, b, c, d, u, state, y, 1);
+    else if (states == 2)
+        simulate_few(n, a, b, c, d, u, state, y, 2);
+    else if (states == 3)
+        simulate_few(n, a, b, c, d, u, state, y, 3);
+    else if (states == 4)
+        simulate_few(n, a, b, c, d, u, state, y, 4);
+    else if (wide == 1)
         simulate(n, a, b, c, d, u, state, y, WIDTH / LANES);
     else if (wide == 2)
         simulate(n, a, b, c, d, u, state, y, 2 * WIDTH / LANES);
