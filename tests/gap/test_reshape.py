@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from hystbench.gap.reshape import (
     OPERATORS,
     SMALLEST,
-    directions,
     orthonormal,
+    reshapings,
 )
 from tests.gap.examples import plain_play
 from tests.gap.small import chains, records, state_of
@@ -53,7 +53,7 @@ def state():
 
 @pytest.fixture(scope="module")
 def basis(state):
-    return directions(state.scene, state.sample, np.zeros((len(state.sample), 0)))
+    return orthonormal(reshapings(state.scene, state.sample))
 
 
 @pytest.mark.parametrize("share", [0.07, 0.2, 0.41, 0.66])
@@ -90,7 +90,7 @@ def test_what_is_no_hysteresis_lies_outside(state, basis, kind):
 def test_reshaping_passes_the_blocks_behind():
     """Behind a mode the span is that of the bare hysteresis, sent through the mode."""
     state = state_of(chains()["hysteresis and mode"], count=600)
-    basis = directions(state.scene, state.sample, np.zeros((len(state.sample), 0)))
+    basis = orthonormal(reshapings(state.scene, state.sample))
     plays = [plain_play(one.u, 0.2) for one in records()]
     sent = state.scene.run(state.chain[1:], tuple(plays))
     through, whole = left_over(basis, sent, state.sample)
@@ -101,5 +101,5 @@ def test_reshaping_passes_the_blocks_behind():
 
 def test_without_a_hysteresis_nothing_can_be_of_a_wrong_shape():
     state = state_of(chains()["gain and mode"])
-    basis = directions(state.scene, state.sample, np.zeros((len(state.sample), 0)))
+    basis = orthonormal(reshapings(state.scene, state.sample))
     assert basis.shape == (len(state.sample), 0)

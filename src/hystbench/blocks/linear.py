@@ -210,13 +210,8 @@ def _sines_of_modes(
 ) -> tuple[ComplexArray, FloatArray]:
     """Do the same mode by mode: ``b / (jw - p) = -b (p + jw) / (w^2 + p^2)``."""
     w = 2 * np.pi * frequency_hz
-    square, moment = w * w, amplitudes * w
-    real, turned = np.full(len(w), system.d), np.zeros(len(w))
-    start = np.zeros(len(system.b))
     poles = np.diag(system.a)
-    for i, (pole, b, c) in enumerate(zip(poles, system.b, system.c, strict=True)):
-        part = b / (square + pole * pole)
-        real -= c * pole * part
-        turned += c * part
-        start[i] = -(moment @ part)
-    return real - 1j * w * turned, start
+    parts = np.add.outer(poles * poles, w * w)
+    np.divide(system.b[:, None], parts, out=parts)
+    real = system.d - (system.c * poles) @ parts
+    return real - 1j * w * (system.c @ parts), -(parts @ (amplitudes * w))

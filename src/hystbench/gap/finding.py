@@ -25,6 +25,7 @@ from hystbench.gap.state import Added, State
 from hystbench.gap.uncertainty import on_more_samples, standard_errors
 from hystbench.gap.verdict import (
     Left,
+    box_matters,
     confidence,
     judge,
     what_is_left,
@@ -131,10 +132,11 @@ def decide(
     left = what_is_left(start, state, floor.rms)
     folds = make_folds(records, whole=False)
     box = black_box(start, floor)
-    rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
-    verdict, reason = judge(
-        left, bool(state.added), rest.explained_on_folds, bool(start.free)
-    )
+    explained = None
+    if box_matters(left, bool(state.added)):
+        rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
+        explained = rest.explained_on_folds
+    verdict, reason = judge(left, bool(state.added), explained, bool(start.free))
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Values, Variant
+from hystbench.gap.reshape import orthonormal
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, beside_columns, with_effect
 from hystbench.record import FloatArray
 
-HALVINGS = 4
-"""Of the grid's step around its best value."""
+HALVINGS = 2
+"""Of the grid's step around its best value; least squares go on from there."""
+GLANCE = 4
+"""Records of which half is enough to choose a point of a grid."""
 ROUNDS = 5
 """Of least squares in a refit."""
 DAMPING = (0.0, 1e2, 1e4, 1e6)
@@ -119,16 +123,37 @@ class Attempt:
         return own, state.residual if anchored else state.reference - now
 
 
-def coarse(attempt: Attempt) -> Trial:
-    """Score a variant over its grid."""
+def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
+    """Score a variant where it is best on its grid.
+
+    Parameters
+    ----------
+    attempt : Attempt
+    glance : Attempt, optional
+        The same on fewer records, which then choose the point of the grid.
+    """
     axes = attempt.variant.grids.values()
+    look = attempt if glance is None or not axes else glance
     trials = []
     for point in itertools.product(*(axis.tolist() for axis in axes)):
         try:
-            trials.append(attempt.at(tuple(point)))
+            trials.append((look.at(tuple(point)).score, point))
         except InputError:
             continue  # values that the block itself refuses are no candidates
-    return min(trials, key=lambda trial: trial.score)
+    return attempt.at(min(trials)[1])
+
+
+@lru_cache(maxsize=1)
+def at_a_glance(state: State, score: Score) -> tuple[State, Score]:
+    """Give a model and its score on the half of the records with most of the gap."""
+    slices = state.sample.slices
+    if len(slices) < GLANCE:
+        return state, score
+    squares = [float(np.mean(state.residual[part] ** 2)) for part in slices]
+    kept = sorted(np.argsort(squares, kind="stable")[len(squares) // 2 :].tolist())
+    few = state.on(kept)
+    directions = np.concatenate([score.directions[slices[k]] for k in kept])
+    return few, Score(few.sample, orthonormal(directions), score.floor)
 
 
 def fine(attempt: Attempt, start: Trial) -> Trial:

@@ -12,7 +12,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fit import Trial, finished, score_of
 from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.reshape import directions
+from hystbench.gap.reshape import orthonormal
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, at_end, without_effect
 from hystbench.gap.work import IN_PROCESS, Tried, Work
@@ -149,9 +149,8 @@ def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
         Whether the added effects may be of another form too; not when their own
         numbers are to be found.
     """
-    wrong = [state.other_forms] if forms else [np.zeros((len(state.sample), 0))]
-    spanned = directions(state.scene, state.sample, np.hstack(wrong))
-    return Score(state.sample, spanned, floor_rms**2)
+    wrong = [state.reshapings] + ([state.other_forms] if forms else [])
+    return Score(state.sample, orthonormal(np.hstack(wrong)), floor_rms**2)
 
 
 def rank(
@@ -185,12 +184,13 @@ def rank(
     if not found:
         return tuple(declined)
     best = min(trial.score for _, trial in found)
-    refined = []
-    for attempt, trial in found:
-        if trial.score < best + max(NEAR, (now - best) * STILL):
-            trial = work.fine(attempt, trial)
-        refined.append(trial)
+    reach = max(NEAR, (now - best) * STILL)
+    refined = [
+        work.fine(attempt, trial) if trial.score < best + reach else trial
+        for attempt, trial in found
+    ]
     refined.sort(key=lambda trial: trial.score)
+    best = refined[0].score
     of_effect: dict[str, Trial] = {}
     for trial in refined:
         of_effect.setdefault(trial.variant.effect, trial)
@@ -200,7 +200,9 @@ def rank(
         own = (variant.effect, variant.place, variant.form)
         after = None
         value = trial.score
-        likely = number < FINALISTS or variant.effect == SHAPE
+        # Where the model has numbers of its own, a joint refit may gain much.
+        likely = number < FINALISTS and (bool(state.free) or value < best + reach)
+        likely = likely or (variant.effect == SHAPE and now - value > PAYS)
         if likely and now - value > 0:
             try:
                 after, value = work.added(state, trial, score)
@@ -320,7 +322,7 @@ def advance(
     """Try every effect beside the model and add the one that pays, if any does."""
     floor, state = floor_rms**2, progress.state
     score = make_score(state, floor_rms)
-    if state.added and score_of(state, score) - score.least(state.freedom) < PAYS:
+    if state.added and score_of(state, score) - score.least(state.freedom) < FURTHER:
         say("nothing is left that an effect could gain")
         return replace(progress, closed=True)
     ranking = rank(state, score, work=work)

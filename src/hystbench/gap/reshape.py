@@ -28,30 +28,30 @@ SMALLEST = 1e-3
 """Directions weaker than this share of the strongest are left out."""
 
 
-def directions(scene: Scene, sample: Sample, more: FloatArray) -> FloatArray:
-    """Give an orthonormal basis of what reshaping the hysteresis could do.
+def reshapings(scene: Scene, sample: Sample) -> FloatArray:
+    """Give what reshaping the hysteresis could add to the output.
 
     Parameters
     ----------
     scene : Scene
     sample : Sample
-    more : ndarray, shape (scored samples, k)
-        What else could be wrong in shape.
 
     Returns
     -------
-    ndarray, shape (scored samples, d)
-        Without a hysteresis in the chain, only what ``more`` holds.
+    ndarray, shape (scored samples, k)
+        Without a hysteresis in the chain, no column.
     """
     place = scene.hysteresis
     if place is None:
-        columns = []
+        return np.zeros((len(sample), 0))
+    behind = scene.chain[scene.behind_hysteresis :]
+    at = None if behind else sample  # what nothing follows is wanted there alone
+    ways = _ways(scene, at)
+    if behind:
+        ways = [sample.take(_sent(scene, behind, signals)) for signals in ways]
     else:
-        behind = scene.chain[scene.behind_hysteresis :]
-        columns = [
-            sample.take(_sent(scene, behind, signals)) for signals in _ways(scene)
-        ]
-    return orthonormal(np.column_stack([*columns, more]))
+        ways = [np.concatenate(signals) for signals in ways]
+    return np.column_stack(ways)
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:
@@ -66,29 +66,37 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     keep = values > (SMALLEST**2) * values[-1]
     basis = columns @ (vectors[:, keep] / np.sqrt(values[keep]))
     # A second pass makes what rounding has left orthonormal too.
-    q, _ = np.linalg.qr(basis)
-    return np.ascontiguousarray(q)
+    triangle = np.linalg.cholesky(basis.T @ basis)
+    return np.ascontiguousarray(np.linalg.solve(triangle, basis.T).T)
 
 
-def _ways(scene: Scene) -> list[Signals]:
-    """Give ways in which the output of the hysteresis could differ."""
+def _ways(scene: Scene, sample: Sample | None) -> list[Signals]:
+    """Give ways in which the output of the hysteresis could differ.
+
+    Of whole records, or of scored samples.
+    """
     place = scene.hysteresis
     assert place is not None  # noqa: S101  (the caller has looked)
     block, v = scene.chain[place], scene.before[place]
     amplitude = scene.largest(place)
     thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)
-    plays = [play(z, thresholds)[0] / amplitude for z in v]
-    ways: list[Signals] = [
-        tuple((z / amplitude) ** k for z in v) for k in range(POWERS + 1)
-    ]
-    ways += [
-        tuple(np.ascontiguousarray(p[:, i] ** k) for p in plays)
-        for k in range(1, OPERATOR_POWERS + 1)
-        for i in range(OPERATORS)
-    ]
+    plays = [play(z, thresholds)[0].T / amplitude for z in v]
+    scaled = [z / amplitude for z in v]
+    own: list[Signals] = []
     if isinstance(block, GeneralizedPrandtlIshlinskii):
-        ways += _own(scene, block, v)
-    return ways
+        own = _own(scene, block, v)
+    if sample is not None:
+        where = sample.positions
+        plays = [p[:, at] for p, at in zip(plays, where, strict=True)]
+        scaled = [z[at] for z, at in zip(scaled, where, strict=True)]
+        own = [tuple(z[at] for z, at in zip(x, where, strict=True)) for x in own]
+    ways: list[Signals] = [tuple(np.ones_like(z) for z in scaled)]
+    for base in (scaled, *zip(*plays, strict=True)):
+        power = ways[0]
+        for _ in range(POWERS if base is scaled else OPERATOR_POWERS):
+            power = tuple(a * b for a, b in zip(power, base, strict=True))
+            ways.append(power)
+    return ways + own
 
 
 def _own(

@@ -171,9 +171,7 @@ def _takes_short_steps(step: Block | Wrapped) -> bool:
     )
 
 
-def _finely(
-    step: Block | Wrapped, z: FloatArray, dt: float, factor: int
-) -> FloatArray:
+def _finely(step: Block | Wrapped, z: FloatArray, dt: float, factor: int) -> FloatArray:
     """Simulate hysteresis, which does not look at the model's input, in short steps."""
     v = finer(z, factor)
     return _plain(step).simulate(v, v, dt / factor)[::factor].copy()

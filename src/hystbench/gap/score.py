@@ -45,7 +45,7 @@ class Amplitudes(NamedTuple):
     score: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Score:
     """What is held fixed while candidates are scored.
 

@@ -13,6 +13,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Beside, Values, Variant
+from hystbench.gap.reshape import reshapings
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene, Signals
 from hystbench.record import FloatArray, Record
@@ -87,6 +88,19 @@ class State:
         """The chain on the records, simulated quickly."""
         return Scene(self.chain, self.records, self.hold, quick=True)
 
+    def on(self, kept: Sequence[int]) -> State:
+        """Give the state on some of its records, by number."""
+        rows = [self.sample.slices[k] for k in kept]
+        correction = self.correction
+        if correction is not None:
+            correction = np.concatenate([correction[part] for part in rows])
+        return replace(
+            self,
+            records=tuple(self.records[k] for k in kept),
+            sample=Sample(tuple(self.sample.positions[k] for k in kept)),
+            correction=correction,
+        )
+
     def settled(self) -> State:
         """Give the state with what the quick simulation lacks made up for."""
         exact = Scene(self.chain, self.records, self.hold, fine=True).output
@@ -146,6 +160,11 @@ class State:
                         continue  # outside what the block accepts: no form of it
                     columns.append(self.sample.take(after) - self._simulated)
         return _stack(columns, len(self.sample))
+
+    @cached_property
+    def reshapings(self) -> FloatArray:
+        """What reshaping the hysteresis could do, shape (scored samples, k)."""
+        return reshapings(self.scene, self.sample)
 
     @cached_property
     def stiffness(self) -> FloatArray:

@@ -11,7 +11,7 @@ from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.record import FloatArray
 
-SAMPLES = 4000
+SAMPLES = 2000
 """Scored samples of a record: more than naming needs, as errors shrink with them."""
 RANK = 1e-9
 """Directions that weigh less than this share are not told apart: they are left out."""

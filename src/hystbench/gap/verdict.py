@@ -66,6 +66,11 @@ def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     )
 
 
+def box_matters(left: Left, named: bool) -> bool:
+    """Tell whether what a black box explains could change the verdict or its reason."""
+    return not named or left.loose > BOX * LOOSE
+
+
 def judge(
     left: Left, named: bool, explained_by_box: float | None, retuned: bool = False
 ) -> tuple[Word, str]:

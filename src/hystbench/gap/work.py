@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
-from hystbench.gap.fit import Attempt, Trial, added, coarse, fine, finished
+from hystbench.gap.fit import Attempt, Trial, added, at_a_glance, coarse, fine, finished
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 
@@ -30,8 +30,12 @@ class Work:
         runnable = [item for item in variants if not _needs_rerun(state, item)]
         if variants and not runnable:
             return [], NEEDS_RERUN
-        attempts = [Attempt(state, item, score) for item in runnable]
-        return [(attempt, coarse(attempt)) for attempt in attempts], ""
+        few, few_score = at_a_glance(state, score)
+        found = []
+        for item in runnable:
+            attempt = Attempt(state, item, score)
+            found.append((attempt, coarse(attempt, Attempt(few, item, few_score))))
+        return found, ""
 
     def fine(self, attempt: Attempt, trial: Trial) -> Trial:
         """Search a variant around the best point of its grid."""
