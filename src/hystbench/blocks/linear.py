@@ -150,30 +150,50 @@ def _over(above: FloatArray, below: FloatArray, at_zero: float) -> FloatArray:
     return out
 
 
+class Steps(NamedTuple):
+    """A system as the loops take it: ``x(k+1) = phi x(k) + b v(k)``, ``y = c x + d v``.
+
+    The state is ``x(k) - following v(k)`` of :func:`discretise`: so the input of the
+    next sample is not needed.
+    """
+
+    phi: FloatArray  # shape (m, m); where A is diagonal its diagonal, shape (m,)
+    b: FloatArray  # shape (m,)
+    c: FloatArray  # shape (m,)
+    d: float
+    following: FloatArray  # shape (m,)
+
+
+def _steps(system: StateSpace, dt: float, hold: Hold) -> Steps:
+    keys = (system.a.tobytes(), system.b.tobytes(), system.c.tobytes())
+    return _known_steps(*keys, system.d, dt, hold)
+
+
 @lru_cache(maxsize=256)
-def _discretised(
-    a: bytes, b: bytes, dt: float, hold: Hold
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Do what :func:`discretise` does, once for records of the same rate."""
-    drive = np.frombuffer(b)
+def _known_steps(
+    a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold
+) -> Steps:
+    """Discretise, once for records of the same rate and for every candidate."""
+    drive, output = np.frombuffer(b), np.frombuffer(c)
     matrix = np.frombuffer(a).reshape(len(drive), len(drive))
-    return discretise(StateSpace(matrix, drive, drive, 0.0), dt, hold)
+    system = StateSpace(matrix, drive, output, d)
+    if system.is_diagonal:
+        phi, now, following = discretise_modes(system, dt, hold)
+        moved = phi * following
+    else:
+        phi, now, following = discretise(system, dt, hold)
+        moved = phi @ following
+    return Steps(phi, now + moved, output, d + float(output @ following), following)
 
 
 def _step_by_step(
     system: StateSpace, v: FloatArray, dt: float, hold: Hold, start: FloatArray
 ) -> FloatArray:
-    # x(k+1) = phi x(k) + now v(k) + following v(k+1); the state x(k) - following v(k)
-    # turns this into the usual form, which the kernels take.
-    if system.is_diagonal:
-        phi, now, following = discretise_modes(system, dt, hold)
-        b = now + phi * following
-        d = system.d + float(system.c @ following)
-        return operators.modes(phi, b, system.c, d, v, start - following * v[0])
-    phi, now, following = _discretised(system.a.tobytes(), system.b.tobytes(), dt, hold)
-    b = now + phi @ following
-    d = system.d + float(system.c @ following)
-    y, _ = operators.state_space(phi, b, system.c, d, v, start - following * v[0])
+    phi, b, c, d, following = _steps(system, dt, hold)
+    first = start - following * v[0]
+    if phi.ndim == 1:
+        return operators.modes(phi, b, c, d, v, first)
+    y, _ = operators.state_space(phi, b, c, d, v, first)
     return y
 
 
