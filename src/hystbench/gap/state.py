@@ -261,7 +261,7 @@ def beside_columns(state: State, beside: Beside, values: Values) -> FloatArray:
     for record, where, positions in zip(
         state.records, sample.slices, sample.positions, strict=True
     ):
-        own = beside.columns(record, values, beside.order)[positions]
+        own = beside.columns(record, values, beside.order, positions)
         full = np.zeros((len(sample), own.shape[1]))
         full[where] = own
         parts.append(full)

@@ -14,15 +14,19 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.scene import Scene
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray
 
 Values = Mapping[str, float]
+Samples = slice | NDArray[np.intp]
+"""Some samples of a record."""
+EVERY: Samples = slice(None)
 
 
 class Declined(Exception):  # noqa: N818  (an answer, not an error)
@@ -39,13 +43,14 @@ class Beside:
     order : int
         How many shapes of it there are: harmonics, or the degree of a path.
     columns : callable
-        ``columns(record, values, order)`` gives the shapes, shape (n, k); each record
-        has amplitudes of its own.
+        ``columns(record, values, order)`` gives the shapes, shape (n, k), and with a
+        fourth argument those at some samples alone; each record has amplitudes of its
+        own.
     """
 
     effect: str
     order: int
-    columns: Callable[[Record, Values, int], FloatArray]
+    columns: Callable[..., FloatArray]
 
 
 @dataclass(frozen=True)

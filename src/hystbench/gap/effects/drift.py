@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Beside, Effect, Values, Variant
+from hystbench.gap.effects.base import EVERY, Beside, Effect, Samples, Values, Variant
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray, Record
 
@@ -38,12 +38,12 @@ class Drift(Effect):
 PATH_ORDER = 4
 
 
-def path(record: Record, given: Values, order: int) -> FloatArray:
+def path(record: Record, given: Values, order: int, at: Samples = EVERY) -> FloatArray:
     """Give a ramp, and for a path Legendre polynomials beside it, shape (n, k)."""
-    ramp = record.time[:, None]
+    ramp = record.time[at, None]
     if order == 1:
         return ramp
-    x = np.linspace(-1.0, 1.0, len(record))
+    x = np.linspace(-1.0, 1.0, len(record))[at]
     curved = np.polynomial.legendre.legvander(x, order)
     # A path as fast as the input's own periods could be anything that follows it.
     curved[:, max(1, int(periods(record) // PERIODS)) + 1 :] = 0.0

@@ -7,7 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.gap.effects.base import Beside, Declined, Effect, Values, Variant
+from hystbench.gap.effects.base import (
+    EVERY,
+    Beside,
+    Declined,
+    Effect,
+    Samples,
+    Values,
+    Variant,
+)
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray, Record
 
@@ -51,9 +59,11 @@ class MainsPickup(Effect):
         }
 
 
-def tone(record: Record, given: Values, harmonics: int) -> FloatArray:
+def tone(
+    record: Record, given: Values, harmonics: int, at: Samples = EVERY
+) -> FloatArray:
     """Give sine and cosine of each harmonic over a record, shape (n, 2 harmonics)."""
-    angle = 2 * np.pi * given["frequency_hz"] * record.time
+    angle = 2 * np.pi * given["frequency_hz"] * record.time[at]
     order = np.arange(1, harmonics + 1)
     waves = np.stack([np.sin(np.outer(angle, order)), np.cos(np.outer(angle, order))])
-    return np.ascontiguousarray(waves.transpose(1, 2, 0).reshape(len(record), -1))
+    return np.ascontiguousarray(waves.transpose(1, 2, 0).reshape(len(angle), -1))
