@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, Protocol
@@ -156,20 +157,29 @@ def parameter_tangents(
         Relative change; of 0 an absolute one.
     """
 
-    def changed(model: Model, name: str) -> Model:
+    def beside(model: Model, name: str) -> Iterator[Model]:
         value = model.value(name)
+        new: float | list[float]
         if isinstance(value, str):
             raise InputError(f"{name}: {value!r} is no number; expected one to refit")
         if isinstance(value, tuple):
-            return model.with_values({name: [item * (1 + step) for item in value]})
-        return model.with_values({name: value * (1 + step) if value else step})
+            new = [item * (1 + step) for item in value]
+        else:
+            new = value * (1 + step) if value else step
+        # A zero that stands for "none" has no neighbour: the block refuses it.
+        with contextlib.suppress(InputError):
+            yield model.with_values({name: new})
+
+    moved = [
+        (model, [other for name in names for other in beside(model, name)])
+        for model, names in rivals
+    ]
 
     def tangents(u: FloatArray, dt: float) -> FloatArray:
-        columns = [
-            changed(model, name).simulate(u, dt) - model.simulate(u, dt)
-            for model, names in rivals
-            for name in names
-        ]
+        columns = []
+        for model, others in moved:
+            now = model.simulate(u, dt)
+            columns += [other.simulate(u, dt) - now for other in others]
         return np.column_stack(columns) if columns else np.zeros((len(u), 0))
 
     return tangents
