@@ -11,12 +11,16 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Values, Variant
 from hystbench.gap.reshape import orthonormal
-from hystbench.gap.score import Score
+from hystbench.gap.score import Amplitudes, Score
 from hystbench.gap.state import State, beside_columns, with_effect
 from hystbench.record import FloatArray
 
-HALVINGS = 2
-"""Of the grid's step around its best value; least squares go on from there."""
+NEWTON = 3
+"""Steps of Gauss and Newton from a grid's best value, at most."""
+NUDGE = 1e-3
+"""Relative change by which they are found."""
+SLIGHT = 3.0
+"""Of a step of the search: what lowers the score by less is the last."""
 GLANCE = 4
 """Records of which half is enough to choose a point of a grid."""
 ROUNDS = 5
@@ -25,6 +29,10 @@ DAMPING = (0.0, 1e2, 1e4, 1e6)
 """Charge for a change of the whole of a number, tried until a step pays."""
 ENOUGH = 0.05
 """A round that lowers the score by less is the last."""
+
+
+Point = tuple[float, ...]
+"""Values of the searched parameters."""
 
 
 @dataclass(frozen=True)
@@ -51,49 +59,99 @@ class Attempt:
     def __init__(self, state: State, variant: Variant, score: Score) -> None:
         self.state, self.variant, self.score = state, variant, score
         self.freedom = state.freedom + variant.freedom
-        self.known: dict[tuple[float, ...], Trial] = {}
+        self.known: dict[Point, Trial] = {}
         self.more = np.hstack([state.tangents, state.beside_columns])
         stiffness = np.zeros(self.more.shape[1])
         stiffness[: len(state.free)] = state.stiffness
         self.stiffness = stiffness
         self.zero: FloatArray | None = None
+        self.last: tuple[Point, FloatArray, FloatArray, FloatArray] | None = None
 
-    def at(self, point: tuple[float, ...]) -> Trial:
+    def at(self, point: Point) -> Trial:
         """Score the variant at a point of the grid."""
         if point not in self.known:
             self.known[point] = self._at(point)
         return self.known[point]
 
-    def _at(self, point: tuple[float, ...]) -> Trial:
-        variant, state = self.variant, self.state
+    def _at(self, point: Point) -> Trial:
+        own, residual = self._signals(point)
+        found = self._solve(residual, own)
+        self.last = (point, own, residual, found.values[: own.shape[1]])
+        variant = self.variant
         values = dict(zip(variant.grids, point, strict=True))
-        residual = state.residual
-        if variant.beside is not None:
-            own = beside_columns(state, variant.beside, values)
-        elif variant.unit:
-            own, residual = self._scaled(values)
-        else:
-            take, tail = state.sample.take, state.scene.tail
-            after = take(tail(variant.start, variant.build(values)))
-            if variant.zero is None:
-                residual = state.reference - after
-            else:
-                residual = state.residual - (after - self._at_zero(values))
-            own = np.zeros((len(residual), 0))
-        count = len(variant.unit)
-        columns = np.hstack([own, self.more])
-        stiffness = np.concatenate([np.zeros(own.shape[1]), self.stiffness])
-        positive = [
-            k for k, name in enumerate(variant.unit) if name in variant.positive
-        ]
-        found = self.score.amplitudes(
-            residual, columns, self.freedom, stiffness, positive
-        )
-        amplitudes = found.values[:count]
+        amplitudes = found.values[: len(variant.unit)]
         values |= {
             name: float(x) for name, x in zip(variant.unit, amplitudes, strict=True)
         }
         return Trial(variant, values, found.score)
+
+    def step(self, trial: Trial) -> FloatArray:
+        """Give the step of Gauss and Newton from a trial, in logarithms.
+
+        Returns
+        -------
+        ndarray, shape (searched parameters,)
+
+        Raises
+        ------
+        InputError
+            If the block refuses values beside those of the trial.
+        """
+        point = tuple(trial.values[name] for name in self.variant.grids)
+        if self.last is None or self.last[0] != point:
+            self._at(point)
+        assert self.last is not None  # noqa: S101  (for the type checker)
+        _, own, residual, amplitudes = self.last
+        now = residual - own @ amplitudes
+        moved = []
+        for k in range(len(point)):
+            beside = list(point)
+            beside[k] *= float(np.exp(NUDGE))
+            own_there, there = self._signals(tuple(beside))
+            moved.append((now - (there - own_there @ amplitudes)) / NUDGE)
+        columns = np.column_stack([*moved, own])
+        return self._solve(residual, columns, len(moved)).values[: len(moved)]
+
+    def _solve(
+        self, residual: FloatArray, columns: FloatArray, first: int = 0
+    ) -> Amplitudes:
+        """Solve for the amplitudes of columns and what the model may re-tune."""
+        variant = self.variant
+        positive = [
+            first + k for k, name in enumerate(variant.unit) if name in variant.positive
+        ]
+        return self.score.amplitudes(
+            residual,
+            np.hstack([columns, self.more]),
+            self.freedom,
+            np.concatenate([np.zeros(columns.shape[1]), self.stiffness]),
+            positive,
+        )
+
+    def _signals(self, point: Point) -> tuple[FloatArray, FloatArray]:
+        """Simulate the variant at a point of its grid.
+
+        Returns
+        -------
+        own : ndarray, shape (scored samples, k)
+            What is solved for: how the output changes with each amplitude.
+        residual : ndarray, shape (scored samples,)
+            With all amplitudes zero.
+        """
+        variant, state = self.variant, self.state
+        values = dict(zip(variant.grids, point, strict=True))
+        if variant.beside is not None:
+            return beside_columns(state, variant.beside, values), state.residual
+        if variant.unit:
+            return self._scaled(values)
+        after = state.sample.take(
+            state.scene.tail(variant.start, variant.build(values))
+        )
+        if variant.zero is None:
+            residual = state.reference - after
+        else:
+            residual = state.residual - (after - self._at_zero(values))
+        return np.zeros((len(residual), 0)), residual
 
     def _at_zero(self, values: Values) -> FloatArray:
         """Simulate the chain as before in the effect's own way; it is kept."""
@@ -157,30 +215,49 @@ def at_a_glance(state: State, score: Score) -> tuple[State, Score]:
 
 
 def fine(attempt: Attempt, start: Trial) -> Trial:
-    """Halve the grid's step around its best point, one parameter at a time."""
+    """Search around the best point of a grid: halve its step, then Gauss and Newton.
+
+    The halved steps are tried one parameter at a time.
+    """
     grids = attempt.variant.grids
     best = start
     steps = {
         name: np.log(axis[1] / axis[0]) if len(axis) > 1 else 0.0
         for name, axis in grids.items()
     }
-    for _ in range(HALVINGS):
-        steps = {name: step / 2 for name, step in steps.items()}
-        for name, step in steps.items():
-            for sign in (1, -1):
-                here = {key: best.values[key] for key in grids}
-                here[name] *= float(np.exp(sign * step))
-                low, high = attempt.variant.ends(name)
-                if not low <= here[name] <= high:
-                    continue
-                try:
-                    trial = attempt.at(tuple(here.values()))
-                except InputError:
-                    continue
-                if trial.score < best.score:
-                    best = trial
-                    break
+    for name, step in steps.items():
+        for sign in (1, -1):
+            trial = _beside(attempt, best, {name: sign * step / 2})
+            if trial is not None and trial.score < best.score:
+                best = trial
+                break
+    most = np.array(list(steps.values())) / 2
+    for _ in range(NEWTON if grids else 0):
+        try:
+            step = np.clip(attempt.step(best), -most, most)
+        except InputError:
+            break  # at an end of what the block accepts
+        before = best.score
+        for share in (1.0, 0.3):
+            trial = _beside(attempt, best, dict(zip(grids, share * step, strict=True)))
+            if trial is not None and trial.score < best.score:
+                best = trial
+                break
+        if before - best.score < SLIGHT:
+            break
     return best
+
+
+def _beside(attempt: Attempt, trial: Trial, steps: dict[str, float]) -> Trial | None:
+    """Score a variant some steps away, in logarithms, inside its ranges."""
+    here = {name: trial.values[name] for name in attempt.variant.grids}
+    for name, step in steps.items():
+        low, high = attempt.variant.ends(name)
+        here[name] = float(np.clip(here[name] * np.exp(step), low, high))
+    try:
+        return attempt.at(tuple(here.values()))
+    except InputError:
+        return None  # values that the block itself refuses are no candidates
 
 
 def score_of(state: State, score: Score) -> float:

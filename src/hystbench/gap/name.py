@@ -23,8 +23,10 @@ PAYS_HELD_BACK = 20.0
 """The same on records that did not fit it, where no parameter is charged."""
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
-STILL = 0.25
+COARSE = 0.5
 """The same as a share of the best's gain: a grid's step may miss much of a gain."""
+STILL = 0.25
+"""The same after the search: a refit may find some more."""
 FINALISTS = 6
 """Effects that are added and refitted jointly before one is taken."""
 TIE = 6.0
@@ -184,13 +186,14 @@ def rank(
     if not found:
         return tuple(declined)
     best = min(trial.score for _, trial in found)
-    reach = max(NEAR, (now - best) * STILL)
+    reach = max(NEAR, (now - best) * COARSE)
     refined = [
         work.fine(attempt, trial) if trial.score < best + reach else trial
         for attempt, trial in found
     ]
     refined.sort(key=lambda trial: trial.score)
     best = refined[0].score
+    reach = max(NEAR, (now - best) * STILL)
     of_effect: dict[str, Trial] = {}
     for trial in refined:
         of_effect.setdefault(trial.variant.effect, trial)
