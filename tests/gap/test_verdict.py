@@ -6,7 +6,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.gap.name import TIE, Candidate, near
-from hystbench.gap.verdict import ABOVE, LOOSE, Left, confidence, judge, what_is_left
+from hystbench.gap.verdict import (
+    ABOVE,
+    LOOSE,
+    SLIGHT,
+    Left,
+    confidence,
+    judge,
+    what_is_left,
+)
 from tests.gap.small import block, measured, state_of
 
 SIZES = st.floats(-1.0, 1e6)
@@ -36,6 +44,18 @@ def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
 @given(st.floats(1.01 * ABOVE, 1e6), st.none() | SHARES)
 def test_a_gap_that_nothing_takes_away_is_unnamed(after, box):
     assert judge(left(after), False, box)[0] == "unnamed"
+
+
+def test_a_percent_of_the_output_that_reshaping_explains_is_no_gap():
+    """A gap of 3 floors beyond a wrong shape, of 30 in all, at 1 % of the output."""
+    output = 3.0 / (0.9 * SLIGHT) ** 2
+    slight = Left(3.0, 3.0, 30.0, 30.0, output)
+    assert judge(slight, False, 0.9)[0] == "no-gap"
+    # more of the output, or a gap that no reshaping explains, is one to be named
+    large = Left(3.0, 3.0, 30.0, 30.0, 0.5 * output)
+    alien = Left(3.0, 3.0, 4.0, 4.0, output)
+    for other in (large, alien):
+        assert judge(other, False, 0.9)[0] == "unnamed"
 
 
 def test_what_stays_decides_whether_a_name_holds():

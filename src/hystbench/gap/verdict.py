@@ -18,6 +18,10 @@ LOOSE = 0.35
 """Share of the gap, beyond what reshaping could leave, that no effect takes away."""
 ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
+SLIGHT = 0.012
+"""RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
+INSIDE = 0.5
+"""Share of the gap that then has to lie in what a wrong shape of it could do."""
 BOX = 0.5
 """Share of what is left that a black box takes away on folds, to be clearly more."""
 SCALE = 4.0
@@ -37,12 +41,28 @@ class Left:
         of the base and of the model with its effects, in floors.
     all_before, all_after : float
         Above the floor, of the whole residual, in floors.
+    output : float
+        Mean square of the measured output about its mean, in floors.
     """
 
     before: float
     after: float
     all_before: float
     all_after: float
+    output: float = 0.0
+
+    @property
+    def slight(self) -> bool:
+        """Whether no more is left than a hysteresis of a slightly wrong shape leaves.
+
+        No model of a few play operators fits a material much better than to a percent
+        of its output. So little tells of an effect only if most of it is nothing that
+        reshaping the hysteresis could do.
+        """
+        if self.after <= ABOVE:
+            return True
+        small = self.after < SLIGHT**2 * self.output
+        return small and self.after < (1 - INSIDE) * self.all_after
 
     @property
     def loose(self) -> float:
@@ -63,6 +83,7 @@ def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     return Left(
         *(_beyond(each, make_score(each, floor_rms)) for each in (base, state)),
         *(each.power(floor) / floor for each in (base, state)),
+        float(np.var(base.measured)) / floor,
     )
 
 
@@ -88,14 +109,13 @@ def judge(
         Whether the base had numbers of its own to re-tune.
     """
     box = explained_by_box or 0.0
-    there = left.after > ABOVE
     if not named:
         if retuned and left.all_before > ABOVE and left.loose < LOOSE:
             return "parameters", (
                 "re-tuning the base within what is free leaves "
                 f"{100 * left.loose:.0f} % of the gap, and no effect pays beside it"
             )
-        if not there:
+        if left.slight:
             return "no-gap", (
                 "what is left is noise, or no more than a slightly wrong shape of the "
                 "base could leave"
