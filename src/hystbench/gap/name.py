@@ -23,10 +23,8 @@ PAYS_HELD_BACK = 20.0
 """The same on records that did not fit it, where no parameter is charged."""
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
-COARSE = 0.5
+STILL = 0.5
 """The same as a share of the best's gain: a grid's step may miss much of a gain."""
-STILL = 0.25
-"""The same after the search: a refit may find some more."""
 FINALISTS = 6
 """Effects that are added and refitted jointly before one is taken."""
 TIE = 6.0
@@ -186,14 +184,12 @@ def rank(
     if not found:
         return tuple(declined)
     best = min(trial.score for _, trial in found)
-    reach = max(NEAR, (now - best) * COARSE)
+    reach = max(NEAR, (now - best) * STILL)
     refined = [
         work.fine(attempt, trial) if trial.score < best + reach else trial
         for attempt, trial in found
     ]
     refined.sort(key=lambda trial: trial.score)
-    best = refined[0].score
-    reach = max(NEAR, (now - best) * STILL)
     of_effect: dict[str, Trial] = {}
     for trial in refined:
         of_effect.setdefault(trial.variant.effect, trial)
@@ -203,9 +199,7 @@ def rank(
         own = (variant.effect, variant.place, variant.form)
         after = None
         value = trial.score
-        # Where the model has numbers of its own, a joint refit may gain much.
-        likely = number < FINALISTS and (bool(state.free) or value < best + reach)
-        likely = likely or (variant.effect == SHAPE and now - value > PAYS)
+        likely = number < FINALISTS or (variant.effect == SHAPE and now - value > PAYS)
         if likely and now - value > 0:
             try:
                 after, value = work.added(state, trial, score)
@@ -258,7 +252,7 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     if found.deferred and any(item.effect == SHAPE for item in found.state.added):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, shape_first=True)
-    state = found.state
+    state = without_needless(found.state, floor_rms, say)
     if state.added:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
@@ -421,6 +415,18 @@ def reconsidered(
             return best.state or state, {**rankings, best.effect: ranking}
         rankings[item.effect] = ranking
     return state, rankings
+
+
+def without_needless(state: State, floor_rms: float, say: Say) -> State:
+    """Take effects out again that gain nothing beside those that were added later."""
+    score = make_score(state, floor_rms)
+    now = score_of(state, score)
+    for number, item in enumerate(state.added[:-1]):
+        short, value = finished(without_effect(state, number), score)
+        if value - now < PAYS:
+            say(f"{item.effect} is needless beside the others: {value - now:.1f}")
+            return without_needless(short, floor_rms, say)
+    return state
 
 
 def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:
