@@ -10,9 +10,9 @@ import numpy as np
 from hystbench.challenge.plant.kind import Kind
 from hystbench.record import FloatArray, Record
 
-#: Edges of the bins: frequencies in Hz (six an octave), current in A, its rate in A/s
-#: (eight a decade), seconds from a record's start.
-FREQUENCIES = np.concatenate([[0.0], 0.01 * 2.0 ** (np.arange(103) / 6.0)])
+#: Edges of the bins: frequencies in Hz (48 an octave, so that a lone line fills few),
+#: current in A, its rate in A/s (eight a decade), seconds from a record's start.
+FREQUENCIES = np.concatenate([[0.0], 0.01 * 2.0 ** (np.arange(817) / 48.0)])
 CURRENTS = np.linspace(-0.6, 0.6, 25)
 RATES = np.concatenate([[0.0], 0.001 * 10.0 ** (np.arange(57) / 8.0)])
 SECONDS = np.linspace(0.0, 60.0, 61)

@@ -14,7 +14,7 @@ from hystbench.gap.state import State
 
 Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
-LOOSE = 0.35
+LOOSE = 0.2
 """Share of the gap, beyond what reshaping could leave, that no effect takes away."""
 ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
@@ -22,10 +22,12 @@ SLIGHT = 0.012
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
 INSIDE = 0.5
 """Share of the gap that then has to lie in what a wrong shape of it could do."""
-BOX = 0.5
-"""Share of what is left that a black box takes away on folds, to be clearly more."""
+BOX = 0.15
+"""Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
 """Difference in score that makes one name e times likelier than another."""
+DISTRUST = 0.7
+"""Share of the gap that stays, at which no name is believed."""
 DOUBT = 0.02
 """That none of the vocabulary is right though one fits well."""
 
@@ -89,7 +91,7 @@ def what_is_left(base: State, state: State, floor_rms: float) -> Left:
 
 def box_matters(left: Left, named: bool) -> bool:
     """Tell whether what a black box explains could change the verdict or its reason."""
-    return not named or left.loose > BOX * LOOSE
+    return not named or left.loose > BOX
 
 
 def judge(
@@ -125,7 +127,7 @@ def judge(
             f"of the vocabulary pays; a black box takes {100 * max(box, 0):.0f} % of "
             "it away on folds"
         )
-    if left.loose > LOOSE or box * left.loose > BOX * LOOSE:
+    if left.loose > LOOSE or box * left.loose > BOX:
         return "unnamed", (
             f"{100 * left.loose:.0f} % of the gap stays with the best named effects; a "
             f"black box takes {100 * max(box, 0):.0f} % of that away on folds"
@@ -144,7 +146,7 @@ def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> fl
         for item in ranking
         if item.effect != first.effect and np.isfinite(item.score)
     )
-    trust = max(0.0, 1.0 - left.loose / (2 * LOOSE))
+    trust = max(0.0, 1.0 - left.loose / DISTRUST)
     return (1.0 - DOUBT) * trust / (1.0 + odds)
 
 

@@ -89,7 +89,8 @@ def unexplained_view(samples: Samples) -> View:
         axis, unit = "time in the record", "s"
         where = f"most of it between {number(start)} and {number(end)} s of a record"
     else:
-        resolution = float(1 / np.max(samples.durations))
+        # A record tells a line from its neighbours by the inverse of its length.
+        resolution = float(1 / np.min(samples.durations))
         start = min(lines.frequencies[:1]) - resolution
         end = max(lines.frequencies[:1]) + resolution
         axis, unit = "frequency", "Hz"
@@ -112,15 +113,18 @@ def unexplained_view(samples: Samples) -> View:
 
 
 def _drift_columns(samples: Samples, orders: int) -> list[FloatArray]:
-    """Give offset and cosines of half-periods, zero where the input is as slow."""
+    """Give cosines of half-periods, zero where the input is as slow.
+
+    Each begins at zero: an offset from the first sample on is no drift.
+    """
     duration = samples.durations[samples.record]
     slowest = np.array(
         [lowest_frequency(samples, i) for i in range(len(samples.compared))]
     )
     allowed = np.maximum(samples.durations * slowest, 1.0)[samples.record]
-    columns = [np.ones_like(duration)]
+    columns = []
     for order in range(1, orders + 1):
-        wave = np.cos(np.pi * order * samples.time / duration)
+        wave = 1 - np.cos(np.pi * order * samples.time / duration)
         columns.append(np.where(order <= allowed, wave, 0.0))
     return columns
 
