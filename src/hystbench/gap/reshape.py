@@ -48,10 +48,8 @@ def reshapings(scene: Scene, sample: Sample) -> FloatArray:
     at = None if behind else sample  # what nothing follows is wanted there alone
     ways = _ways(scene, at)
     if behind:
-        ways = [sample.take(_sent(scene, behind, signals)) for signals in ways]
-    else:
-        ways = [np.concatenate(signals) for signals in ways]
-    return np.column_stack(ways)
+        return np.column_stack([sample.take(_sent(scene, behind, way)) for way in ways])
+    return np.column_stack([np.concatenate(way) for way in ways])
 
 
 def orthonormal(columns: FloatArray) -> FloatArray:

@@ -235,10 +235,10 @@ def _solve(
     """Solve normal equations; amplitudes that must not be negative are set to zero."""
     active = np.ones(len(vector), dtype=bool)
     for _ in range(len(vector) + 1):
+        beta: FloatArray = np.zeros(len(vector))
         if active.all():
-            beta = np.linalg.lstsq(matrix, vector, rcond=1e-13)[0]
+            beta[:] = np.linalg.lstsq(matrix, vector, rcond=1e-13)[0]
         else:
-            beta = np.zeros(len(vector))
             keep = np.flatnonzero(active)
             part = matrix[np.ix_(keep, keep)]
             beta[keep] = np.linalg.lstsq(part, vector[keep], rcond=1e-13)[0]

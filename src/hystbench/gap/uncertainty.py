@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import norm, t
 
 from hystbench.gap.sample import Sample
 from hystbench.gap.score import Score
@@ -21,12 +23,17 @@ STRETCHES = 20
 """Of a record, within which residuals may be correlated in any way."""
 
 
+FEW = 4
+"""Records that are needed to tell how much they differ."""
+
+
 def standard_errors(state: State, score: Score) -> FloatArray:
     """Estimate the standard error of each free number of a model.
 
     Weighted least squares with a covariance that is robust to correlation inside
-    stretches of a record [1]_; directions in which the hysteresis may be of the wrong
-    shape count as fitted as far as the residual fills them.
+    stretches of a record [1]_, or to what differs from record to record [2]_, where
+    that is more; directions in which the hysteresis may be of the wrong shape count as
+    fitted as far as the residual fills them.
 
     Parameters
     ----------
@@ -43,6 +50,8 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     ----------
     .. [1] K.-Y. Liang, S. L. Zeger, "Longitudinal data analysis using generalized
        linear models", Biometrika 73 (1986) 13-22.
+    .. [2] B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM,
+       1982.
     """
     if not state.free:
         return np.zeros(0)
@@ -66,22 +75,53 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     weights = np.empty(len(residual))
     for part in state.sample.slices:
         weights[part] = 1.0 / max(float(np.mean(residual[part] ** 2)), score.floor)
-    bread = np.linalg.pinv(columns.T @ (weights[:, None] * columns), rcond=RANK)
-    meat = np.zeros_like(bread)
-    clusters = 0
-    for part in state.sample.slices:
-        pushed = (weights * residual)[part, None] * columns[part]
-        for stretch in np.array_split(pushed, STRETCHES):
-            total = stretch.sum(axis=0)
-            meat += np.outer(total, total)
-            clusters += 1
-    k = columns.shape[1]
-    meat *= clusters / max(clusters - k, 1)
-    variance = np.diag(bread @ meat @ bread)
+    weighted = weights[:, None] * columns
+    parts = state.sample.slices
+    pushes = [residual[part, None] * weighted[part] for part in parts]
+    normals = [columns[part].T @ weighted[part] for part in parts]
+    variance = np.maximum(_by_stretch(normals, pushes), _by_record(normals, pushes))
     errors = np.full(len(usable), np.nan)
     errors[usable] = np.sqrt(np.maximum(variance, 0.0)) / scale[usable]
     found: FloatArray = errors[: len(state.free)]
     return found
+
+
+def _by_stretch(
+    normals: Sequence[FloatArray], pushes: Sequence[FloatArray]
+) -> FloatArray:
+    """Variance where the residuals of different stretches are independent."""
+    bread = np.linalg.pinv(sum(normals), rcond=RANK)
+    totals = [
+        stretch.sum(axis=0)
+        for push in pushes
+        for stretch in np.array_split(push, STRETCHES)
+    ]
+    meat = np.einsum("ij,ik->jk", totals, totals)
+    meat *= len(totals) / max(len(totals) - len(bread), 1)
+    return np.diag(bread @ meat @ bread)
+
+
+def _by_record(
+    normals: Sequence[FloatArray], pushes: Sequence[FloatArray]
+) -> FloatArray:
+    """Variance by leaving out one record after the other (jackknife).
+
+    What a model's form misses is alike within a record and differs between them. With
+    few records the interval is as wide as Student's t distribution makes it.
+    """
+    count = len(normals)
+    if count < FEW:
+        return np.zeros(len(normals[0]))
+    whole = sum(normals)
+    moved = np.array(
+        [
+            np.linalg.pinv(whole - normal, rcond=RANK) @ push.sum(axis=0)
+            for normal, push in zip(normals, pushes, strict=True)
+        ]
+    )
+    spread: FloatArray = (count - 1) * np.var(moved, axis=0)
+    wider = t.ppf(0.975, count - 1) / norm.ppf(0.975)
+    return spread * float(wider) ** 2
 
 
 def on_more_samples(state: State) -> State:

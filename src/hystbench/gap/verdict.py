@@ -82,9 +82,12 @@ class Left:
 def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     """Measure what the base and what a model leaves, each beside its directions."""
     floor = floor_rms**2
+    before, after = (_beyond(x, make_score(x, floor_rms)) for x in (base, state))
     return Left(
-        *(_beyond(each, make_score(each, floor_rms)) for each in (base, state)),
-        *(each.power(floor) / floor for each in (base, state)),
+        before,
+        after,
+        base.power(floor) / floor,
+        state.power(floor) / floor,
         float(np.var(base.measured)) / floor,
     )
 
