@@ -1,7 +1,7 @@
 /* A mode whose stiffness grows with its displacement. */
 #include "lanes.h"
 
-#define SUBSTEP 0.2  /* largest phase of the stiffened mode in one step, in radians */
+#define SUBSTEP 0.1  /* largest phase of the stiffened mode in one step, in radians */
 
 /* Displacement x of x'' + 2 damping w x' + w^2 (x + alpha x^3) = w^2 z from rest, with
  * phase = w dt and time in units of 1 / w.  z moves by the share ramp of a straight
