@@ -182,7 +182,7 @@ def volterra(x: FloatArray, d: FloatArray) -> Contest:
             **c_builds("", lambda c: c.volterra(x, d, mu1, mu2)),
             **c_builds(", fused", lambda c: c.volterra(x, d, mu1, mu2, fused=True)),
         },
-        repeats=3,
+        repeats=5,
     )
 
 
@@ -213,11 +213,18 @@ def rate_dependent_simulation(x: FloatArray) -> Contest:
     ratio = np.exp(-2.0 * spacing)
     nothing = np.ones(1)
     given = spacing, ratio, ORDER + 1
+
+    def in_c(c: CReference) -> Adapted:
+        return Adapted(c.rate_dependent(x, spacing, ratio), nothing)
+
     return Contest(
         "RDGPI simulation",
         len(x),
         lambda: Adapted(rate_dependent_prandtl_ishlinskii(x, x, *given)[0], nothing),
-        {PLAIN: lambda: Adapted(reference.rate_dependent(x, *given), nothing)},
+        {
+            PLAIN: lambda: Adapted(reference.rate_dependent(x, *given), nothing),
+            **c_builds("", in_c),
+        },
         repeats=7,
     )
 
