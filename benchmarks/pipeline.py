@@ -97,8 +97,8 @@ def growth() -> Iterator[tuple[object, ...]]:
     config = load_yaml(ROOT / "config.yaml")
     filters = [name for name in config["models"] if name != "rdgpi"]
     every, orders = config["signals"], config["order_sweep"]["orders"]
-    cases = [(s, 4, len(orders)) for s in (1, 4, 8, len(every))]
-    cases += [(len(every), f, len(orders)) for f in (1, 2)] + [(len(every), 4, 5)]
+    cases = [(s, 4, len(orders)) for s in (1, len(every) // 2, len(every))]
+    cases += [(len(every), 1, len(orders)), (len(every), 4, 5)]
     for signals, models, points in cases:
         given = load_yaml(ROOT / "config.yaml")
         given["signals"], given["models"] = every[:signals], filters[:models]
