@@ -101,7 +101,8 @@ def _address(values: FloatArray) -> int:
     if values.dtype != _FLOAT64 or not flags.c_contiguous:
         raise TypeError("arrays of a kernel must be float64 in C order")
     if flags.writeable:
-        return ctypes.addressof(_NOTHING.from_buffer(values))
+        buffer: Any = values
+        return ctypes.addressof(_NOTHING.from_buffer(buffer))
     return values.ctypes.data  # six times slower, but takes read-only arrays
 
 
