@@ -78,8 +78,7 @@ def measured(
 def cut(record: Record, share: float) -> Record:
     """Give the first part of a record, as one without a period."""
     end = round(share * len(record.u))
-    signals = {"u": record.u[:end], "y": record.y[:end]}
-    return replace(record, **signals, period_samples=None)
+    return replace(record, u=record.u[:end], y=record.y[:end], period_samples=None)
 
 
 def close(evidence: Evidence, model: str) -> str:
