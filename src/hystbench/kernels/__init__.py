@@ -121,7 +121,7 @@ def padded(count: int) -> int:
 def aligned(values: FloatArray) -> FloatArray:
     """Copy to where no vector lies across two lines of the processor's cache."""
     space = np.empty(values.size + WIDTH)
-    start = -space.ctypes.data % 64 // 8
+    start = -_address(space) % 64 // 8
     out = space[start : start + values.size].reshape(values.shape)
     out[...] = values
     return out
@@ -129,13 +129,17 @@ def aligned(values: FloatArray) -> FloatArray:
 
 def pad(values: FloatArray, filling: float = 0.0) -> FloatArray:
     """Copy a vector, filled up to whole vectors at its end."""
-    out = np.full(padded(len(values)), filling)
-    out[: len(values)] = values
+    count = len(values)
+    out = np.empty(padded(count))
+    out[:count] = values
+    out[count:] = filling
     return out
 
 
 def pad_front(values: FloatArray, filling: float = 0.0) -> FloatArray:
     """Copy a vector, filled up to whole vectors at its start."""
-    out = np.full(padded(len(values)), filling)
-    out[len(out) - len(values) :] = values
+    start = padded(len(values)) - len(values)
+    out = np.empty(start + len(values))
+    out[:start] = filling
+    out[start:] = values
     return out
