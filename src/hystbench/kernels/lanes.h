@@ -69,9 +69,6 @@ INLINE double sum(lanes v)
 #endif
 }
 
-/* 1 where a number is above zero, else 0. */
-INLINE lanes positive(lanes v) { return -__builtin_convertvector(v > 0, lanes); }
-
 /* Eq. 4: every generalized play operator to max(gr - r, min(gl + r, w)).
  * Operator i reads the envelopes at [i * pace], pace being 0 or 1. */
 INLINE void play_step(index_t size, const double *left, const double *right,

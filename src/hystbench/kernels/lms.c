@@ -9,6 +9,9 @@
  */
 #include "lanes.h"
 
+/* 1 where a number is above zero, else 0. */
+INLINE lanes positive(lanes v) { return -__builtin_convertvector(v > 0, lanes); }
+
 INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const double *d,
                         const double *step, double regularization, double limit,
                         double *weights, double *y, double *e, index_t vectors)
