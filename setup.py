@@ -38,6 +38,7 @@ SOURCES = [
     "drive.c",
     "hardening.c",
     "jiles_atherton.c",
+    "largest.c",
     "lms.c",
     "play.c",
     "preisach.c",

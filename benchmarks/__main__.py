@@ -14,6 +14,7 @@ PARTS = (
     "identification",
     "imports",
     "pipeline",
+    "gap",
     "graph",
     "pictures",
 )

@@ -130,5 +130,13 @@ class CReference:
         _call(model, len(left), left, right, r, weights, y)
         return y
 
+    def rate_dependent(
+        self, v: FloatArray, spacing: FloatArray, ratio: FloatArray
+    ) -> FloatArray:
+        """Plays whose thresholds and weights follow the rate, from rest."""
+        y = np.empty(len(v))
+        _call(self._library.reference_rate_dependent, len(v), v, spacing, ratio, y)
+        return y
+
     def _line(self, x: FloatArray, more: int) -> FloatArray:
         return np.concatenate((np.zeros(self._order + more), x))

@@ -41,6 +41,7 @@ COLUMNS = (
 )
 SHORT, LONG = 20_000, 1_000_000
 FRACTION = 0.5  # of Eq. 19's bound
+TURN = 0.02  # seconds that each candidate is called for on end, as timeit does
 PLAIN = "NumPy loop"
 
 Candidate = Callable[[], Adapted]
@@ -79,7 +80,7 @@ def run(contest: Contest) -> list[tuple[object, ...]]:
     plain = found[PLAIN]
     same = {name: reference.equal(each, plain) for name, each in found.items()}
     del found
-    seconds = interleaved(candidates, contest.repeats)
+    seconds = interleaved(candidates, contest.repeats, TURN)
     scale = 1e9 / contest.samples
     least, median = least_and_median(seconds["ours"])
     rows = []
@@ -182,7 +183,7 @@ def volterra(x: FloatArray, d: FloatArray) -> Contest:
             **c_builds("", lambda c: c.volterra(x, d, mu1, mu2)),
             **c_builds(", fused", lambda c: c.volterra(x, d, mu1, mu2, fused=True)),
         },
-        repeats=3,
+        repeats=5,
     )
 
 
@@ -213,11 +214,18 @@ def rate_dependent_simulation(x: FloatArray) -> Contest:
     ratio = np.exp(-2.0 * spacing)
     nothing = np.ones(1)
     given = spacing, ratio, ORDER + 1
+
+    def in_c(c: CReference) -> Adapted:
+        return Adapted(c.rate_dependent(x, spacing, ratio), nothing)
+
     return Contest(
         "RDGPI simulation",
         len(x),
         lambda: Adapted(rate_dependent_prandtl_ishlinskii(x, x, *given)[0], nothing),
-        {PLAIN: lambda: Adapted(reference.rate_dependent(x, *given), nothing)},
+        {
+            PLAIN: lambda: Adapted(reference.rate_dependent(x, *given), nothing),
+            **c_builds("", in_c),
+        },
         repeats=7,
     )
 

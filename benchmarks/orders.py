@@ -9,6 +9,7 @@ from hystbench.filters import FILTERS
 ORDERS = (1, 3, 7, 15, 23, 30, 31, 47, 63, 99, 149, 199, 249, 299)
 SAMPLES = 20_000
 REPEATS = 5
+TURN = 0.01  # seconds that each filter is called for on end
 COLUMNS = ("filter", "order", "taps", "weights", "ns_per_sample", "ns_per_weight")
 
 
@@ -22,7 +23,7 @@ def main() -> None:
             name: lambda each=each: each.run(x, d)  # type: ignore[misc]
             for name, each in filters.items()
         }
-        for name, seconds in interleaved(candidates, REPEATS).items():
+        for name, seconds in interleaved(candidates, REPEATS, TURN).items():
             each = filters[name]
             ns = least_and_median(seconds)[0] * 1e9 / SAMPLES
             rows.append((name, order, each.taps, each.size, ns, ns / each.size))

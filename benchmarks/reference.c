@@ -156,3 +156,22 @@ void reference_prandtl_ishlinskii(index_t n, const double *restrict left,
         y[k] = sum;
     }
 }
+
+/* Plays of threshold i spacing[k] and weight ratio[k]^i, from rest. */
+void reference_rate_dependent(index_t n, const double *restrict v,
+                              const double *restrict spacing,
+                              const double *restrict ratio, double *restrict y)
+{
+    double state[TAPS] = {0};
+    for (index_t k = 0; k < n; k++) {
+        double sum = 0, power = 1;
+        for (int i = 0; i < TAPS; i++) {
+            const double low = v[k] - i * spacing[k], high = v[k] + i * spacing[k];
+            const double under = high < state[i] ? high : state[i];
+            state[i] = low > under ? low : under;
+            sum += power * state[i];
+            power *= ratio[k];
+        }
+        y[k] = sum;
+    }
+}

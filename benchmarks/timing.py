@@ -15,24 +15,38 @@ OUT = Path("results", "benchmarks")
 
 
 def interleaved(
-    candidates: Mapping[str, Callable[[], object]], repeats: int
+    candidates: Mapping[str, Callable[[], object]], repeats: int, at_least: float = 0.0
 ) -> dict[str, list[float]]:
     """Take the time of each candidate in turn, so that all see the same machine.
+
+    In its turn a candidate is called over and over for ``at_least`` seconds, once at
+    the least, and the mean call counts.
 
     Returns
     -------
     dict of str to list of float
-        Seconds of each repeat.
+        Seconds of a call in each repeat.
     """
     seconds: dict[str, list[float]] = {name: [] for name in candidates}
-    for _ in range(repeats):
-        for name, candidate in candidates.items():
-            gc.collect()
-            start = perf_counter()
-            kept = candidate()
-            seconds[name].append(perf_counter() - start)
-            del kept
+    gc.collect()
+    gc.disable()  # as timeit does: it would run in whatever candidate is at hand
+    try:
+        for _ in range(repeats):
+            for name, candidate in candidates.items():
+                seconds[name].append(_mean_call(candidate, at_least))
+    finally:
+        gc.enable()
     return seconds
+
+
+def _mean_call(candidate: Callable[[], object], at_least: float) -> float:
+    calls, start = 0, perf_counter()
+    while True:
+        candidate()
+        calls += 1
+        taken = perf_counter() - start
+        if taken >= at_least:
+            return taken / calls
 
 
 def least_and_median(seconds: Sequence[float]) -> tuple[float, float]:

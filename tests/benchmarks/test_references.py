@@ -82,6 +82,8 @@ def test_simulations_are_the_plain_loops(signals):
     found, _ = rate_dependent_prandtl_ishlinskii(x, x, *given)
     expected = reference.rate_dependent(x, *given)
     np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
+    found = CReference("C, same flags", ORDER).rate_dependent(x, *given[:2])
+    np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-12)
 
 
 def test_unequal_results_are_told():

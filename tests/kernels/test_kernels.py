@@ -2,6 +2,9 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from hystbench import kernels
 from hystbench.errors import InputError
@@ -15,7 +18,7 @@ def lms(x, d, step, limit):
     steps = kernels.pad(np.array([step]))
     taken = kernels.call(
         "hb_lms_rows", len(x), 1, rows, kernels.WIDTH, np.asarray(d), steps,
-        np.sign(steps), -1.0, limit, weights, y, e,
+        -1.0, limit, weights, y, e,
     )  # fmt: skip
     return taken, weights
 
@@ -67,8 +70,7 @@ def test_same_bytes_at_any_alignment():
         weights = np.zeros(40)[shift : shift + 32]
         y, e = np.empty((2, n))
         kernels.call(
-            "hb_lms_rows", n, 4, rows[1:], 1, d, np.full(32, 0.01),
-            np.ones(32), -1.0, 1e9,
+            "hb_lms_rows", n, 4, rows[1:], 1, d, np.full(32, 0.01), -1.0, 1e9,
             weights, y, e,
         )  # fmt: skip
         seen.add(y.tobytes() + weights.tobytes())
@@ -100,3 +102,28 @@ def test_padding_to_whole_vectors(count, whole):
     np.testing.assert_array_equal(front[whole - count :], values)
     assert (back[count:] == -1).all()
     assert (front[: whole - count] == -1).all()
+
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+anywhere = st.integers(0, 99)
+
+
+@given(arrays(np.float64, st.integers(0, 100), elements=finite))
+def test_the_largest_magnitude(values):
+    assert kernels.largest(values) == max(map(abs, values), default=0.0)
+
+
+@given(
+    arrays(np.float64, 100, elements=finite),
+    anywhere,
+    st.sampled_from([np.nan, np.inf, -np.inf]),
+)
+def test_no_largest_magnitude_where_one_is_not_finite(values, place, bad):
+    values[place] = bad
+    assert np.isnan(kernels.largest(values))
+
+
+def test_a_read_only_array_is_taken():
+    values = np.array([1.0, -3.0, 2.0])
+    values.flags.writeable = False
+    assert kernels.largest(values) == 3.0

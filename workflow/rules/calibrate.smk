@@ -1,16 +1,21 @@
-from hystbench.calibration.structures import asked_structures
-
 # The twin itself. `snakemake calibrate` fits it to the published tables and puts it into
 # the package; it is committed there, so no other target makes it. The step sizes, the
 # zero error and the input noise that belong to it are printed, for config.yaml.
 if TWIN:
     CALIBRATION = f"{RESULTS}/calibration"
-    try:
-        STRUCTURES = [item.name for item in asked_structures(SETTINGS.structures)]
-    except InputError as error:
-        sys.exit(f"hystbench: {PLACE}: structures: tried: {error}")
     # Found by name, so that no import tells of them.
     CALIBRATED_FILTERS = sorted(GRAPH.find_children("hystbench.filters"))
+
+    def structures_tried(wildcards):
+        """Results of the structures that the settings ask for."""
+        # Imported only where they are asked for: it takes a quarter of a second.
+        from hystbench.calibration.structures import asked_structures
+
+        try:
+            asked = asked_structures(SETTINGS.structures)
+        except InputError as error:
+            sys.exit(f"hystbench: {PLACE}: structures: tried: {error}")
+        return [f"{RESULTS}/structures/{each.name}.json" for each in asked]
 
     # What the calibration tried and found, for docs/.
     rule tried:
@@ -93,7 +98,7 @@ if TWIN:
 
     rule structures:
         input:
-            tried=[f"{RESULTS}/structures/{name}.json" for name in STRUCTURES],
+            tried=structures_tried,
             code=code("hystbench.commands.structures"),
         output:
             tried=f"{RESULTS}/structures/tried.csv",
@@ -111,7 +116,7 @@ if TWIN:
     # After the choice: all structures on the held-out signals, by one rule.
     rule held_out:
         input:
-            tried=rules.structures.input.tried,
+            tried=structures_tried,
             choice=PACKAGE / "plants/choice.yaml",
             published=PUBLISHED,
             code=code("hystbench.commands.held_out", *CALIBRATED_FILTERS),

@@ -1,4 +1,4 @@
-"""Cut config.yaml down to three signals: small.py CONFIG OUT."""
+"""Cut config.yaml down to three signals and 24 blind cases: small.py CONFIG OUT."""
 
 import sys
 from pathlib import Path
@@ -13,4 +13,8 @@ config["rdgpi"]["fit_signals"] = ["sine-040hz", "sine-100hz"]
 config["rdgpi"]["starts"] = 2
 config["order_sweep"]["orders"] = [1, 5, 10]
 config["pressure"]["twins"] = ["gma-preisach"]
+blind = config["blind"]
+# Twice the dozen of the small set; four jobs of six cases for the one solver.
+blind |= {"set": "small", "scale": 2.0, "transfer": False, "chunk": 6}
+blind["solvers"] = {blind["solver"]: blind["solvers"][blind["solver"]]}
 Path(sys.argv[2]).write_text(yaml.safe_dump(config), encoding="utf-8")

@@ -8,6 +8,7 @@ differ in the regressor ``H`` alone, so a new one is one file with one method.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ from hystbench.errors import InputError
 from hystbench.filters.bound import Bound, eigenvalue_bound
 from hystbench.record import FloatArray
 
-CHUNK = 16000
+CHUNK = 32000
 """Samples filtered at a time: what is made of them stays in the processor's cache."""
 
 ROWS = 2048
@@ -182,14 +183,17 @@ class AdaptiveFilter(ABC):
         InputError
             If there are not ``size`` finite weights.
         """
-        if weights is None:
-            weights = np.zeros(self.size)
-        w = np.array(weights, dtype=np.float64)
-        if w.shape != (self.size,) or not np.isfinite(w).all():
-            raise InputError(
-                f"weights: {w.shape} given, {self.size} finite numbers expected"
-            )
-        return State(w, np.full(self.history, self.x_before), self._first_operators())
+        w = np.zeros(self.size)
+        if weights is not None:
+            given = np.asarray(weights, dtype=np.float64)
+            if given.shape != w.shape or not np.isfinite(given).all():
+                raise InputError(
+                    f"weights: {given.shape} given, {self.size} finite numbers expected"
+                )
+            w[:] = given
+        past = np.empty(self.history)
+        past.fill(self.x_before)
+        return State(w, past, self._first_operators())
 
     def run(
         self,
@@ -218,14 +222,14 @@ class AdaptiveFilter(ABC):
         InputError
             If x and d differ in length, are not finite or the limit is not positive.
         """
-        x, d = _finite("x", x), _finite("d", d)
+        x, _ = _finite("x", x)
+        d, largest = _finite("d", d)
         if len(x) != len(d):
             raise InputError(f"d: {len(d)} samples given, x has {len(x)}")
         state = state or self.start()
         if limit is None:
             limit = state.limit
         if limit is None:
-            largest = float(np.abs(d).max(initial=0.0))
             limit = 1e6 * (largest or 1.0)
         positive("limit", limit)
         output, error = np.empty(len(d)), np.empty(len(d))
@@ -242,7 +246,7 @@ class AdaptiveFilter(ABC):
             if taken < len(line) - self.history:
                 break
         diverged_at = done if done < len(d) else None
-        if not np.isfinite(weights).all():
+        if not math.isfinite(kernels.largest(weights)):
             # overflow in the last update of all: the next prediction would show it
             diverged_at = done
             weights = np.nan_to_num(weights)
@@ -270,7 +274,7 @@ class AdaptiveFilter(ABC):
 
     def _chunks(self, x: ArrayLike) -> Iterator[FloatArray]:
         """Delay line of chunk after chunk of an input: past inputs, then its own."""
-        x = _finite("x", x)
+        x, _ = _finite("x", x)
         if len(x) == 0:
             raise InputError("x: no samples")
         line = np.concatenate((np.full(self.history, self.x_before), x))
@@ -339,8 +343,7 @@ class AdaptiveFilter(ABC):
         numbers = (self._kernel_regularization(), limit)
         arrays = (weights, output, error)
         sizes = (len(d), vectors)
-        used = (steps > 0).astype(np.float64)
-        signals = (rows, stride, d, steps, used)
+        signals = (rows, stride, d, steps)
         return kernels.call("hb_lms_rows", *sizes, *signals, *numbers, *arrays)
 
     def _kernel_regularization(self) -> float:
@@ -354,11 +357,13 @@ def positive(name: str, value: float) -> None:
         raise InputError(f"{name}: {value} given, a positive number expected")
 
 
-def _finite(name: str, values: ArrayLike) -> FloatArray:
+def _finite(name: str, values: ArrayLike) -> tuple[FloatArray, float]:
+    """Give a vector of finite numbers, as the kernels want it, and the largest."""
     array = np.asarray(values, dtype=np.float64, order="C")
     if array.ndim != 1:
         raise InputError(f"{name}: {array.ndim} dimensions given, 1 expected")
-    if not np.isfinite(array).all():
+    largest = kernels.largest(array)
+    if not math.isfinite(largest):
         place = int(np.flatnonzero(~np.isfinite(array))[0])
         raise InputError(f"{name}: sample {place} is {array[place]}")
-    return array
+    return array, largest

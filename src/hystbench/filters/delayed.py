@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from hystbench import kernels
 from hystbench.filters.base import AdaptiveFilter
 from hystbench.record import FloatArray
@@ -41,6 +43,7 @@ class DelayedFilter(AdaptiveFilter):
     ) -> tuple[int, FloatArray, FloatArray]:
         # rows are windows of the line itself, one sample apart, oldest first
         lanes = kernels.pad_front(weights[::-1])
-        steps = kernels.pad_front(2 * self.steps)
+        steps = np.zeros(len(lanes))
+        steps[-self.taps :] = 2 * self.step_size
         taken = self._rows(line[1:], 1, steps, d, limit, lanes, output, error)
         return taken, lanes[-self.taps :][::-1].copy(), operators

@@ -156,12 +156,10 @@ def _below(blocks: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 def _pack(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Split weights into the tiles that the kernel wants and what it leaves alone.
 
-    Off the diagonal tiles the kernel keeps the symmetric part, once; the rest
+    The kernel keeps the symmetric part, off the diagonal tiles once; the rest
     predicts nothing and never changes.
     """
-    block = np.arange(len(matrix)) // TILE
-    mean = 0.5 * (matrix + matrix.T)
-    kept = np.where(block[:, None] == block, matrix, mean)
+    kept = 0.5 * (matrix + matrix.T)
     tiles = _tiles(kept)
     return kernels.aligned(tiles[_below(len(tiles))]), matrix - kept
 

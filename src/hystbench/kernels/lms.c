@@ -9,10 +9,12 @@
  */
 #include "lanes.h"
 
+/* 1 where a number is above zero, else 0. */
+INLINE lanes positive(lanes v) { return -__builtin_convertvector(v > 0, lanes); }
+
 INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const double *d,
-                        const double *step, const double *used, double regularization,
-                        double limit, double *weights, double *y, double *e,
-                        index_t vectors)
+                        const double *step, double regularization, double limit,
+                        double *weights, double *y, double *e, index_t vectors)
 {
     lanes w[vectors], last[vectors];
     double correction = 0;
@@ -44,7 +46,7 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
             UNROLL
             for (index_t j = 0; j < vectors; j++) {
                 lanes h = load(row + j * LANES);
-                power += load(used + j * LANES) * h * h;
+                power += positive(load(step + j * LANES)) * h * h;
             }
             correction *= 1 / (regularization + sum(power));
         }
@@ -56,15 +58,15 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
 }
 
 /* Regressor k is rows[k * stride], padded to WIDTH; with stride 1 a delay line.
- * step is 2 mu for each weight and zero in the padding, used 1 and zero.  A
- * regularization of zero or more makes it the normalized LMS. */
+ * step is 2 mu for each weight and zero in the padding.  A regularization of zero or
+ * more makes it the normalized LMS. */
 EXPORT index_t hb_lms_rows(index_t n, index_t wide, const double *rows,
                            index_t stride, const double *d, const double *step,
-                           const double *used, double regularization, double limit,
-                           double *weights, double *y, double *e)
+                           double regularization, double limit, double *weights,
+                           double *y, double *e)
 {
 #define CALL(size)                                                                     \
-    lms_rows(n, rows, stride, d, step, used, regularization, limit, weights, y, e, size)
+    lms_rows(n, rows, stride, d, step, regularization, limit, weights, y, e, size)
     FOR_SIZES(wide, CALL)
 #undef CALL
 }
