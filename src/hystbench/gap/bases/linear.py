@@ -10,7 +10,9 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import STARTS
 from hystbench.gap.bases.output_error import OutputError
+from hystbench.gap.bases.halves import HalvesError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
+from hystbench.gap.bases.split import best_split, chain_of
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.folds import Fold, Mask, make_folds
 from hystbench.model import Model
@@ -119,8 +121,35 @@ def identified_linear(evidence: Evidence) -> Linear:
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
     )
+    found_split = _split(evidence, spectra, found, whole, folds)
+    if found_split is not None:
+        chain, more = found_split
+        note += more
     model = Model("linear", evidence.input, evidence.output, chain)
     return Linear(model, note, fit, fold)
+
+
+def _split(
+    evidence: Evidence,
+    spectra: Spectra,
+    found: list[_Found],
+    whole: tuple[Mask, ...],
+    folds: tuple[Fold, ...],
+) -> tuple[tuple[Block, ...], str] | None:
+    """Write the base as two in series, where a static curve may lie between them."""
+    start = found[-1].task.start
+    task = HalvesError(evidence.fit, whole, evidence.hold, spectra.scale, start)
+    everything = [np.ones(len(record), dtype=bool) for record in evidence.fit]
+    ratios = []
+    for order in range(2, HIGHEST + 1):
+        for zeros in (order - 1, order):
+            linear = OutputError(evidence.fit, evidence.hold, spectra.scale, start)
+            ratio = linear.refined(fit_ratio(spectra, order, zeros), whole, ROUNDS)
+            ratios.append(ratio)
+    halves = best_split(task, ratios, folds)
+    if halves is None:
+        return None
+    return chain_of(task, halves), f"{len(halves.front_a)} + {len(halves.back_a)}"
 
 
 def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]:

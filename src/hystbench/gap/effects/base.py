@@ -217,6 +217,19 @@ class Effect(ABC):
         raise NotImplementedError
 
 
+def places_inside(scene: Scene) -> list[int]:
+    """Give the places between the transfer functions of a chain: before all but one.
+
+    A linear base that is written as two in series may hide a static nonlinearity
+    between its halves.
+    """
+    linear = [k for k, item in enumerate(scene.chain) if item.name == LINEAR]
+    return linear[1:]
+
+
+LINEAR = "transfer-function"
+
+
 def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:
     """Give values from low to high, so many a decade, evenly in their logarithm."""
     count = max(2, int(np.ceil(np.log10(high / low) * per_decade)) + 1)

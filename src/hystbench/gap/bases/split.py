@@ -1,0 +1,226 @@
+"""A linear base as two in series, where a static curve between them explains much.
+
+Behind a static nonlinearity between two filters the best linear model is, for a
+Gaussian input, the product of both filters [1]_: nothing of the curve shows in it, and
+no effect before or behind it makes up for the curve. Its poles and zeros are dealt to
+two halves in every way, and each way is judged by how well it does with a polynomial
+between the halves [2]_. The polynomial is then dropped: the base stays linear, and has
+a place where an effect can be tried.
+
+References
+----------
+.. [1] J. J. Bussgang, "Crosscorrelation functions of amplitude-distorted Gaussian
+   signals", MIT Research Laboratory of Electronics, Technical Report 216, 1952.
+.. [2] J. Sjoberg, J. Schoukens, "Initializing Wiener-Hammerstein models based on
+   partitioning of the best linear approximation", Automatica 48 (2012) 353-359.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.halves import DEGREE, Halves, HalvesError
+from hystbench.gap.bases.spectral import Ratio
+from hystbench.gap.folds import Fold
+from hystbench.record import FloatArray
+
+#: A curve inside must lower the error by this share, beside one at either end.
+CLEARLY = 0.25
+#: With more ways to deal poles and zeros, all zeros stay together.
+MOST_WAYS = 512
+#: Ways that are refined a little, and steps of it; steps to the end, and on a fold.
+LIKELY = 3
+ROUNDS = 5
+TO_THE_END = 40
+FOLD_ROUNDS = 4
+#: A further pole or zero must lower the error by this share.
+MATTERS = 0.02
+#: Poles of both halves together, at most.
+MOST = 8
+#: A new pole or zero starts beyond the others, at so many times the scale.
+BEYOND = 5.0
+
+
+def best_split(
+    task: HalvesError, ratios: Sequence[Ratio], folds: Sequence[Fold]
+) -> Halves | None:
+    """Find the two halves between which a static curve explains most.
+
+    Parameters
+    ----------
+    task : HalvesError
+    ratios : sequence of Ratio
+        Linear models of the records, of several orders.
+    folds : sequence of Fold
+        Of the same records.
+
+    Returns
+    -------
+    Halves or None
+        None where a curve at one end, or none at all, does nearly as well on samples
+        that did not fit it.
+    """
+    linear = min(ratio.cost for ratio in ratios)
+    ends = [task.bent(way) for ratio in ratios for way in _ends(ratio)]
+    ways = [[task.bent(way) for way in _ways(ratio)] for ratio in ratios]
+    enough = (1 - CLEARLY) ** 2
+    if min(way.cost for own in [ends, *ways] for way in own) > enough * linear:
+        return None
+    end = task.refined(min(ends, key=_cost), TO_THE_END)
+    likely = [way for own in ways for way in sorted(own, key=_cost)[:LIKELY]]
+    best = min((task.refined(way, ROUNDS) for way in likely), key=_cost, default=None)
+    if best is None or best.cost > enough * end.cost:
+        return None
+    best = _grown(task, task.refined(best, TO_THE_END))
+    inside, outside = (_on_folds(task, each, folds) for each in (best, end))
+    return best if inside < enough * outside else None
+
+
+def chain_of(task: HalvesError, halves: Halves) -> tuple[Block, ...]:
+    """Write halves as blocks, the curve left out.
+
+    The gain between them has an offset: the signal is counted from the point about
+    which the curve is odd. To a linear base that is nothing, as the constant at the
+    end takes it off again.
+    """
+    fb, bb = halves.front_b, halves.back_b
+    unit = fb[0] / halves.front_a[0] if fb[0] else 1.0
+    _, square, cube = halves.curve * unit ** np.arange(1, DEGREE + 1)
+    middle = square / (3 * cube) if cube else 0.0
+    if abs(middle) > task.between(halves) / abs(unit):
+        middle = 0.0
+    front = _block(task, fb / unit, halves.front_a, task.start)
+    after = "moving" if task.start == "moving" else "settled"
+    back = _block(task, bb, halves.back_a, after)
+    chain: tuple[Block, ...] = (front, Gain(value=1.0, offset=float(middle)), back)
+    value, offset = _line(task, chain)
+    scaled = replace(back, numerator=tuple(value * x for x in back.numerator))
+    return (*chain[:-1], scaled, Gain(value=1.0, offset=offset))
+
+
+def _block(
+    task: HalvesError, b: FloatArray, a: FloatArray, start: str
+) -> TransferFunction:
+    numerator, denominator = Ratio(a, b, 0.0, 0.0).coefficients(task.scale)
+    return TransferFunction(
+        numerator=tuple(numerator.tolist()),
+        denominator=tuple(denominator.tolist()),
+        hold=task.hold,
+        start=start,
+    )
+
+
+def _line(task: HalvesError, chain: tuple[Block, ...]) -> tuple[float, float]:
+    """Fit a gain and a constant behind a chain."""
+    tables, wanted = [], []
+    for record, mask in zip(task.records, task.masks, strict=True):
+        z = record.u
+        for block in chain:
+            z = block.simulate(z, record.u, record.dt)
+        tables.append(np.column_stack([z, np.ones(len(z))])[mask])
+        wanted.append(record.y[mask])
+    table, y = np.vstack(tables), np.concatenate(wanted)
+    value, offset = np.linalg.lstsq(table, y, rcond=None)[0]
+    return float(value), float(offset)
+
+
+def _grown(task: HalvesError, halves: Halves) -> Halves:
+    """Give either half a further pole, or zero, as long as one matters.
+
+    The order of a linear model is hidden in what the curve distorts.
+    """
+    while True:
+        tried = [
+            task.refined(way, ROUNDS)
+            for way in _more(halves)
+            if len(way.front_a) + len(way.back_a) <= MOST
+        ]
+        if not tried:
+            return halves
+        best = task.refined(min(tried, key=_cost), TO_THE_END)
+        if best.cost > (1 - MATTERS) ** 2 * halves.cost:
+            return halves
+        halves = best
+
+
+def _more(halves: Halves) -> Iterator[Halves]:
+    """Give halves with one more pole, one more zero, or both, far out."""
+    for half in ("front", "back"):
+        a, b = (getattr(halves, f"{half}_{key}") for key in "ab")
+        far = np.array([BEYOND, 1.0])
+        pole = np.convolve(np.append(a, 1.0), far)
+        zero = np.convolve(b, far / BEYOND)
+        more = {f"{half}_a": pole[:-1], f"{half}_b": BEYOND * b}
+        yield replace(halves, **more)
+        yield replace(halves, **{**more, f"{half}_b": BEYOND * zero})
+        if len(b) <= len(a):
+            yield replace(halves, **{f"{half}_b": zero})
+
+
+def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float:
+    """Sum of squares over samples that did not fit."""
+    return sum(
+        replace(task, masks=fold.validation).squares(
+            replace(task, masks=fold.train).refined(halves, FOLD_ROUNDS)
+        )
+        for fold in folds
+    )
+
+
+def _ends(ratio: Ratio) -> Iterator[Halves]:
+    """Give the curve before a linear model and behind it."""
+    none, one, curve = np.zeros(0), np.ones(1), np.zeros(DEGREE)
+    yield Halves(none, one, ratio.a, ratio.b, curve)
+    yield Halves(ratio.a, ratio.b, none, one, curve)
+
+
+def _ways(ratio: Ratio) -> Iterator[Halves]:
+    """Deal poles and zeros to two halves, both proper and both with a pole."""
+    poles = _pairs(np.roots(np.append(ratio.a, 1.0)[::-1]))
+    zeros = _pairs(np.roots(ratio.b[::-1]))
+    sides = [(False, True)] * len(zeros)
+    choices = list(itertools.product(*sides))
+    if 2 ** (len(poles) + len(zeros)) > MOST_WAYS:
+        choices = [choices[0], choices[-1]]
+    for of_poles in itertools.product((False, True), repeat=len(poles)):
+        front_a, back_a = _dealt(poles, of_poles)
+        for of_zeros in choices:
+            front_b, back_b = _dealt(zeros, of_zeros)
+            proper = len(front_b) <= len(front_a) and len(back_b) <= len(back_a)
+            if proper and len(front_a) > 1 and len(back_a) > 1:
+                yield Halves(
+                    front_a[:-1],
+                    front_b * (front_a[0] / front_b[0]),
+                    back_a[:-1],
+                    back_b,
+                    np.zeros(DEGREE),
+                )
+
+
+def _pairs(roots: NDArray[np.complex128]) -> list[list[complex]]:
+    """Give real roots, and pairs of conjugate ones."""
+    real = [[complex(x.real)] for x in roots if x.imag == 0]
+    return real + [[complex(x), complex(x.conjugate())] for x in roots if x.imag > 0]
+
+
+def _dealt(
+    pairs: Sequence[Sequence[complex]], front: Sequence[bool]
+) -> tuple[FloatArray, FloatArray]:
+    """Give the polynomials of the roots of either side, ascending, the last one."""
+    found = []
+    for side in (True, False):
+        own = [x for pair, to in zip(pairs, front, strict=True) if to is side for x in pair]
+        found.append(np.atleast_1d(np.real(np.poly(np.array(own))))[::-1].copy())
+    return found[0], found[1]
+
+
+def _cost(halves: Halves) -> float:
+    return halves.cost
