@@ -33,7 +33,8 @@ from hystbench.gap.folds import Fold
 from hystbench.record import FloatArray
 
 #: A curve inside must lower the error by this share, beside one at either end.
-CLEARLY = 0.25
+CLEARLY = 0.15
+ENOUGH = (1 - CLEARLY) ** 2
 #: With more ways to deal poles and zeros, all zeros stay together.
 MOST_WAYS = 512
 #: Ways that are refined a little, and steps of it; steps to the end, and on a fold.
@@ -47,6 +48,13 @@ MATTERS = 0.02
 MOST = 8
 #: A new pole or zero starts beyond the others, at so many times the scale.
 BEYOND = 5.0
+
+
+def is_bent(task: HalvesError, ratios: Sequence[Ratio]) -> bool:
+    """Tell whether a static curve somewhere pays at all; a quick look."""
+    ways = (way for ratio in ratios for way in (*_ends(ratio), *_ways(ratio)))
+    linear = min(ratio.cost for ratio in ratios)
+    return any(task.bent(way).cost < ENOUGH * linear for way in ways)
 
 
 def best_split(
@@ -65,45 +73,49 @@ def best_split(
     Returns
     -------
     Halves or None
-        None where a curve at one end, or none at all, does nearly as well on samples
-        that did not fit it.
+        None where a curve at one end does nearly as well on samples that did not fit
+        it.
     """
-    linear = min(ratio.cost for ratio in ratios)
     ends = [task.bent(way) for ratio in ratios for way in _ends(ratio)]
     ways = [[task.bent(way) for way in _ways(ratio)] for ratio in ratios]
-    enough = (1 - CLEARLY) ** 2
-    if min(way.cost for own in [ends, *ways] for way in own) > enough * linear:
-        return None
     end = task.refined(min(ends, key=_cost), TO_THE_END)
     likely = [way for own in ways for way in sorted(own, key=_cost)[:LIKELY]]
-    best = min((task.refined(way, ROUNDS) for way in likely), key=_cost, default=None)
-    if best is None or best.cost > enough * end.cost:
+    tried = [task.refined(way, ROUNDS) for way in likely]
+    best = min(tried, key=_cost, default=None)
+    if best is None or best.cost > ENOUGH * end.cost:
         return None
-    best = _grown(task, task.refined(best, TO_THE_END))
+    enough = [way for way in tried if way.cost <= best.cost / (1 - MATTERS) ** 2]
+    fewest = min(enough, key=lambda way: (way.count, way.cost))
+    best = _grown(task, task.refined(fewest, TO_THE_END))
     inside, outside = (_on_folds(task, each, folds) for each in (best, end))
-    return best if inside < enough * outside else None
+    return best if inside < ENOUGH * outside else None
 
 
-def chain_of(task: HalvesError, halves: Halves) -> tuple[Block, ...]:
+def chain_of(task: HalvesError, halves: Halves) -> tuple[tuple[Block, ...], float]:
     """Write halves as blocks, the curve left out.
 
     The gain between them has an offset: the signal is counted from the point about
     which the curve is odd. To a linear base that is nothing, as the constant at the
     end takes it off again.
+
+    Returns
+    -------
+    tuple of Block
+    float
+        Sum of squares of what the chain leaves, over the samples that count.
     """
     fb, bb = halves.front_b, halves.back_b
     unit = fb[0] / halves.front_a[0] if fb[0] else 1.0
-    _, square, cube = halves.curve * unit ** np.arange(1, DEGREE + 1)
-    middle = square / (3 * cube) if cube else 0.0
-    if abs(middle) > task.between(halves) / abs(unit):
-        middle = 0.0
+    middle = task.middle(halves) / unit
     front = _block(task, fb / unit, halves.front_a, task.start)
     after = "moving" if task.start == "moving" else "settled"
     back = _block(task, bb, halves.back_a, after)
-    chain: tuple[Block, ...] = (front, Gain(value=1.0, offset=float(middle)), back)
-    value, offset = _line(task, chain)
+    if back.hold == "zero-order":  # a staircase is smooth behind the front
+        back = replace(back, hold="linear")
+    chain: tuple[Block, ...] = (front, Gain(value=1.0, offset=-middle), back)
+    value, offset, error = _line(task, chain)
     scaled = replace(back, numerator=tuple(value * x for x in back.numerator))
-    return (*chain[:-1], scaled, Gain(value=1.0, offset=offset))
+    return (*chain[:-1], scaled, Gain(value=1.0, offset=offset)), error
 
 
 def _block(
@@ -118,8 +130,8 @@ def _block(
     )
 
 
-def _line(task: HalvesError, chain: tuple[Block, ...]) -> tuple[float, float]:
-    """Fit a gain and a constant behind a chain."""
+def _line(task: HalvesError, chain: tuple[Block, ...]) -> tuple[float, float, float]:
+    """Fit a gain and a constant behind a chain, and give the sum of squares left."""
     tables, wanted = [], []
     for record, mask in zip(task.records, task.masks, strict=True):
         z = record.u
@@ -129,7 +141,8 @@ def _line(task: HalvesError, chain: tuple[Block, ...]) -> tuple[float, float]:
         wanted.append(record.y[mask])
     table, y = np.vstack(tables), np.concatenate(wanted)
     value, offset = np.linalg.lstsq(table, y, rcond=None)[0]
-    return float(value), float(offset)
+    error = y - value * table[:, 0] - offset
+    return float(value), float(offset), float(error @ error)
 
 
 def _grown(task: HalvesError, halves: Halves) -> Halves:
@@ -217,7 +230,9 @@ def _dealt(
     """Give the polynomials of the roots of either side, ascending, the last one."""
     found = []
     for side in (True, False):
-        own = [x for pair, to in zip(pairs, front, strict=True) if to is side for x in pair]
+        own = [
+            x for pair, to in zip(pairs, front, strict=True) if to is side for x in pair
+        ]
         found.append(np.atleast_1d(np.real(np.poly(np.array(own))))[::-1].copy())
     return found[0], found[1]
 

@@ -174,7 +174,7 @@ class Effect(ABC):
 
         return Variant(
             self.name,
-            self.place,
+            INSIDE if place in places_inside(scene) else self.place,
             form,
             start,
             build,
@@ -228,6 +228,8 @@ def places_inside(scene: Scene) -> list[int]:
 
 
 LINEAR = "transfer-function"
+INSIDE = "inside the base"
+"""Place of an effect between two transfer functions."""
 
 
 def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:

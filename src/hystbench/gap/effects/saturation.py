@@ -10,6 +10,10 @@ from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_insi
 from hystbench.gap.scene import Scene
 
 
+SHARPEST = 50.0
+"""Beyond it, a corner is a corner."""
+
+
 class Saturation(Effect):
     """An odd, soft limit behind the hysteresis, of one sharpness or another."""
 
@@ -30,4 +34,5 @@ class Saturation(Effect):
             place,
             form="algebraic",
             grids={"level": levels, "sharpness": np.array([2.0, 3.0, 4.5, 8.0])},
+            limits={"sharpness": (2.0, SHARPEST)},
         )
