@@ -9,8 +9,8 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import STARTS
-from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.halves import HalvesError
+from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
 from hystbench.gap.bases.split import best_split, chain_of, is_bent
 from hystbench.gap.evidence import Evidence

@@ -9,7 +9,6 @@ import numpy as np
 from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
 from hystbench.gap.scene import Scene
 
-
 SHARPEST = 50.0
 """Beyond it, a corner is a corner."""
 
