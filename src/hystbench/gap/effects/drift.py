@@ -22,6 +22,8 @@ class Drift(Effect):
         end = len(scene.chain)
         small = 1e-3 * scene.largest(end) / scene.span
         yield self.inserted(scene, end, form="one slope", unit={"slope": small})
+        if not any(shows_a_path(record) for record in scene.records):
+            return
         for form, order in (("ramp", 1), ("path", PATH_ORDER)):
             yield self.added(
                 scene,
@@ -52,6 +54,21 @@ def path(record: Record, given: Values, order: int) -> FloatArray:
 
 PERIODS = 2.0
 """Of the input for each degree of a path."""
+
+
+def shows_a_path(record: Record) -> bool:
+    """Tell whether a path of its own would show beside what the input does.
+
+    Within one period of an input that never rests, a path can stand in for any error
+    of the loop: nothing comes twice. A second period, or a hold, tells them apart.
+    """
+    moves = np.abs(np.diff(record.u))
+    holds = float(np.median(moves)) < STILL * float(np.mean(moves))
+    return holds or periods(record) >= PERIODS
+
+
+STILL = 0.1
+"""Of the mean rate, for half of a record, to be a hold."""
 
 
 def periods(record: Record) -> float:
