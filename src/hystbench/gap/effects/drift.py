@@ -64,9 +64,11 @@ def shows_a_path(record: Record) -> bool:
     """
     moves = np.abs(np.diff(record.u))
     holds = float(np.median(moves)) < STILL * float(np.mean(moves))
-    return holds or periods(record) >= PERIODS
+    return holds or periods(record) >= TWICE
 
 
+TWICE = 1.5
+"""Periods, counted by crossings of the mean, of which two whole ones have three."""
 STILL = 0.1
 """Of the mean rate, for half of a record, to be a hold."""
 
