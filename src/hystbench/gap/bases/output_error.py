@@ -15,8 +15,6 @@ from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
 from hystbench.gap.folds import Mask
 from hystbench.record import FloatArray, Record
 
-#: Directions of what is beside that weigh less than this share are left out.
-RANK = 1e-10
 #: A step is damped so many times before a descent ends.
 TRIALS = 8
 
@@ -33,16 +31,12 @@ class OutputError:
         Unit of the ratio's s, in rad/s.
     start : {"rest", "settled", "moving"}
         As of the block.
-    beside : tuple of ndarray, shape (n, m) each, optional
-        Columns of each record that are added with amplitudes of their own, the same
-        for all records: solved for each time (variable projection).
     """
 
     records: tuple[Record, ...]
     hold: Hold
     scale: float
     start: str = "rest"
-    beside: tuple[FloatArray, ...] = ()
 
     def block(self, ratio: Ratio) -> TransferFunction:
         """Give the block of a ratio; its constant is left out."""
@@ -64,38 +58,12 @@ class OutputError:
 
     def squares(self, ratio: Ratio, masks: Sequence[Mask]) -> float:
         """Sum of squares of the error over the masked samples."""
-        error = self._errors(ratio, masks)
-        if not self.beside:
-            return float(error @ error)
-        if not np.isfinite(error).all():
-            return np.inf
-        columns = self._columns(masks)
-        rest = error - columns @ np.linalg.lstsq(columns, error, rcond=RANK)[0]
-        return float(rest @ rest)
-
-    def squares_held_back(
-        self, ratio: Ratio, train: Sequence[Mask], held: Sequence[Mask]
-    ) -> float:
-        """Sum of squares over samples that give no amplitude of what is beside."""
-        error = self._errors(ratio, held)
-        if self.beside:
-            given, wanted = self._columns(train), self._errors(ratio, train)
-            amplitudes = np.linalg.lstsq(given, wanted, rcond=RANK)[0]
-            error = error - self._columns(held) @ amplitudes
-        return float(error @ error)
-
-    def _errors(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
         simulated = self.simulate(ratio)
-        return np.concatenate(
-            [
-                (record.y - y)[mask]
-                for record, y, mask in zip(self.records, simulated, masks, strict=True)
-            ]
-        )
-
-    def _columns(self, masks: Sequence[Mask]) -> FloatArray:
-        pairs = zip(self.beside, masks, strict=True)
-        return np.vstack([columns[mask] for columns, mask in pairs])
+        error = [
+            (record.y - y)[mask]
+            for record, y, mask in zip(self.records, simulated, masks, strict=True)
+        ]
+        return float(sum(part @ part for part in error))
 
     def refined(
         self, ratio: Ratio, masks: Sequence[Mask], rounds: int, least_gain: float = 1e-4
@@ -156,16 +124,11 @@ class OutputError:
         """Triangle of the derivatives, and of the error as its last column."""
         triangles = []
         simulated = self.simulate(ratio)
-        beside = dict.fromkeys((item.name for item in self.records), ())
-        for record, columns in zip(self.records, self.beside, strict=False):
-            beside[record.name] = tuple(columns.T)
         for record, y, mask in zip(self.records, simulated, masks, strict=True):
-            columns = [*beside[record.name], *self._derivatives(ratio, record)]
-            own = np.column_stack([*columns, record.y - y])[mask]
+            columns = [*self._derivatives(ratio, record), record.y - y]
+            own = np.column_stack(columns)[mask]
             triangles.append(triangle_of(own))
-        # What is beside comes first: below it stands what it leaves of the others.
-        count = len(next(iter(beside.values())))
-        return triangle_of(np.vstack(triangles))[count:, count:]
+        return triangle_of(np.vstack(triangles))
 
     def _derivatives(self, ratio: Ratio, record: Record) -> list[FloatArray]:
         """Change of the output with each a, each b and the constant."""
