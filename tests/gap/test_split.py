@@ -15,7 +15,9 @@ from hystbench.gap.effects.base import INSIDE
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import find
 from hystbench.gap.scene import Scene
-from tests.gap.made import multisine, record, steady
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
+from tests.gap.small import block
 
 
 def mode(frequency_hz, damping):
@@ -52,8 +54,8 @@ def clipped(w):
     return np.minimum(w, 0.3)
 
 
-def poles(block):
-    return np.sort_complex(np.roots(block.denominator))
+def poles(half):
+    return np.sort_complex(np.roots(half.denominator))
 
 
 def of_mode(frequency_hz, damping):
@@ -77,8 +79,8 @@ def test_the_halves_are_those_of_the_system(split):
     front, between, back, end = model.chain
     assert [front.name, between.name] == ["transfer-function", "gain"]
     assert [back.name, end.name] == ["transfer-function", "gain"]
-    for block, wanted in ((front, of_mode(30, 0.5)), (back, of_mode(55, 0.35))):
-        near = np.abs(poles(block) - wanted).min()
+    for half, wanted in ((front, of_mode(30, 0.5)), (back, of_mode(55, 0.35))):
+        near = np.abs(poles(half) - wanted).min()
         assert near < 0.1 * abs(wanted)
 
 
@@ -180,3 +182,49 @@ def test_halves_simulate_what_their_blocks_simulate(clipped_records):
     back = _block(task, straight.back_b, straight.back_a, "rest")
     w = front.simulate(u, u, DT)
     assert found == pytest.approx(back.simulate(w, u, DT) + 0.4, abs=5e-3)
+
+
+def given(behind=(), **about):
+    """One transfer function as a user brings it: the product of both halves."""
+    down = np.ones(1)
+    for frequency_hz, damping in ((30.0, 0.5), (55.0, 0.35)):
+        w = 2 * np.pi * frequency_hz
+        down = np.polymul(down, [1 / w**2, 2 * damping / w, 1.0])
+    one = block("transfer-function", numerator=[1.7], denominator=down.tolist())
+    return Model("rig", CURRENT, DISPLACEMENT, (one, *behind), **about)
+
+
+def test_a_given_transfer_function_is_split_and_does_what_it_did(
+    tmp_path, clipped_records
+):
+    behind = (block("gain", value=1.0, offset=0.1),)
+    free = ("transfer-function.denominator", "gain.offset")
+    model = given(behind, free=free, tolerances={"gain.offset": 0.2})
+    model.save(tmp_path / "rig.yaml")
+    found, note = load_base(str(tmp_path / "rig.yaml"), clipped_records)
+    assert "two in series" in note
+    names = [item.name for item in found.chain]
+    assert names.count("transfer-function") == 2
+    front = next(item for item in found.chain if item.name == "transfer-function")
+    assert poles(front)[0].real == pytest.approx(of_mode(30, 0.5).real, rel=1e-6)
+    for one in clipped_records.fit:
+        old, new = (
+            item.with_hold("band-limited").simulate(one.u, DT)
+            for item in (model, found)
+        )
+        assert new == pytest.approx(old, abs=1e-3 * np.ptp(old))
+    assert set(found.free) >= {
+        "transfer-function.denominator",
+        "transfer-function#2.denominator",
+    }
+    # The user's own gain is the last one, whatever it is called now.
+    (gain,) = (name for name in found.free if name.startswith("gain"))
+    assert found.value(gain) == 0.1
+    assert found.tolerances == {gain: 0.2}
+
+
+def test_a_given_base_stays_where_there_is_no_curve(tmp_path):
+    given().save(tmp_path / "rig.yaml")
+    found, note = load_base(str(tmp_path / "rig.yaml"), measured(lambda w: w))
+    assert found.chain == given().chain
+    assert "series" not in note

@@ -43,33 +43,34 @@ def beside_errors(state: State, score: Score) -> list[Errors]:
     if not state.beside:
         return []
     columns = np.hstack([state.tangents, state.beside_columns])
-    amplitudes = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
-    residual = state.residual - columns @ amplitudes
-    amplitudes = amplitudes[len(state.free) :]
-    searched, places = [], []
+    found = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
+    fitted = np.asarray(found, dtype=np.float64)
+    residual = state.residual - columns @ fitted
+    searched: list[FloatArray] = []
+    places = []
     first = len(state.free)
     for beside, values in state.beside:
         count = _count(state, beside, values)
-        own = amplitudes[first - len(state.free) :][:count]
+        own = fitted[first : first + count]
         places.append((first, count, columns.shape[1] + len(searched)))
         searched += [_moved(state, beside, values, key, own) for key in values]
         first += count
     columns = np.column_stack([columns, *searched])
     covariance = _covariance(columns, residual, state, score.floor)
-    found = []
+    told = []
     for (beside, values), (start, count, behind) in zip(
         state.beside, places, strict=True
     ):
-        own = amplitudes[start - len(state.free) :][:count]
+        own = fitted[start : start + count]
         at = np.r_[start : start + count, behind : behind + len(values)]
         part = covariance[np.ix_(at, at)]
-        found.append(_told(state, beside, values, own, part))
-    return found
+        told.append(_told(state, beside, values, own, part))
+    return told
 
 
 def _count(state: State, beside: Beside, values: Values) -> int:
     """Give the number of amplitudes of a signal, in all records together."""
-    each = beside.columns(state.records[0], values, beside.order).shape[1]
+    each: int = beside.columns(state.records[0], values, beside.order).shape[1]
     return each * len(state.records)
 
 

@@ -110,7 +110,8 @@ class HalvesError:
             spectrum = np.fft.rfft(path - before, 2 * n) * held(
                 f * record.dt, self.hold
             )
-            found.append((path, before, spectrum, 2j * np.pi * f / self.scale))
+            s = np.asarray(2j * np.pi * f / self.scale, dtype=np.complex128)
+            found.append((path, before, spectrum, s))
         return found
 
     def _between(self, halves: Halves, number: int) -> FloatArray:
@@ -170,7 +171,8 @@ class HalvesError:
             gram, slope = self._normal(best)
             for _ in range(TRIALS):
                 matrix = gram + damping * np.diag(np.diag(gram) + 1e-300)
-                tried = best.moved(np.linalg.lstsq(matrix, slope, rcond=1e-14)[0])
+                step = np.asarray(np.linalg.lstsq(matrix, slope, rcond=1e-14)[0], float)
+                tried = best.moved(step)
                 tried = replace(tried, cost=self.squares(tried))
                 if tried.cost < best.cost:
                     break

@@ -22,7 +22,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
@@ -52,7 +51,9 @@ BEYOND = 5.0
 
 def is_bent(task: HalvesError, ratios: Sequence[Ratio]) -> bool:
     """Tell whether a static curve somewhere pays at all; a quick look."""
-    ways = (way for ratio in ratios for way in (*_ends(ratio), *_ways(ratio)))
+    ways = (
+        way for ratio in ratios for way in (*ways_at_ends(ratio), *ways_inside(ratio))
+    )
     linear = min(ratio.cost for ratio in ratios)
     return any(task.bent(way).cost < ENOUGH * linear for way in ways)
 
@@ -76,8 +77,8 @@ def best_split(
         None where a curve at one end does nearly as well on samples that did not fit
         it.
     """
-    ends = [task.bent(way) for ratio in ratios for way in _ends(ratio)]
-    ways = [[task.bent(way) for way in _ways(ratio)] for ratio in ratios]
+    ends = [task.bent(way) for ratio in ratios for way in ways_at_ends(ratio)]
+    ways = [[task.bent(way) for way in ways_inside(ratio)] for ratio in ratios]
     end = task.refined(min(ends, key=_cost), TO_THE_END)
     likely = [way for own in ways for way in sorted(own, key=_cost)[:LIKELY]]
     tried = [task.refined(way, ROUNDS) for way in likely]
@@ -104,18 +105,28 @@ def chain_of(task: HalvesError, halves: Halves) -> tuple[tuple[Block, ...], floa
     float
         Sum of squares of what the chain leaves, over the samples that count.
     """
+    front, back, middle = parts_of(task, halves)
+    chain: tuple[Block, ...] = (front, Gain(value=1.0, offset=-middle), back)
+    value, offset, error = _line(task, chain)
+    scaled = replace(back, numerator=tuple(value * x for x in back.numerator))
+    return (*chain[:-1], scaled, Gain(value=1.0, offset=offset)), error
+
+
+def parts_of(
+    task: HalvesError, halves: Halves
+) -> tuple[TransferFunction, TransferFunction, float]:
+    """Give the blocks of both halves, and the point about which the curve is odd.
+
+    The front has a gain of one where it has any.
+    """
     fb, bb = halves.front_b, halves.back_b
     unit = fb[0] / halves.front_a[0] if fb[0] else 1.0
-    middle = task.middle(halves) / unit
     front = _block(task, fb / unit, halves.front_a, task.start)
     after = "moving" if task.start == "moving" else "settled"
     back = _block(task, bb, halves.back_a, after)
     if back.hold == "zero-order":  # a staircase is smooth behind the front
         back = replace(back, hold="linear")
-    chain: tuple[Block, ...] = (front, Gain(value=1.0, offset=-middle), back)
-    value, offset, error = _line(task, chain)
-    scaled = replace(back, numerator=tuple(value * x for x in back.numerator))
-    return (*chain[:-1], scaled, Gain(value=1.0, offset=offset)), error
+    return front, back, task.middle(halves) / unit
 
 
 def _block(
@@ -166,16 +177,19 @@ def _grown(task: HalvesError, halves: Halves) -> Halves:
 
 def _more(halves: Halves) -> Iterator[Halves]:
     """Give halves with one more pole, one more zero, or both, far out."""
-    for half in ("front", "back"):
-        a, b = (getattr(halves, f"{half}_{key}") for key in "ab")
-        far = np.array([BEYOND, 1.0])
-        pole = np.convolve(np.append(a, 1.0), far)
-        zero = np.convolve(b, far / BEYOND)
-        more = {f"{half}_a": pole[:-1], f"{half}_b": BEYOND * b}
-        yield replace(halves, **more)
-        yield replace(halves, **{**more, f"{half}_b": BEYOND * zero})
-        if len(b) <= len(a):
-            yield replace(halves, **{f"{half}_b": zero})
+    for a, b in _longer(halves.front_a, halves.front_b):
+        yield replace(halves, front_a=a, front_b=b)
+    for a, b in _longer(halves.back_a, halves.back_b):
+        yield replace(halves, back_a=a, back_b=b)
+
+
+def _longer(a: FloatArray, b: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+    far = np.array([BEYOND, 1.0])
+    pole, zero = np.convolve(np.append(a, 1.0), far)[:-1], np.convolve(b, far / BEYOND)
+    yield pole, BEYOND * b
+    yield pole, BEYOND * zero
+    if len(b) <= len(a):
+        yield a, zero
 
 
 def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float:
@@ -188,17 +202,16 @@ def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float
     )
 
 
-def _ends(ratio: Ratio) -> Iterator[Halves]:
+def ways_at_ends(ratio: Ratio) -> Iterator[Halves]:
     """Give the curve before a linear model and behind it."""
     none, one, curve = np.zeros(0), np.ones(1), np.zeros(DEGREE)
     yield Halves(none, one, ratio.a, ratio.b, curve)
     yield Halves(ratio.a, ratio.b, none, one, curve)
 
 
-def _ways(ratio: Ratio) -> Iterator[Halves]:
+def ways_inside(ratio: Ratio) -> Iterator[Halves]:
     """Deal poles and zeros to two halves, both proper and both with a pole."""
-    poles = _pairs(np.roots(np.append(ratio.a, 1.0)[::-1]))
-    zeros = _pairs(np.roots(ratio.b[::-1]))
+    poles, zeros = _pairs(np.append(ratio.a, 1.0)), _pairs(ratio.b)
     sides = [(False, True)] * len(zeros)
     choices = list(itertools.product(*sides))
     if 2 ** (len(poles) + len(zeros)) > MOST_WAYS:
@@ -218,8 +231,9 @@ def _ways(ratio: Ratio) -> Iterator[Halves]:
                 )
 
 
-def _pairs(roots: NDArray[np.complex128]) -> list[list[complex]]:
+def _pairs(ascending: FloatArray) -> list[list[complex]]:
     """Give real roots, and pairs of conjugate ones."""
+    roots = np.roots(ascending[::-1])
     real = [[complex(x.real)] for x in roots if x.imag == 0]
     return real + [[complex(x), complex(x.conjugate())] for x in roots if x.imag > 0]
 
