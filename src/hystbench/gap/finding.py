@@ -140,6 +140,7 @@ def decide(
     verdict, reason = judge(
         left, bool(state.added), rest.explained_on_folds, bool(start.free)
     )
+    reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -179,6 +180,19 @@ def decide(
         experiment,
         rungs(start, named),
     )
+
+
+def _whole(left: Left) -> str:
+    """Tell what stays of the whole gap, where that is far more than the reason says."""
+    whole = max(left.all_after, 0.0) / max(left.all_before, left.all_after, 1e-9)
+    if whole - left.loose < SAID:
+        return ""
+    also = "; with what a wrong shape of the base could leave as well"
+    return f"{also}, {100 * whole:.0f} %"
+
+
+SAID = 0.1
+"""Share of the gap that a wrong shape of the base could leave, to be told."""
 
 
 def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:

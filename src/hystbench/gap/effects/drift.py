@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hystbench.gap.effects.base import Beside, Effect, Values, Variant
+from hystbench.gap.once import periods, shows_a_path
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray, Record
 
@@ -54,26 +55,3 @@ def path(record: Record, given: Values, order: int) -> FloatArray:
 
 PERIODS = 2.0
 """Of the input for each degree of a path."""
-
-
-def shows_a_path(record: Record) -> bool:
-    """Tell whether a path of its own would show beside what the input does.
-
-    Within one period of an input that never rests, a path can stand in for any error
-    of the loop: nothing comes twice. A second period, or a hold, tells them apart.
-    """
-    moves = np.abs(np.diff(record.u))
-    holds = float(np.median(moves)) < STILL * float(np.mean(moves))
-    return holds or periods(record) >= TWICE
-
-
-TWICE = 1.5
-"""Periods, counted by crossings of the mean, of which two whole ones have three."""
-STILL = 0.1
-"""Of the mean rate, for half of a record, to be a hold."""
-
-
-def periods(record: Record) -> float:
-    """Count the input's periods in a record by how often it crosses its mean."""
-    above = record.u > float(np.mean(record.u))
-    return float(np.count_nonzero(above[1:] != above[:-1])) / 2
