@@ -13,6 +13,7 @@ from hystbench.errors import InputError
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.model import load_model
+from tests.gap.made import record, write_folder
 
 ABOUT = {
     "name": "rig",
@@ -150,6 +151,52 @@ def test_a_stuck_channel(rig, name):
         table[300:500, 2] = table[299, 2]
 
     refused(rig, f"{name}.csv", "displacement", "row 301", records=changed(name, stick))
+
+
+@pytest.mark.parametrize("name", USES)
+def test_a_clipped_input(rig, name):
+    def clip(table):
+        top = 0.6 * table[:, 1].max()
+        np.minimum(table[:, 1], top, out=table[:, 1])
+
+    words = (f"{name}.csv", "current", "clipped", "row")
+    refused(rig, *words, records=changed(name, clip))
+
+
+def test_a_stuck_input(rig):
+    def stick(table):
+        table[300:500, 1] = table[299, 1]
+
+    refused(rig, "one.csv", "current", "row 301", records=changed("one", stick))
+
+
+def respond(u, frequency_hz, damping):
+    """A mode, step by step as its differential equation says."""
+    w, x, v, out = 2 * np.pi * frequency_hz, u[0], 0.0, []
+    for value in u:
+        for _ in range(20):
+            v += 5e-5 * (w * w * (value - x) - 2 * damping * w * v)
+            x += 5e-5 * v
+        out.append(x)
+    return np.array(out)
+
+
+@pytest.mark.parametrize("frequency_hz", [3.0, 10.0, 60.0])
+@pytest.mark.parametrize("damping", [0.02, 0.3, 1.5])
+@pytest.mark.parametrize("shape", ["steps", "ramps and holds", "ramps and drops"])
+def test_an_input_that_rests_is_no_fault(tmp_path, shape, frequency_hz, damping):
+    """Whatever the output does meanwhile: settles, rings or creeps."""
+    t = np.arange(2000) / 1000
+    ramp = np.clip(np.abs(np.mod(t, 1.0) - 0.5) * 10 - 1, 0, 1)
+    drop = np.clip(np.mod(t, 1.0) * 2, 0, 1)
+    u = {
+        "steps": np.floor(t * 4) % 3,
+        "ramps and holds": ramp,
+        "ramps and drops": drop,
+    }[shape]
+    y = respond(u, frequency_hz, damping)
+    made = [record(u, y, name=k, use=use) for k, use in USES.items()]
+    load_evidence(write_folder(tmp_path / "rests", made))
 
 
 def test_a_channel_that_never_moves(rig):

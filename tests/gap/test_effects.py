@@ -14,8 +14,8 @@ from hystbench.gap.fit import Attempt, score_of
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Free, with_effect, without_effect
 from hystbench.model import Model
-from tests.gap.made import CURRENT, DISPLACEMENT, record
-from tests.gap.small import chains, plain_score, records, state_of
+from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
+from tests.gap.small import block, chains, plain_score, records, state_of
 
 # As printed in the vocabulary that users and figures share, by place.
 VOCABULARY = {
@@ -300,3 +300,32 @@ def test_a_logarithmic_grid_has_its_ends_and_even_steps():
     ratios = axis[1:] / axis[:-1]
     assert ratios == pytest.approx(ratios[0])
     assert ratios[0] <= 10 ** (1 / 4) * (1 + 1e-9)
+
+
+def offered(name, *records):
+    scene = Scene((block("gain", value=1.0),), records)
+    return {item.form for item in effects()[name].variants(scene)}
+
+
+def test_a_path_is_offered_only_where_something_comes_twice_or_rests():
+    """Within one loop a path of its own could be any error of the loop."""
+    one_loop = record(sine(1.0, count=1000), name="loop")
+    two_loops = record(sine(2.0, count=1000), name="loops")
+    hold = record(np.repeat([0.0, 1.0], [100, 900]), name="hold")
+    assert offered("drift", one_loop) == {"one slope"}
+    assert offered("drift", one_loop, two_loops) == {"one slope", "ramp", "path"}
+    assert offered("drift", hold) == {"one slope", "ramp", "path"}
+
+
+def test_a_tone_beyond_half_the_sampling_rate_stands_for_nothing():
+    """A record of 4 Hz would show 50 Hz as something slow."""
+    fast = record(sine(3.0, count=4000), name="fast")
+    slow = record(sine(0.01, count=400, dt=0.25), name="slow", dt=0.25)
+    scene = Scene((block("gain", value=1.0),), (fast, slow))
+    (beside,) = {
+        x.beside
+        for x in effects()["mains-pickup"].variants(scene)
+        if x.form == "fundamental"
+    }
+    assert np.abs(beside.columns(fast, {"frequency_hz": 50.0}, 1)).max() > 0.9
+    assert not beside.columns(slow, {"frequency_hz": 50.0}, 1).any()

@@ -16,6 +16,7 @@ from hystbench.gap.floor import noise_floor
 from hystbench.gap.locate import locate
 from hystbench.gap.locate.regression import narrowest_bins
 from hystbench.gap.schema import VIEW
+from tests.gap import made
 from tests.gap.examples import (
     DT,
     compare,
@@ -311,3 +312,17 @@ def test_the_narrowest_range_holds_enough_and_no_narrower_one_does(held, hold):
     width = last - first
     for start in range(len(values) - width + 1):
         assert values[start : start + width].sum() < wanted + 1e-9
+
+
+def test_within_one_loop_nothing_slower_is_called_a_drift():
+    """What a loop of another shape leaves is no path of its own."""
+    t = np.arange(2000) / 2000
+    loop = np.cos(2 * np.pi * t)
+    # Wider than the simulator's: above it on one branch, below it on the other.
+    wider = 0.3 * np.sin(2 * np.pi * t)
+    noise = 0.01 * np.random.default_rng(0).standard_normal(2000)
+    one = made.compared(loop, wider + noise, dt=1e-3)
+    views = {item.view: item for item in locate([one], noise_floor([one], 0.01))}
+    found = views.get("unexplained")
+    assert found is None or found.share_of_gap_power < 0.2
+    assert views["branch"].share_of_gap_power > 0.8

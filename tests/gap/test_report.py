@@ -329,6 +329,19 @@ def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
         assert (f"Not drawn: curves.json: no {name}." in page.said) == (name != key)
 
 
+def test_a_reader_is_told_of_a_promise_that_was_not_kept(tmp_path):
+    told = "On the fit records 90 % of the gap's power is gone, here 50 %."
+    short = {"fit": 0.9, "hold_out": 0.5, "sentence": told}
+    write_report(write_folder(tmp_path, {**GAP, "shortfall": short}))
+    said = read(tmp_path / "report.html").said
+    assert told in said
+    # Above all evidence, with the verdict.
+    assert said.index(told) < said.index("Effects")
+    (tmp_path / "gap.json").write_text(json.dumps({**GAP, "shortfall": None}))
+    write_report(tmp_path)
+    assert "Less than promised" not in read(tmp_path / "report.html").said
+
+
 def test_a_range_is_printed_as_one(tmp_path):
     gap = small(gap=GAP["gap"] | {"explained": [0.61, 0.97]})
     page = read(write_report(write_folder(tmp_path, gap, False, False)))

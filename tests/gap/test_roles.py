@@ -18,7 +18,7 @@ from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.model import load_model
 
-READ_LAST = ("gap", "records", "ladder", "black_box")
+READ_LAST = ("gap", "records", "ladder", "black_box", "shortfall")
 """Keys of gap.json that the hold-out records fill."""
 
 

@@ -11,7 +11,7 @@ from hystbench.blocks.held import Hold
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.errors import InputError
 from hystbench.model import Model
-from hystbench.record import Channel, Record, Use
+from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.units import check_same_unit
 
 STUCK = 0.05
@@ -132,7 +132,8 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
 
 
 def _check_usable(dataset: Dataset, record: Record) -> None:
-    """Refuse a record whose output stands still while its input moves."""
+    """Refuse a record one of whose channels stands still while the other moves."""
+    _check_input(dataset, record)
     y, u = record.y, record.u
     changes = np.flatnonzero(np.diff(y) != 0)
     edges = np.concatenate([[0], changes + 1, [len(y)]])
@@ -147,3 +148,97 @@ def _check_usable(dataset: Dataset, record: Record) -> None:
             f"{record.output.unit} for {last - first} samples while the input moves; "
             f"expected a channel that is not {'clipped' if at_end else 'stuck'}"
         )
+
+
+def _check_input(dataset: Dataset, record: Record) -> None:
+    """Refuse an input that stands still while the output goes on.
+
+    An input may rest, and the output then settles or rings. But an input that stops in
+    the middle of a motion and jumps to where the motion has come to meanwhile was
+    stuck; and one that stops at its end every time, while the output turns half way,
+    was clipped.
+    """
+    u, y = record.u, record.y
+    file, name = dataset.record_files[record.name], record.input.name
+    flat = _flat(u)
+    said = f"{record.input.unit} for {{}} samples while the output goes on; expected"
+    reach = float(np.ptp(y))
+    for first, last in flat:
+        on = last < len(u) and _jumps(u, last) and _unmoved(y, last, last - first)
+        if on and _moves(y[first:last], reach):
+            raise InputError(
+                f"{file}: row {first + 2}: {name} is {u[first]:g} "
+                f"{said.format(last - first)} a channel that is not stuck"
+            )
+    for end in (u.min(), u.max()):
+        own = [y[a:b] for a, b in flat if u[a] == end and b < len(u)]
+        if len(own) > 1 and all(_turns_half_way(part, reach) for part in own):
+            first, last = next((a, b) for a, b in flat if u[a] == end)
+            raise InputError(
+                f"{file}: row {first + 2}: {name} is {end:g} "
+                f"{said.format(last - first)} a channel that is not clipped"
+            )
+
+
+APPROACH = 5
+"""Samples of motion before the input stops."""
+JUMP = 10.0
+"""Of the median step: a larger one is a jump."""
+PARTS = 12
+"""That a stretch is cut into; their means are free of noise and of fast ringing."""
+MOVES = 0.1
+"""Of the output's range, that it goes meanwhile."""
+
+
+def _flat(u: FloatArray) -> list[tuple[int, int]]:
+    """Give the stretches, long enough to matter, where an input that moved is still."""
+    moves = np.abs(np.diff(u))
+    edges = np.concatenate([[0], np.flatnonzero(moves != 0) + 1, [len(u)]])
+    usual = JUMP * float(np.median(moves[moves != 0]))
+    found = []
+    for first, last in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        before = moves[max(first - APPROACH, 0) : first]
+        smooth = len(before) == APPROACH and before.min() > 0 and before.max() < usual
+        if smooth and last - first >= max(STUCK * len(u), 2 * PARTS):
+            found.append((first, last))
+    return found
+
+
+def _jumps(u: FloatArray, at: int) -> bool:
+    moves = np.abs(np.diff(u))
+    return bool(moves[at - 1] > JUMP * np.median(moves[moves != 0]))
+
+
+def _unmoved(y: FloatArray, at: int, span: int) -> bool:
+    """Tell whether an output goes on at its rate past a jump of the input."""
+    part = max(span // PARTS, 2)
+    before = y[at - 1] - y[max(at - 1 - part, 0)]
+    after = y[min(at + part, len(y) - 1)] - y[at]
+    return bool(abs(after - before) < 0.5 * abs(before))
+
+
+def _means(y: FloatArray) -> FloatArray:
+    return np.array([float(part.mean()) for part in np.array_split(y, PARTS)])
+
+
+def _moves(y: FloatArray, reach: float) -> bool:
+    """Tell whether an output goes far and is no slower in the end."""
+    means = _means(y)
+    steps, third = np.abs(np.diff(means)), PARTS // 3
+    settles = steps[-third:].mean() < steps[:third].mean() / 2
+    return bool(np.ptp(means) > MOVES * reach) and not settles
+
+
+def _turns_half_way(y: FloatArray, reach: float) -> bool:
+    """Tell whether an output turns once, in the middle, as far there as back."""
+    means = _means(y)
+    turn = int(np.argmax(np.abs(means - means[0])))
+    there, back = abs(means[turn] - means[0]), abs(means[-1] - means[turn])
+    steps = np.diff(means)
+    turns = np.count_nonzero(np.diff(np.sign(steps[np.abs(steps) > 0.02 * reach])))
+    middle = PARTS / 3 <= turn + 0.5 <= 2 * PARTS / 3
+    return (
+        middle
+        and min(there, back) > max(MOVES * reach, 0.5 * max(there, back))
+        and (turns == 1)
+    )

@@ -12,6 +12,7 @@ import numpy as np
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
+from hystbench.gap.beside_errors import Errors, beside_errors
 from hystbench.gap.compared import Compared
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import Experiment, next_experiment, parameter_tangents
@@ -19,6 +20,7 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.name import Candidate, Named, Say, make_score, name, near, silent
+from hystbench.gap.rungs import Rung, rungs
 from hystbench.gap.scene import Scene
 from hystbench.gap.start import start_state
 from hystbench.gap.state import Added, State
@@ -56,6 +58,8 @@ class Finding:
         What the pictures of where the gap is are drawn from.
     experiment : Experiment, optional
         What would tell a set of likely effects apart.
+    rungs : tuple of Rung
+        The models on the way from the base to the last effect.
     """
 
     base: Model
@@ -67,6 +71,7 @@ class Finding:
     content: Mapping[str, Any]
     curves: Mapping[str, Any]
     experiment: Experiment | None
+    rungs: tuple[Rung, ...]
 
 
 def find(
@@ -137,10 +142,12 @@ def decide(
         rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
         explained = rest.explained_on_folds
     verdict, reason = judge(left, bool(state.added), explained, bool(start.free))
+    reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
     errors = standard_errors(finer, score)
+    of_beside = beside_errors(finer, score)
     by_effect = named.reasons
     model = augmented(base, state)
     experiment = _experiment(base, named, by_effect, records, floor)
@@ -151,9 +158,12 @@ def decide(
         "verdict": verdict,
         "reason": reason,
         "effects": [
-            _effect(item, state, errors, by_effect.get(item.effect, ()), left)
+            _effect(
+                item, state, errors, of_beside, by_effect.get(item.effect, ()), left
+            )
             for item in state.added
         ],
+        "fit": _fit(start, state, floor),
         "where": [view.to_mapping() for view in views],
         "ranking": _ranking(named),
         "next_experiment": None if experiment is None else experiment.mapping(),
@@ -170,7 +180,35 @@ def decide(
         content,
         curves(compared, floor),
         experiment,
+        rungs(start, named),
     )
+
+
+def _whole(left: Left) -> str:
+    """Tell what stays of the whole gap, where that is far more than the reason says."""
+    whole = max(left.all_after, 0.0) / max(left.all_before, left.all_after, 1e-9)
+    if whole - left.loose < SAID:
+        return ""
+    also = "; with what a wrong shape of the base could leave as well"
+    return f"{also}, {100 * whole:.0f} %"
+
+
+SAID = 0.1
+"""Share of the gap that a wrong shape of the base could leave, to be told."""
+
+
+def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:
+    """Tell what is gone on the fit records, and how much no other record knows."""
+    square = floor.rms**2
+    before, after = (each.power(square) for each in (start, state))
+    alone = replace(state, beside=()).power(square)
+    there = before > 0
+    return {
+        "before": float(np.sqrt(before + square)),
+        "after": float(np.sqrt(after + square)),
+        "explained": (before - after) / before if there else None,
+        "new_in_every_record": (alone - after) / before if there else 0.0,
+    }
 
 
 def black_box(start: State, floor: Floor) -> BlackBox:
@@ -260,6 +298,7 @@ def _effect(
     item: Added,
     state: State,
     errors: FloatArray,
+    of_beside: Sequence[Errors],
     ranking: Sequence[Candidate],
     left: Left,
 ) -> dict[str, Any]:
@@ -267,23 +306,26 @@ def _effect(
     return {
         "name": item.effect,
         "place": item.place,
-        "parameters": _parameters(item, state, errors),
+        "parameters": _parameters(item, state, errors, of_beside),
         "confidence": 0.0 if own is None else confidence(own, ranking, left),
         "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
     }
 
 
-def _parameters(item: Added, state: State, errors: FloatArray) -> dict[str, Any]:
+def _parameters(
+    item: Added, state: State, errors: FloatArray, of_beside: Sequence[Errors]
+) -> dict[str, Any]:
     found: dict[str, Any] = {}
     if not item.blocks:
         blocks = {beside.effect: k for k, (beside, _) in enumerate(state.beside)}
         block = beside_blocks(state)[blocks[item.effect]]
+        known = of_beside[blocks[item.effect]]
         for key, about in block.parameters().items():
             value = about.plain(getattr(block, key))
             if value is not None and value != ():
                 found[key] = {
                     "value": value,
-                    "standard_error": None,
+                    "standard_error": known.get(key),
                     "unit": _unit(about.unit, state),
                 }
         return found

@@ -11,6 +11,7 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.name import Say, name, silent
 from hystbench.gap.run import show, write_shown
+from hystbench.gap.rungs import Rung
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
 from hystbench.model import Model
@@ -47,7 +48,14 @@ def decide_in(
     finding = decide(evidence.name, base, start, floor, named, say)
     finding.model.save(folder / "model.yaml")
     write_json(folder / "curves.json", finding.curves)
-    kept = {"floor": floor_mapping(floor), "state": state_mapping(finding.state)}
+    kept = {
+        "floor": floor_mapping(floor),
+        "state": state_mapping(finding.state),
+        "rungs": [
+            {"name": item.name, "state": state_mapping(item.state)}
+            for item in finding.rungs
+        ],
+    }
     write_json(folder / NAMED, kept)
     write_json(folder / DECISION, finding.content)
 
@@ -64,8 +72,12 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
-    state = Restorer(evidence.fit, base).state(kept["state"])
+    restorer = Restorer(evidence.fit, base)
+    state = restorer.state(kept["state"])
+    steps = [
+        Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
+    ]
     start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
-    shown = show(base, state, floor, box, evidence.hold_out)
+    shown = show(base, state, floor, box, evidence.hold_out, steps)
     write_shown(folder, read_json(folder / DECISION), evidence.hold_out, shown)

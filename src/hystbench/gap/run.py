@@ -18,9 +18,11 @@ from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
 from hystbench.gap.name import Say, silent
 from hystbench.gap.nuisance import Nuisance, left_over, offset_and_mains
+from hystbench.gap.rungs import Rung
 from hystbench.gap.scene import Scene
+from hystbench.gap.shortfall import shortfall
 from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink
-from hystbench.gap.state import State, without_effect
+from hystbench.gap.state import State
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -68,7 +70,12 @@ def close_gap(
     )
     # From here on the hold-out records are read; nothing is decided any more.
     shown = show(
-        base, finding.state, finding.floor, finding.black_box, evidence.hold_out
+        base,
+        finding.state,
+        finding.floor,
+        finding.black_box,
+        evidence.hold_out,
+        finding.rungs,
     )
     folder.mkdir(parents=True, exist_ok=True)
     finding.model.save(folder / "model.yaml")
@@ -102,7 +109,9 @@ def write_shown(
         _write_hold_out(
             folder / "holdout" / f"{record.name}.csv", record, before, after
         )
-    write_json(folder / "gap.json", {**decided, **shown.content})
+    content = {**decided, **shown.content}
+    content["shortfall"] = shortfall(content)
+    write_json(folder / "gap.json", content)
 
 
 @dataclass(frozen=True)
@@ -127,6 +136,7 @@ def show(
     floor: Floor,
     box: BlackBox,
     records: tuple[Record, ...],
+    steps: Sequence[Rung],
 ) -> Shown:
     """Compare base and model on hold-out records.
 
@@ -139,6 +149,8 @@ def show(
     box : BlackBox
         Fitted to what the base leaves on the fit records.
     records : tuple of Record
+    steps : sequence of Rung
+        Models on the way from the base to this one.
 
     Returns
     -------
@@ -150,14 +162,7 @@ def show(
     before = _run(base.with_hold(state.hold).chain, records, state)
     after = _run(state.chain, records, state)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
-    stages = [("base", before)]
-    for count in range(1, len(state.added) + 1):
-        short = state
-        for number in reversed(range(count, len(state.added))):
-            short = without_effect(short, number)
-        stages.append(
-            (state.added[count - 1].effect, _run(short.chain, records, state))
-        )
+    stages = [(rung.name, _run(rung.state.chain, records, state)) for rung in steps]
     content = {
         "gap": mapping(found),
         "records": records_mapping(found),

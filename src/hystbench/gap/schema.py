@@ -75,6 +75,24 @@ GAP = _object(
     interval={"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2},
 )
 
+FIT = _object(
+    {
+        # RMS over the fit records alike, of the base and of the model with its effects.
+        "before": NUMBER,
+        "after": NUMBER,
+        # The share of the power above the floor that is gone there, and how much of it
+        # went to signals that are new in every record and predict no other.
+        "explained": OPTIONAL,
+        "new_in_every_record": NUMBER,
+    }
+)
+
+# Where the hold-out records show far less than the fit records promised: both shares
+# of the power above the floor that are gone, and what the reader is told.
+SHORTFALL = _object({"fit": NUMBER, "hold_out": NUMBER, "sentence": {"type": "string"}})
+
+RUNG = _object({"name": {"type": "string"}, "rms": NUMBER})
+
 RANK = _object(
     {"name": {"type": "string"}, "place": {"type": "string"}},
     form={"type": "string"},
@@ -98,7 +116,10 @@ SCHEMA = _object(
         "next_experiment": {"type": ["object", "null"]},
     },
     records={"type": "array"},
-    ladder={"type": "array"},
+    # The base, the base re-tuned within what it leaves free, then effect by effect.
+    ladder={"type": "array", "items": RUNG},
+    fit=FIT,
+    shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},
 )

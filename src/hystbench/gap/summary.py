@@ -23,7 +23,9 @@ COLUMNS = (
     "noise_floor",
     "floor_method",
     "explained_percent",
+    "explained_on_fit_percent",
     "reason",
+    "shortfall",
 )
 EFFECT_COLUMNS = (
     "dataset",
@@ -86,7 +88,9 @@ def _row(content: Content) -> list[str]:
         _number(gap["noise_floor"]),
         gap["floor_method"],
         _share(gap["explained"]),
+        _share(content["fit"]["explained"]),
         content["reason"],
+        (content["shortfall"] or {}).get("sentence", ""),
     ]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from hystbench.blocks.external import FORM, External
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError, nearest
+from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
 from hystbench.gap.evidence import Evidence, check_units
@@ -72,7 +73,8 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
         except InputError as error:
             raise InputError(f"{text}: {error}") from None
         _check_bounded(model.with_hold(evidence.hold), evidence, text)
-        return model, f"base {model.name} from {text}"
+        model, more = split_given(model, evidence)
+        return model, f"base {model.name} from {text}{more}"
     if FORM.fullmatch(text):
         return function_base(text, evidence)
     files = [str(item) for item in Path(text).parent.glob("*.yaml")]

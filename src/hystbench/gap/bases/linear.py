@@ -9,8 +9,10 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import STARTS
+from hystbench.gap.bases.halves import HalvesError
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
+from hystbench.gap.bases.split import best_split, chain_of, is_bent
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.folds import Fold, Mask, make_folds
 from hystbench.model import Model
@@ -27,6 +29,8 @@ IN_VAIN = 2
 LEAD = 0.1
 #: The plainest start is taken whose sum of squares is within this factor of the best.
 CLEARLY = 1.01
+#: Two halves are the base only if their error is within this factor of its.
+SAME = 1.02
 #: Steps of least squares on simulation: of all records, then of each fold.
 ROUNDS = 20
 FOLD_ROUNDS = 4
@@ -119,8 +123,49 @@ def identified_linear(evidence: Evidence) -> Linear:
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
     )
+    halves = _halves(evidence, spectra, found, whole, folds)
+    if halves is not None:
+        chain, fit, more = halves
+        note += more
     model = Model("linear", evidence.input, evidence.output, chain)
     return Linear(model, note, fit, fold)
+
+
+def _halves(
+    evidence: Evidence,
+    spectra: Spectra,
+    found: list[_Found],
+    whole: tuple[Mask, ...],
+    folds: tuple[Fold, ...],
+) -> tuple[tuple[Block, ...], float, str] | None:
+    """Write the base as two in series, where a static curve between explains much.
+
+    Returns the chain, its own error on the fit records, and a few words.
+    """
+    start = found[-1].task.start
+    task = HalvesError(evidence.fit, whole, evidence.hold, spectra.scale, start)
+    if not is_bent(task, [item.ratio for item in found]):
+        return None
+    free_run = OutputError(evidence.fit, evidence.hold, spectra.scale, start)
+    ratios = [
+        free_run.refined(fit_ratio(spectra, order, zeros), whole, ROUNDS)
+        for order in range(2, HIGHEST + 1)
+        for zeros in (order - 1, order)
+    ]
+    halves = best_split(task, ratios, folds)
+    if halves is None:
+        return None
+    count = sum(int(mask.sum()) for mask in whole)
+    chain, error = chain_of(task, halves)
+    if error > SAME**2 * min(item.ratio.cost for item in found):
+        return None
+    unit = evidence.output.unit
+    words = (
+        f"; written as two in series, of order {len(halves.front_a)} and "
+        f"{len(halves.back_a)}, since a static curve between them leaves "
+        f"{np.sqrt(halves.cost / count):.4g} {unit}"
+    )
+    return chain, float(np.sqrt(error / count)), words
 
 
 def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]:

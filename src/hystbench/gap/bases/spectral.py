@@ -163,10 +163,13 @@ def fit_ratio(spectra: Spectra, order: int, zeros: int) -> Ratio:
     return best
 
 
-def stable(a: FloatArray) -> FloatArray:
-    """Reflect the poles of ``s^k + a_{k-1} s^{k-1} + .. + a_0`` to the left."""
+def stable(a: FloatArray, margin: float = MARGIN) -> FloatArray:
+    """Reflect the poles of ``s^k + a_{k-1} s^{k-1} + .. + a_0`` to the left.
+
+    They are kept off the axis by a share ``margin`` of their size.
+    """
     poles = np.roots(np.append(a, 1.0)[::-1])
-    damping = np.maximum(np.abs(poles.real), MARGIN * np.abs(poles) + 1e-9)
+    damping = np.maximum(np.abs(poles.real), margin * np.abs(poles) + 1e-9)
     return cast(FloatArray, np.poly(-damping + 1j * poles.imag).real[:0:-1].copy())
 
 

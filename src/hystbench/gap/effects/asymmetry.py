@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.gap.effects.base import Effect, Values, Variant
+from hystbench.gap.effects.base import Effect, Values, Variant, places_inside
 from hystbench.gap.scene import Scene
 
 
@@ -18,9 +18,9 @@ class Asymmetry(Effect):
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer the square behind the hysteresis and the bias before it."""
-        place = scene.behind_hysteresis
-        small = 1e-3 / scene.largest(place)
-        yield self.inserted(scene, place, form="square", unit={"coefficient": small})
+        for place in (scene.behind_hysteresis, *places_inside(scene)):
+            unit = {"coefficient": 1e-3 / scene.largest(place)}
+            yield self.inserted(scene, place, form="square", unit=unit)
         if scene.hysteresis is not None:
             yield self._bias(scene, scene.hysteresis)
 

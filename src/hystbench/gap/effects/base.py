@@ -179,7 +179,7 @@ class Effect(ABC):
 
         return Variant(
             self.name,
-            self.place,
+            INSIDE if place in places_inside(scene) else self.place,
             form,
             start,
             build,
@@ -220,6 +220,21 @@ class Effect(ABC):
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
         raise NotImplementedError
+
+
+def places_inside(scene: Scene) -> list[int]:
+    """Give the places between the transfer functions of a chain: before all but one.
+
+    A linear base that is written as two in series may hide a static nonlinearity
+    between its halves.
+    """
+    linear = [k for k, item in enumerate(scene.chain) if item.name == LINEAR]
+    return linear[1:]
+
+
+LINEAR = "transfer-function"
+INSIDE = "inside the base"
+"""Place of an effect between two transfer functions."""
 
 
 def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
 from hystbench.gap.scene import Scene
 
 
@@ -16,9 +16,7 @@ class DeadZone(Effect):
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer the dead zone before the first block."""
-        largest = scene.largest(0)
-        yield self.inserted(
-            scene,
-            0,
-            grids={"half_width": logarithmic(1e-3 * largest, 0.5 * largest, 4)},
-        )
+        for place in (0, *places_inside(scene)):
+            largest = scene.largest(place)
+            widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
+            yield self.inserted(scene, place, grids={"half_width": widths})

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hystbench.gap.effects.base import EVERY, Beside, Effect, Samples, Values, Variant
+from hystbench.gap.once import periods, shows_a_path
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray, Record
 
@@ -22,6 +23,8 @@ class Drift(Effect):
         end = len(scene.chain)
         small = 1e-3 * scene.largest(end) / scene.span
         yield self.inserted(scene, end, form="one slope", unit={"slope": small})
+        if not any(shows_a_path(record) for record in scene.records):
+            return
         for form, order in (("ramp", 1), ("path", PATH_ORDER)):
             yield self.added(
                 scene,
@@ -52,9 +55,3 @@ def path(record: Record, given: Values, order: int, at: Samples = EVERY) -> Floa
 
 PERIODS = 2.0
 """Of the input for each degree of a path."""
-
-
-def periods(record: Record) -> float:
-    """Count the input's periods in a record by how often it crosses its mean."""
-    above = record.u > float(np.mean(record.u))
-    return float(np.count_nonzero(above[1:] != above[:-1])) / 2

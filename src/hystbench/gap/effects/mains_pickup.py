@@ -32,7 +32,7 @@ class MainsPickup(Effect):
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer the fundamental alone and with harmonics, within 1 % of the mains."""
-        usable = [f for f in MAINS_HZ if f < 0.45 / scene.step and f * scene.span > 3]
+        usable = [f for f in MAINS_HZ if f < SHOWN / scene.step and f * scene.span > 3]
         if not usable:
             raise Declined("records too short, or sampled too slowly, for the mains")
         for harmonics in (1, HARMONICS):
@@ -66,4 +66,10 @@ def tone(
     angle = 2 * np.pi * given["frequency_hz"] * record.time[at]
     order = np.arange(1, harmonics + 1)
     waves = np.stack([np.sin(np.outer(angle, order)), np.cos(np.outer(angle, order))])
+    # Beyond half the sampling rate a tone would stand for something slow.
+    waves[:, :, order * given["frequency_hz"] * record.dt > SHOWN] = 0.0
     return np.ascontiguousarray(waves.transpose(1, 2, 0).reshape(len(angle), -1))
+
+
+SHOWN = 0.45
+"""Of the sampling rate, up to which a record shows a tone."""

@@ -6,8 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
 from hystbench.gap.scene import Scene
+
+SHARPEST = 50.0
+"""Beyond it, a corner is a corner."""
 
 
 class Saturation(Effect):
@@ -18,7 +21,10 @@ class Saturation(Effect):
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer levels from half to thirty times the largest signal there."""
-        place = scene.behind_hysteresis
+        for place in (scene.behind_hysteresis, *places_inside(scene)):
+            yield from self._at(scene, place)
+
+    def _at(self, scene: Scene, place: int) -> Iterator[Variant]:
         largest = scene.largest(place)
         levels = logarithmic(0.5 * largest, 30 * largest, 5)
         yield self.inserted(scene, place, grids={"level": levels})
@@ -27,4 +33,5 @@ class Saturation(Effect):
             place,
             form="algebraic",
             grids={"level": levels, "sharpness": np.array([2.0, 3.0, 4.5, 8.0])},
+            limits={"sharpness": (2.0, SHARPEST)},
         )

@@ -19,6 +19,7 @@ from hystbench.gap.locate.regression import (
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.spectra import HANN_INFLATION
 from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.once import shows_a_path
 from hystbench.record import FloatArray
 
 BoolArray = NDArray[np.bool_]
@@ -62,7 +63,7 @@ def unexplained_view(samples: Samples) -> View:
     lines = find_lines(samples)
     drifts = {order: _drift_columns(samples, order) for order in (1, ORDERS)}
     drift = best([fit_by_record(samples, columns) for columns in drifts.values()])
-    common = [np.ones_like(samples.time), samples.time]
+    common = [np.ones_like(samples.time), samples.time * _shown(samples)]
     ramp = fit_form(samples, common)
     forms = {"a drift": best([drift, ramp])}
     if lines.frequencies:
@@ -115,18 +116,26 @@ def unexplained_view(samples: Samples) -> View:
 def _drift_columns(samples: Samples, orders: int) -> list[FloatArray]:
     """Give cosines of half-periods, zero where the input is as slow.
 
-    Each begins at zero: an offset from the first sample on is no drift.
+    Each begins at zero: an offset from the first sample on is no drift. A record of one
+    loop has none: whatever is slower than the loop could be the loop's own error.
     """
     duration = samples.durations[samples.record]
     slowest = np.array(
         [lowest_frequency(samples, i) for i in range(len(samples.compared))]
     )
-    allowed = np.maximum(samples.durations * slowest, 1.0)[samples.record]
+    halves = np.maximum(samples.durations * slowest, 1.0)
+    allowed = halves[samples.record] * _shown(samples)
     columns = []
     for order in range(1, orders + 1):
         wave = 1 - np.cos(np.pi * order * samples.time / duration)
         columns.append(np.where(order <= allowed, wave, 0.0))
     return columns
+
+
+def _shown(samples: Samples) -> BoolArray:
+    """Mark the samples of records that show a path beside what the input does."""
+    shown = np.array([shows_a_path(item.record) for item in samples.compared])
+    return cast(BoolArray, shown[samples.record])
 
 
 def lowest_frequency(samples: Samples, index: int) -> float:

@@ -17,6 +17,7 @@ OPTIONAL: dict[str, Any] = {
     "ladder": [],
     "black_box": None,
     "base_parameters": {},
+    "shortfall": None,
 }
 
 

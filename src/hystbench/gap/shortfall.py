@@ -1,0 +1,70 @@
+"""What an engineer must be told: hold-out records show less than was promised."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Effect
+
+MATTERS = 0.15
+"""Share of the gap's power that is gone on fit records alone, to be worth a word."""
+NEW_MATTERS = 0.05
+"""Share that what is new in every record takes, to be named as a reason."""
+
+
+def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Compare what is gone on the hold-out records with what is gone on the fit ones.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+
+    Returns
+    -------
+    dict or None
+        ``fit`` and ``hold_out``, the shares of the power above the floor that are
+        gone, and a ``sentence``; None where the hold-out records keep the promise.
+    """
+    promised, kept = content["fit"]["explained"], content["gap"]["explained"]
+    if not isinstance(kept, int | float) and kept is not None:
+        kept = sum(kept) / len(kept)
+    names = [item["name"] for item in content["effects"]]
+    if not names or promised is None or kept is None or promised - kept < MATTERS:
+        return None
+    sentence = (
+        f"On the fit records {100 * promised:.0f} % of the gap's power is gone, on "
+        f"the hold-out records {100 * kept:.0f} %"
+    )
+    reasons = [*_new_in_every_record(content, names), *_outside(content)]
+    if reasons:
+        sentence += f": {'; '.join(reasons)}"
+    return {"fit": promised, "hold_out": kept, "sentence": f"{sentence}."}
+
+
+def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:
+    share = content["fit"]["new_in_every_record"]
+    beside = [name for name in names if _is_beside(effects().get(name))]
+    if share < NEW_MATTERS or not beside:
+        return []
+    return [
+        f"{100 * share:.0f} % of it was taken by {' and '.join(beside)}, which is new "
+        "in every record and predicts no other"
+    ]
+
+
+def _is_beside(effect: Effect | None) -> bool:
+    """Tell whether an effect can be a signal beside the chain."""
+    return effect is not None and type(effect).describe is not Effect.describe
+
+
+def _outside(content: Mapping[str, Any]) -> list[str]:
+    records = (content.get("black_box") or {}).get("records", [])
+    return [
+        f"{item['name']} lies outside the fit records in "
+        f"{' and '.join(item['outside'])}"
+        for item in records
+        if item["outside"]
+    ]

@@ -1,0 +1,61 @@
+"""A reader is told when hold-out records show less than the fit records promised."""
+
+import pytest
+
+from hystbench.gap.shortfall import shortfall
+
+
+def content(fit=0.9, held=0.5, new=0.0, outside=(), names=("eddy-diffusion", "drift")):
+    return {
+        "effects": [{"name": name} for name in names],
+        "fit": {"explained": fit, "new_in_every_record": new},
+        "gap": {"explained": held},
+        "black_box": {
+            "records": [
+                {"name": "slow", "outside": []},
+                {"name": "fast", "outside": list(outside)},
+            ]
+        },
+    }
+
+
+def test_what_is_kept_is_not_worth_a_word():
+    assert shortfall(content(fit=0.9, held=0.88)) is None
+    assert shortfall(content(fit=0.5, held=0.9)) is None
+
+
+def test_little_that_is_lost_of_much_is_not_worth_a_word():
+    """0.999 against 0.99: ten times as much is left, and still next to nothing."""
+    assert shortfall(content(fit=0.999, held=0.99)) is None
+
+
+def test_a_shortfall_is_told_with_both_shares():
+    found = shortfall(content(fit=0.9, held=0.5))
+    assert found["fit"] == 0.9
+    assert found["hold_out"] == 0.5
+    assert "90 %" in found["sentence"]
+    assert "50 %" in found["sentence"]
+
+
+def test_a_range_counts_by_its_middle():
+    found = shortfall(content(fit=0.9, held=[0.4, 0.6]))
+    assert found["hold_out"] == pytest.approx(0.5)
+
+
+def test_reasons_are_told_where_they_are_known():
+    sentence = shortfall(content(new=0.3, outside=["rate"]))["sentence"]
+    assert "30 %" in sentence
+    assert "drift" in sentence
+    assert "fast" in sentence
+    assert "rate" in sentence
+    plain = shortfall(content())["sentence"]
+    assert "fast" not in plain
+    assert "drift" not in plain
+
+
+@pytest.mark.parametrize("missing", [None, "fit", "gap"])
+def test_without_a_gap_or_an_effect_nothing_was_promised(missing):
+    given = content(names=()) if missing is None else content()
+    if missing is not None:
+        given[missing]["explained"] = None
+    assert shortfall(given) is None
