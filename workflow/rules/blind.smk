@@ -40,7 +40,7 @@ rule blind_judge:
     input:
         answers=lambda wildcards: [
             f"{BLIND}/answers/{wildcards.set}/{solver}/{wildcards.chunk}.json"
-            for solver in BLIND_SOLVERS[wildcards.set]
+            for solver in blind_entrants(wildcards)
         ],
         code=code("hystbench.commands.blind_judge"),
         kernels=PLANT_KERNELS,

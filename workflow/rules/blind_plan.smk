@@ -38,6 +38,18 @@ def blind_chunks(name):
     return list(chunks(plan(name, CONTEST["scale"]), CONTEST["chunk"]))
 
 
+def blind_entrants(wildcards):
+    """Who enters with a chunk: all, or those whose share reaches it."""
+    numbers = blind_chunks(wildcards.set)
+    before = numbers.index(wildcards.chunk) / len(numbers)
+    return [
+        solver
+        for solver in BLIND_SOLVERS[wildcards.set]
+        if solver == CONTEST["solver"]
+        or before < CONTEST["solvers"][solver].get("share", 1)
+    ]
+
+
 def blind_case_settings(wildcards):
     """Which cases a chunk holds."""
     return settings_text(
