@@ -11,7 +11,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside, Values
 from hystbench.gap.score import Score
 from hystbench.gap.state import State, beside_columns
-from hystbench.gap.uncertainty import RANK, STRETCHES
+from hystbench.gap.uncertainty import between_stretches, by_record
 from hystbench.record import FloatArray
 
 SMALL = 1e-6
@@ -92,19 +92,8 @@ def _covariance(
     """Covariance of weighted least squares, robust inside stretches of a record."""
     scale = np.sqrt(np.mean(columns**2, axis=0))
     scale[scale == 0] = np.inf
-    columns = columns / scale
-    weights = np.empty(len(residual))
-    for part in state.sample.slices:
-        weights[part] = 1.0 / max(float(np.mean(residual[part] ** 2)), floor)
-    bread = np.linalg.pinv(columns.T @ (weights[:, None] * columns), rcond=RANK)
-    meat, clusters = np.zeros_like(bread), 0
-    for part in state.sample.slices:
-        pushed = (weights * residual)[part, None] * columns[part]
-        for stretch in np.array_split(pushed, STRETCHES):
-            meat += np.outer(stretch.sum(axis=0), stretch.sum(axis=0))
-            clusters += 1
-    meat *= clusters / max(clusters - columns.shape[1], 1)
-    return np.asarray(bread @ meat @ bread / np.outer(scale, scale))
+    pieces = by_record(columns / scale, residual, state, floor)
+    return np.asarray(between_stretches(pieces) / np.outer(scale, scale))
 
 
 def _told(

@@ -134,11 +134,16 @@ class State:
     @cached_property
     def tangents(self) -> FloatArray:
         """How the output changes with each free number, shape (scored samples, k)."""
-        columns = [
-            (self.sample.take(scene_of(self, {k: step})) - self._simulated) / step
-            for k, step in enumerate(self.steps)
-        ]
+        columns = [self._tangent(k, step) for k, step in enumerate(self.steps)]
         return _stack(columns, len(self.sample))
+
+    def _tangent(self, k: int, step: float) -> FloatArray:
+        try:
+            moved = scene_of(self, {k: step})
+        except InputError:  # beyond what the block accepts, so the other way
+            step = -step
+            moved = scene_of(self, {k: step})
+        return (self.sample.take(moved) - self._simulated) / step
 
     @cached_property
     def other_forms(self) -> FloatArray:

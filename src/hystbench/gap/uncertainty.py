@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.stats import norm, t
@@ -72,51 +72,61 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     shown[: len(values)] *= np.maximum(values, 1e-12)
     usable = shown > SHOWN * np.sqrt(score.floor)
     columns = columns[:, usable] / scale[usable]
-    weights = np.empty(len(residual))
-    for part in state.sample.slices:
-        weights[part] = 1.0 / max(float(np.mean(residual[part] ** 2)), score.floor)
-    weighted = weights[:, None] * columns
-    parts = state.sample.slices
-    pushes = [residual[part, None] * weighted[part] for part in parts]
-    normals = [columns[part].T @ weighted[part] for part in parts]
-    variance = np.maximum(_by_stretch(normals, pushes), _by_record(normals, pushes))
+    pieces = by_record(columns, residual, state, score.floor)
+    variance = np.maximum(np.diag(between_stretches(pieces)), between_records(pieces))
     errors = np.full(len(usable), np.nan)
     errors[usable] = np.sqrt(np.maximum(variance, 0.0)) / scale[usable]
     found: FloatArray = errors[: len(state.free)]
     return found
 
 
-def _by_stretch(
-    normals: Sequence[FloatArray], pushes: Sequence[FloatArray]
-) -> FloatArray:
-    """Variance where the residuals of different stretches are independent."""
-    bread = np.linalg.pinv(sum(normals), rcond=RANK)
+class Pieces(NamedTuple):
+    """What weighted least squares are made of, by record."""
+
+    normals: list[FloatArray]  # shape (k, k): products of the columns
+    pushes: list[FloatArray]  # shape (scored samples, k): of columns and residual
+
+
+def by_record(
+    columns: FloatArray, residual: FloatArray, state: State, floor: float
+) -> Pieces:
+    """Give the pieces of least squares in which every record weighs by its residual."""
+    normals, pushes = [], []
+    for part in state.sample.slices:
+        weight = 1.0 / max(float(np.mean(residual[part] ** 2)), floor)
+        weighted = weight * columns[part]
+        normals.append(columns[part].T @ weighted)
+        pushes.append(residual[part, None] * weighted)
+    return Pieces(normals, pushes)
+
+
+def between_stretches(pieces: Pieces) -> FloatArray:
+    """Covariance, shape (k, k), where the residuals of stretches are independent."""
+    bread = np.linalg.pinv(sum(pieces.normals), rcond=RANK)
     totals = [
         stretch.sum(axis=0)
-        for push in pushes
+        for push in pieces.pushes
         for stretch in np.array_split(push, STRETCHES)
     ]
     meat = np.einsum("ij,ik->jk", totals, totals)
     meat *= len(totals) / max(len(totals) - len(bread), 1)
-    return np.diag(bread @ meat @ bread)
+    return np.asarray(bread @ meat @ bread)
 
 
-def _by_record(
-    normals: Sequence[FloatArray], pushes: Sequence[FloatArray]
-) -> FloatArray:
-    """Variance by leaving out one record after the other (jackknife).
+def between_records(pieces: Pieces) -> FloatArray:
+    """Variances, shape (k,), by leaving out one record after the other (jackknife).
 
     What a model's form misses is alike within a record and differs between them. With
     few records the interval is as wide as Student's t distribution makes it.
     """
-    count = len(normals)
+    count = len(pieces.normals)
     if count < FEW:
-        return np.zeros(len(normals[0]))
-    whole = sum(normals)
+        return np.zeros(len(pieces.normals[0]))
+    whole = sum(pieces.normals)
     moved = np.array(
         [
             np.linalg.pinv(whole - normal, rcond=RANK) @ push.sum(axis=0)
-            for normal, push in zip(normals, pushes, strict=True)
+            for normal, push in zip(*pieces, strict=True)
         ]
     )
     spread: FloatArray = (count - 1) * np.var(moved, axis=0)
