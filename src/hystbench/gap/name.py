@@ -44,7 +44,7 @@ FURTHER = 100.0
 """By how much a further effect must lower the score."""
 MATTERS = 0.01
 """Share of the gap's power that makes a further effect matter."""
-CERTAIN = 250.0
+CERTAIN = 200.0
 """By how much one that matters less must lower the score."""
 BESIDE_SHAPE = 0.1
 """Share that matters beside a hysteresis of the wrong shape."""
@@ -418,13 +418,18 @@ def reconsidered(
 
 
 def without_needless(state: State, floor_rms: float, say: Say) -> State:
-    """Take effects out again that gain nothing beside those that were added later."""
-    score = make_score(state, floor_rms)
-    now = score_of(state, score)
-    for number, item in enumerate(state.added[:-1]):
-        short, value = finished(without_effect(state, number), score)
-        if value - now < PAYS:
-            say(f"{item.effect} is needless beside the others: {value - now:.1f}")
+    """Take effects out again that gain too little beside those that were added later.
+
+    An effect is judged by what can be reshaped without it: other forms of itself would
+    stand in for it.
+    """
+    for number, item in enumerate(state.added if len(state.added) > 1 else ()):
+        short = without_effect(state, number)
+        score = make_score(short, floor_rms)
+        short, value = finished(short, score)
+        gain = value - score_of(state, score)
+        if gain < FURTHER:
+            say(f"{item.effect} is needless beside the others: gain {gain:.1f}")
             return without_needless(short, floor_rms, say)
     return state
 
