@@ -25,7 +25,7 @@ from benchmarks.timing import write_table
 from hystbench.gap.bases import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.evidence import Evidence, load_evidence
-from hystbench.gap.name import make_score, rank
+from hystbench.gap.rank import make_score, rank
 from hystbench.gap.run import close_gap
 from hystbench.gap.start import start_state
 from hystbench.record import Record

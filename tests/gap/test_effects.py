@@ -8,11 +8,13 @@ import pytest
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, logarithmic
-from hystbench.gap.fit import Attempt, score_of
+from hystbench.gap.fit import score_of
 from hystbench.gap.scene import Scene
-from hystbench.gap.state import Free, with_effect, without_effect
+from hystbench.gap.search import Attempt
+from hystbench.gap.state import Free
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
 from tests.gap.small import block, chains, plain_score, records, state_of

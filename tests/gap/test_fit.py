@@ -6,10 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import optimize
 
+from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import Attempt, added, coarse, fine, finished, refit, score_of
-from hystbench.gap.name import make_score, rank
-from hystbench.gap.state import Free, with_effect
+from hystbench.gap.fit import added, finished, refit, score_of
+from hystbench.gap.rank import make_score, rank
+from hystbench.gap.search import Attempt, coarse, fine
+from hystbench.gap.state import Free
 from tests.gap.small import block, chains, hysteresis, measured, plain_score, state_of
 
 NOISE = 0.02

@@ -15,10 +15,11 @@ from hystbench.gap import name as naming
 from hystbench.gap.effects import effects
 from hystbench.gap.finding import find
 from hystbench.gap.floor import Floor
-from hystbench.gap.name import PAYS, TIE, Candidate, make_score, rank
+from hystbench.gap.rank import Candidate, make_score, rank
 from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
+from hystbench.gap.thresholds import PAYS, TIE
 from hystbench.gap.verdict import judge, what_is_left
 
 SEED = 1

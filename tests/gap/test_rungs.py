@@ -3,7 +3,8 @@
 import pytest
 
 from hystbench.gap.finding import find
-from hystbench.gap.name import Named, Round
+from hystbench.gap.name import Named
+from hystbench.gap.rank import Round
 from hystbench.gap.run import show
 from hystbench.gap.rungs import BASE, RETUNED, rungs
 from hystbench.gap.state import Added, Free

@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 
 from hystbench.errors import InputError
+from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.finding import decide
-from hystbench.gap.fit import Attempt, coarse
 from hystbench.gap.kept import Restorer, state_mapping
-from hystbench.gap.name import make_score, name
+from hystbench.gap.name import name
+from hystbench.gap.rank import make_score
+from hystbench.gap.search import Attempt, coarse
 from hystbench.gap.stages import begin, choose, named_by, try_one
 from hystbench.gap.start import start_state
-from hystbench.gap.state import with_effect
 from hystbench.gap.work import Work
 from hystbench.model import load_model
 

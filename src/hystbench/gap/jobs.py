@@ -9,9 +9,10 @@ from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import black_box, decide
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
-from hystbench.gap.name import Say, name, silent
+from hystbench.gap.name import name
 from hystbench.gap.run import show, write_shown
 from hystbench.gap.rungs import Rung
+from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
 from hystbench.model import Model

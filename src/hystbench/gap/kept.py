@@ -15,7 +15,8 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
-from hystbench.gap.name import Candidate, Progress, Round
+from hystbench.gap.name import Progress
+from hystbench.gap.rank import Candidate, Round
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Added, Free, State

@@ -16,9 +16,9 @@ from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
-from hystbench.gap.name import Say, silent
 from hystbench.gap.nuisance import Nuisance, left_over, offset_and_mains
 from hystbench.gap.rungs import Rung
+from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.shortfall import shortfall
 from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink

@@ -17,7 +17,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect, Variant
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.fit import Attempt, Trial, score_of
+from hystbench.gap.fit import score_of
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import (
     Mapped,
@@ -27,16 +27,11 @@ from hystbench.gap.kept import (
     progress_mapping,
     state_mapping,
 )
-from hystbench.gap.name import (
-    Named,
-    Progress,
-    Say,
-    advance,
-    make_score,
-    settled,
-    silent,
-)
+from hystbench.gap.name import Named, Progress, advance, settled
+from hystbench.gap.rank import make_score
+from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
+from hystbench.gap.search import Attempt, Trial
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
 from hystbench.gap.work import IN_PROCESS, Tried, Work

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -12,7 +12,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Beside, Values, Variant
+from hystbench.gap.effects.base import Beside, Values
 from hystbench.gap.reshape import reshapings
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene, Signals
@@ -47,6 +47,7 @@ class Added(NamedTuple):
 
 FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
+
 MANY = 4
 """An effect of more numbers has no other forms."""
 
@@ -273,97 +274,5 @@ def beside_columns(state: State, beside: Beside, values: Values) -> FloatArray:
     return np.hstack(parts)
 
 
-def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
-    """Give the numbers that a variant leaves free, inside the range searched."""
-    for name in variant.free:
-        value = getattr(block, name)
-        if isinstance(value, tuple):
-            for element in range(len(value)):
-                yield Free(position, name, element)
-        elif name in variant.grids:
-            yield Free(position, name, None, None, *variant.ends(name))
-        else:
-            yield Free(position, name)
-
-
-def with_effect(state: State, variant: Variant, values: Values) -> State:
-    """Add an effect to the chain, or beside it."""
-    note = dict(values)
-    own = (variant.effect, variant.place, variant.form)
-    if variant.beside is not None:
-        added = Added(*own, (), note, variant.freedom)
-        return replace(
-            state,
-            added=(*state.added, added),
-            beside=(*state.beside, (variant.beside, note)),
-        )
-    chain = (*state.chain[: variant.start], *variant.build(values))
-    places = tuple(variant.start + k for k in variant.positions)
-    old = state.chain[variant.start] if variant.replaces else None
-    # The chain's own blocks stay in their order around those of the effect.
-    stays = [k for k in range(len(chain)) if k not in places]
-    came = [k for k in range(len(state.chain)) if old is None or k != variant.start]
-    moved = dict(zip(came, stays, strict=True))
-    return replace(
-        state,
-        chain=chain,
-        free=(
-            *_moved(state.free, moved),
-            *(f for k in places for f in numbers_of(chain[k], k, variant)),
-        ),
-        added=(
-            *(_placed(item, moved) for item in state.added),
-            Added(*own, places, note, variant.freedom, old),
-        ),
-    )
-
-
-def _moved(free: Iterable[Free], moved: dict[int, int]) -> Iterator[Free]:
-    """Follow free numbers to where their blocks are now; drop those that went."""
-    for item in free:
-        if item.block in moved:
-            yield item._replace(block=moved[item.block])
-
-
-def _placed(item: Added, moved: dict[int, int]) -> Added:
-    places = tuple(moved[k] for k in item.blocks if k in moved)
-    return item._replace(blocks=places)
-
-
-def without_effect(state: State, number: int) -> State:
-    """Take an added effect out again."""
-    gone = state.added[number]
-    rest = tuple(item for k, item in enumerate(state.added) if k != number)
-    if not gone.blocks:
-        order = [item.blocks for item in state.added[:number]].count(())
-        beside = tuple(x for k, x in enumerate(state.beside) if k != order)
-        return replace(state, added=rest, beside=beside)
-    chain: list[Block] = []
-    moved = {}
-    for k, block in enumerate(state.chain):
-        if k not in gone.blocks:
-            moved[k] = len(chain)
-            chain.append(block)
-        elif gone.replaced is not None:
-            chain.append(gone.replaced)
-    return replace(
-        state,
-        chain=tuple(chain),
-        free=tuple(_moved(state.free, moved)),
-        added=tuple(_placed(item, moved) for item in rest),
-    )
-
-
 def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:
     return np.column_stack(columns) if columns else np.zeros((rows, 0))
-
-
-def at_end(state: State, variant: Variant) -> str:
-    """Name a parameter of the effect added last that lies at an end of its range."""
-    own = state.added[-1].blocks
-    for free in state.free:
-        if free.block in own and free.parameter in variant.inside:
-            value, width = state.value(free), np.log(free.high / free.low)
-            if not 0.02 < np.log(value / free.low) / width < 0.98:
-                return f"{free.parameter} = {value:.3g}"
-    return ""

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from hystbench.gap.name import Candidate, make_score
+from hystbench.gap.rank import Candidate, make_score
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 

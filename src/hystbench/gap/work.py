@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
-from hystbench.gap.fit import Attempt, Trial, added, at_a_glance, coarse, fine, finished
+from hystbench.gap.fit import added, finished
 from hystbench.gap.score import Score
+from hystbench.gap.search import Attempt, Trial, at_a_glance, coarse, fine
 from hystbench.gap.state import State
 
 Tried = tuple[Attempt, Trial]

@@ -1,0 +1,74 @@
+"""Looking again at the effects that were added, now that others are there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hystbench.gap.change import without_effect
+from hystbench.gap.effects import effects
+from hystbench.gap.fit import finished, score_of
+from hystbench.gap.rank import Candidate, Round, make_score, rank
+from hystbench.gap.say import Say
+from hystbench.gap.state import State
+from hystbench.gap.thresholds import CLOSE, FURTHER, SHAPE, SWAP
+
+
+def reconsidered(
+    state: State, rounds: Sequence[Round], floor_rms: float, say: Say
+) -> tuple[State, dict[str, tuple[Candidate, ...]]]:
+    """Try the rivals of each effect in its place, now that others are there.
+
+    The first effect was named while the others were missing: one like it may have
+    looked better for that.
+
+    Returns
+    -------
+    state : State
+    rankings : dict of str to tuple of Candidate
+        Of the effects that were looked at again.
+    """
+    rankings: dict[str, tuple[Candidate, ...]] = {}
+    for number, item in enumerate(state.added):
+        if item.effect == SHAPE:
+            continue
+        score = make_score(state, floor_rms)
+        now = score_of(state, score)
+        short = without_effect(state, number)
+        have = {other.effect for other in short.added}
+        names = _rivals(item.effect, rounds) - have
+        ranking = rank(short, score, [effects()[name] for name in sorted(names)])
+        best = ranking[0]
+        other = best.state is not None and best.effect != item.effect
+        if other and best.score < now - SWAP:
+            gain = now - best.score
+            say(f"{item.effect} gives way to {best.effect}: {gain:.1f}")
+            return best.state or state, {**rankings, best.effect: ranking}
+        rankings[item.effect] = ranking
+    return state, rankings
+
+
+def without_needless(state: State, floor_rms: float, say: Say) -> State:
+    """Take effects out again that gain too little beside those that were added later.
+
+    An effect is judged by what can be reshaped without it: other forms of itself would
+    stand in for it.
+    """
+    for number, item in enumerate(state.added if len(state.added) > 1 else ()):
+        short = without_effect(state, number)
+        score = make_score(short, floor_rms)
+        short, value = finished(short, score)
+        gain = value - score_of(state, score)
+        if gain < FURTHER:
+            say(f"{item.effect} is needless beside the others: gain {gain:.1f}")
+            return without_needless(short, floor_rms, say)
+    return state
+
+
+def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:
+    found = {effect}
+    for one in rounds:
+        best = one.ranking[0].gain
+        near = {x.effect for x in one.ranking if x.gain > CLOSE * best}
+        if effect in near:
+            found |= near
+    return found

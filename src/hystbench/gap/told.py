@@ -1,0 +1,148 @@
+"""What a finding tells of the effects and their numbers, as gap.json holds it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks import registry
+from hystbench.blocks.base import Block
+from hystbench.gap.beside_errors import Errors
+from hystbench.gap.effects import effects
+from hystbench.gap.name import Named
+from hystbench.gap.rank import Candidate, near
+from hystbench.gap.state import Added, State
+from hystbench.gap.verdict import (
+    Left,
+    confidence,
+)
+from hystbench.model import Model
+from hystbench.record import FloatArray
+
+
+def base_parameters(base: Model, state: State) -> dict[str, Any]:
+    """Give the base's free parameters before and after."""
+    own = {k for item in state.added for k in item.blocks}
+    after = iter([state.value(free) for free in state.free if free.block not in own])
+    found: dict[str, Any] = {}
+    for parameter in base.free:
+        before = base.value(parameter)
+        if isinstance(before, tuple):
+            found[parameter] = {
+                "before": list(before),
+                "after": [next(after) for _ in before],
+            }
+        elif not isinstance(before, str):
+            found[parameter] = {"before": before, "after": next(after)}
+    return found
+
+
+def beside_blocks(state: State) -> list[Block]:
+    """Give the blocks of what lies beside the chain."""
+    if not state.beside:
+        return []
+    columns = state.beside_columns
+    amplitudes = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
+    blocks, first = [], 0
+    for beside, values in state.beside:
+        shape = beside.columns(state.records[0], values, beside.order).shape[1]
+        count = shape * len(state.records)
+        own = np.asarray(amplitudes[first : first + count], dtype=np.float64)
+        rows = own.reshape(len(state.records), shape)
+        described = effects()[beside.effect].describe(values, rows)
+        blocks.append(registry()[beside.effect].from_mapping(described))
+        first += count
+    return blocks
+
+
+def effect_mapping(
+    item: Added,
+    state: State,
+    errors: FloatArray,
+    of_beside: Sequence[Errors],
+    ranking: Sequence[Candidate],
+    left: Left,
+) -> dict[str, Any]:
+    """Give an added effect with its numbers and how sure the name is."""
+    own = next((x for x in ranking if x.effect == item.effect), None)
+    return {
+        "name": item.effect,
+        "place": item.place,
+        "parameters": _parameters(item, state, errors, of_beside),
+        "confidence": 0.0 if own is None else confidence(own, ranking, left),
+        "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
+    }
+
+
+def _parameters(
+    item: Added, state: State, errors: FloatArray, of_beside: Sequence[Errors]
+) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    if not item.blocks:
+        blocks = {beside.effect: k for k, (beside, _) in enumerate(state.beside)}
+        block = beside_blocks(state)[blocks[item.effect]]
+        known = of_beside[blocks[item.effect]]
+        for key, about in block.parameters().items():
+            value = about.plain(getattr(block, key))
+            if value is not None and value != ():
+                found[key] = {
+                    "value": value,
+                    "standard_error": known.get(key),
+                    "unit": _unit(about.unit, state),
+                }
+        return found
+    for place in item.blocks:
+        block = state.chain[place]
+        for key, about in block.parameters().items():
+            value = getattr(block, key)
+            if key == "hold" or value == ():
+                continue
+            error = _errors_of(place, key, value, state, errors)
+            label = key if key not in found else f"{key}#2"
+            found[label] = {
+                "value": list(value) if isinstance(value, tuple) else value,
+                "standard_error": error,
+                "unit": _unit(about.unit, state),
+            }
+    return found
+
+
+def _errors_of(
+    place: int, key: str, value: object, state: State, errors: FloatArray
+) -> float | list[float | None] | None:
+    own = {
+        free.element: float(errors[k]) if np.isfinite(errors[k]) else None
+        for k, free in enumerate(state.free)
+        if free.block == place and free.parameter == key
+    }
+    if isinstance(value, tuple):
+        each = [own.get(k) for k in range(len(value))]
+        return each if any(x is not None for x in each) else None
+    return own.get(None)
+
+
+def _unit(text: str, state: State) -> str:
+    """Write the model's units for U and Y."""
+    record = state.records[0]
+    units = {"U": record.input.unit, "Y": record.output.unit}
+    words = re.findall(r"[A-Za-z]+|[^A-Za-z]+", text)
+    return "".join(units.get(word, word) for word in words)
+
+
+def ranking_rows(named: Named) -> list[dict[str, Any]]:
+    """Give every candidate of the first round, best first."""
+    one = named.rounds[0]
+    rows = []
+    for item in one.ranking:
+        row: dict[str, Any] = {"name": item.effect, "place": item.place}
+        if item.form:
+            row["form"] = item.form
+        if item.declined:
+            row["declined"] = item.declined
+        elif np.isfinite(item.score):
+            row |= {"score": item.score, "gain": item.gain}
+        rows.append(row)
+    return rows
