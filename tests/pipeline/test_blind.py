@@ -2,7 +2,6 @@
 
 import csv
 import json
-import os
 import sys
 
 import pytest
@@ -187,10 +186,6 @@ def test_a_solver_that_did_not_enter_is_told_in_one_line(held):
     assert "blind: solver: 'spi'; did you mean 'spy'?" in told[0]
 
 
-@pytest.mark.skipif(
-    "HYSTBENCH_LONG" not in os.environ,
-    reason="a dozen real cases take two minutes: set HYSTBENCH_LONG to run them",
-)
 def test_the_gaps_own_solver_in_the_contest(tmp_path):
     workflow = Workflow(tmp_path / "contest")
     workflow.folder.mkdir()
