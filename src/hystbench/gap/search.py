@@ -15,6 +15,8 @@ from hystbench.gap.score import Amplitudes, Score
 from hystbench.gap.state import State, beside_columns
 from hystbench.record import FloatArray
 
+HALVINGS = 4
+"""Of a grid's step, where several numbers are searched; of one a single one is enough."""
 NEWTON = 3
 """Steps of Gauss and Newton from a grid's best value, at most."""
 
@@ -24,6 +26,8 @@ NUDGE = 1e-3
 SLIGHT = 3.0
 """Of a step of the search: what lowers the score by less is the last."""
 
+MANY = 15
+"""Points of a grid for each of which one more is looked at on all records."""
 GLANCE = 4
 """Records of which half is enough to choose a point of a grid."""
 
@@ -194,7 +198,8 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
             trials.append((look.at(tuple(point)).score, point))
         except InputError:
             continue  # values that the block itself refuses are no candidates
-    return attempt.at(min(trials)[1])
+    likely = sorted(trials)[: 1 + len(trials) // MANY]
+    return min((attempt.at(point) for _, point in likely), key=lambda x: x.score)
 
 
 @lru_cache(maxsize=1)
@@ -221,12 +226,13 @@ def fine(attempt: Attempt, start: Trial) -> Trial:
         name: np.log(axis[1] / axis[0]) if len(axis) > 1 else 0.0
         for name, axis in grids.items()
     }
-    for name, step in steps.items():
-        for sign in (1, -1):
-            trial = _beside(attempt, best, {name: sign * step / 2})
-            if trial is not None and trial.score < best.score:
-                best = trial
-                break
+    for halved in range(HALVINGS if len(grids) > 1 else 1):
+        for name, step in steps.items():
+            for sign in (1, -1):
+                trial = _beside(attempt, best, {name: sign * step / 2 ** (halved + 1)})
+                if trial is not None and trial.score < best.score:
+                    best = trial
+                    break
     most = np.array(list(steps.values())) / 2
     for _ in range(NEWTON if grids else 0):
         try:
