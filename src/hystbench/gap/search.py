@@ -16,7 +16,7 @@ from hystbench.gap.state import State, beside_columns
 from hystbench.record import FloatArray
 
 HALVINGS = 4
-"""Of a grid's step, where several numbers are searched; of one a single one is enough."""
+"""Of a grid's step, where several numbers are searched; of one number a single one."""
 NEWTON = 3
 """Steps of Gauss and Newton from a grid's best value, at most."""
 
