@@ -16,6 +16,7 @@ PARTS = (
     "pipeline",
     "gap",
     "graph",
+    "reach",
     "pictures",
 )
 

@@ -25,6 +25,10 @@ CORES = 2
 COLUMNS = ("what", "jobs", "seconds", "median_seconds", "needed_seconds", "repeats")
 JOB_COLUMNS = ("rule", "jobs", "seconds", "mean_seconds", "peak_mib")
 GROWTH_COLUMNS = ("signals", "filters", "orders", "jobs", "seconds", "seconds_per_job")
+FULL, NOTHING = "full reproduction, figures and report", "nothing to do"
+CHANGED, HELP = "one changed step size to tables", "hystbench --help"
+#: Seconds that each may take.
+NEEDED = {FULL: 60.0, NOTHING: 2.0, CHANGED: 8.0, HELP: 0.15}
 TABLES = "results/compare/tables.txt"
 
 
@@ -35,10 +39,13 @@ def main() -> None:
         config = load_yaml(ROOT / "config.yaml")
         configure(folder, config)
         rows = [
-            ("full reproduction, figures and report", *full(folder), 60),
-            ("nothing to do", *repeated(3, lambda: snakemake(folder)), 2),
-            ("one changed step size to tables", *changed(folder, config), 8),
-            ("hystbench --help", *repeated(9, lambda: hystbench("--help")), 0.15),
+            (FULL, *full(folder), NEEDED[FULL]),
+            (NOTHING, *repeated(3, lambda: snakemake(folder)), NEEDED[NOTHING]),
+            *(
+                (f"{CHANGED}, {name}", *timed, NEEDED[CHANGED])
+                for name, timed in changed(folder, config)
+            ),
+            (HELP, *repeated(9, lambda: hystbench("--help")), NEEDED[HELP]),
             ("rival: one script, no figures", *rival(folder), None),
         ]
         over = rows[0][2][0] - rows[-1][2][0]
@@ -64,16 +71,12 @@ def full(folder: Path) -> Timed:
     return repeated(1, both)
 
 
-def changed(folder: Path, config: dict[str, object]) -> Timed:
+def changed(folder: Path, config: dict[str, object]) -> Iterator[tuple[str, Timed]]:
     """One step size is changed and the tables asked for, each filter in turn."""
-    seconds, jobs = [], 0
     for name, steps in config["filters"]["convergence_factor"].items():  # type: ignore[index]
         steps[next(iter(steps))] *= 0.99
         configure(folder, config)
-        jobs, times = repeated(1, lambda: snakemake(folder, TABLES))
-        print(f"{name}: {times[0]:.1f} s, {jobs} jobs", flush=True)
-        seconds.append(times[0])
-    return jobs, (*least_and_median(seconds), len(seconds))
+        yield name, repeated(1, lambda: snakemake(folder, TABLES))
 
 
 def rival(folder: Path) -> Timed:

@@ -162,6 +162,11 @@ def contracts(folder):
             "Nobody but its commands knows the challenge",
         ),
         (
+            "commands/gap.py",
+            "from hystbench.challenge.case import make_case\n",
+            "Nobody but its commands knows the challenge",
+        ),
+        (
             "challenge/plant/peek.py",
             "import hystbench.operators\n",
             "The hiding plant shares no code with the models",

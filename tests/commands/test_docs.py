@@ -54,3 +54,31 @@ def test_what_is_missing_is_told_and_the_page_kept(folder, line, expected):
     assert expected in result.stderr
     assert result.stderr.count("\n") == 1
     assert page == text
+
+
+def test_every_page_that_can_be_filled_is(folder):
+    docs = folder / "docs"
+    docs.mkdir()
+    block = "<!-- from {} -->\nold\n<!-- end -->\n"
+    missing = (
+        ("cluster", "results/benchmarks/slurm.csv", "make test-slurm"),
+        ("gone", "gone.md", "make reproduce"),
+        ("speed", "results/benchmarks/reach.csv", "make bench"),
+        ("blind", "results/blind/reach.csv", "snakemake blind"),
+    )
+    for name, source, _ in missing:
+        page = block.format("t.md") + block.format(source)
+        (docs / f"{name}.md").write_text(page)
+    (docs / "whole.md").write_text(block.format("t.md"))
+    (folder / "README.md").write_text(block.format("t.md"))
+    result = run_hystbench("docs", cwd=folder)
+    assert result.returncode == 2
+    for page in (docs / "whole.md", folder / "README.md"):
+        assert "new text" in page.read_text()
+    lines = sorted(result.stderr.splitlines())
+    assert lines == sorted(
+        f"hystbench: docs/{name}.md: left as it is: no file {source} "
+        f"(made by '{command}')"
+        for name, source, command in missing
+    )
+    assert all("new text" not in (docs / f"{m[0]}.md").read_text() for m in missing)

@@ -61,6 +61,14 @@ def test_an_answer(script, case):
             "gap.json: not JSON (NaN is no number)",
         ),
         (
+            "out.mkdir(); (out / 'gap.json').write_text('{\"a\": 1e999}')",
+            "gap.json: not JSON (Out of range float values",
+        ),
+        (
+            "out.mkdir(); (out / 'gap.json').write_text('[\"\\\\ud800\"]')",
+            "gap.json: not JSON ('utf-8' codec can't encode",
+        ),
+        (
             "out.mkdir(); (out / 'gap.json').write_text('['*100000)",
             "gap.json: not JSON",
         ),

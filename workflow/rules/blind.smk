@@ -29,6 +29,9 @@ rule blind_solve:
         chunk=r"\d+",
     params:
         settings=blind_solver_settings,
+    # Minutes, if every case takes its whole time; ten for the rest.
+    resources:
+        runtime=blind_solver_minutes,
     message:
         "blind: {wildcards.solver} on {wildcards.set} {wildcards.chunk}"
     shell:
@@ -79,7 +82,9 @@ rule blind_summary:
         tables=[
             f"{BLIND}/{name}.csv"
             for name in (
+                "contest",
                 "reach",
+                "transfer",
                 "cases",
                 "transfer-cases",
                 "confusion",

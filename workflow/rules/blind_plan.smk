@@ -2,6 +2,7 @@
 # chunk. A solver's job has the data as its only input; the truth is in no file until
 # the judge, who has the answers as input, makes it anew from the seeds.
 import importlib.util
+import math
 
 from hystbench.challenge.contest.plan import chunks, plan
 from hystbench.errors import nearest
@@ -73,6 +74,12 @@ def blind_solver_settings(wildcards):
             "keep": CONTEST["keep"],
         }
     )
+
+
+def blind_solver_minutes(wildcards):
+    """The longest that a solver can take for a chunk, and some minutes beside."""
+    limit = CONTEST["solvers"][wildcards.solver]["time_limit_s"]
+    return math.ceil(CONTEST["chunk"] * limit / 60) + 10
 
 
 def blind_solver_code(wildcards):

@@ -28,13 +28,17 @@ PLACE = ", ".join(
 KERNELS = sorted(PACKAGE.glob("kernels/*.so"))
 
 try:
-    if not KERNELS:
-        raise InputError(
-            f"{PACKAGE}/kernels: not compiled; expected 'make' to have run"
-        )
-    for source in PACKAGE.glob("kernels/*.[ch]"):
-        if source.stat().st_mtime > KERNELS[0].stat().st_mtime:
-            raise InputError(f"{source}: newer than the compiled kernels; run 'make'")
+    for folder in ("kernels", "challenge/kernels"):
+        built = [file.stat().st_mtime for file in PACKAGE.glob(f"{folder}/*.so")]
+        if not built:
+            raise InputError(
+                f"{PACKAGE}/{folder}: not compiled; expected 'make' to have run"
+            )
+        for source in PACKAGE.glob(f"{folder}/*.[ch]"):
+            if source.stat().st_mtime > min(built):
+                raise InputError(
+                    f"{source}: newer than the compiled kernels; run 'make'"
+                )
     SETTINGS = read_settings(config, SCHEMA, PLACE)
     # Snakemake itself would name no rule and no nearest name.
     for argument in sys.argv[1:]:

@@ -22,6 +22,18 @@ BLOCK = re.compile(
 PICTURE = re.compile(
     r"<!-- picture (?P<source>\S+) -->\n!\[[^\]]*\]\((?P<copy>[^)]+)\)"
 )
+#: What makes a source, by how its path begins; the first that fits.
+MAKERS = (
+    ("results/benchmarks/slurm", "make test-slurm"),
+    ("results/benchmarks/", "make bench"),
+    ("results/blind/", "snakemake blind"),
+    ("results/gap/", "snakemake gap"),
+    ("results/pressure/", "snakemake pressure"),
+    ("results/figures/contest.", "snakemake pressure"),
+    ("results/structures/held-out", "snakemake held_out"),
+    ("results/structures/", "snakemake structures"),
+    ("", "make reproduce"),
+)
 
 
 @click.command()
@@ -35,19 +47,41 @@ def docs(pages: tuple[Path, ...]) -> None:
     file it gets a table, of some columns and rows where it says so:
     ``<!-- from FILE; columns: a, b; rows: c = value -->``. The picture below
     ``<!-- picture FILE -->`` gets a copy of FILE. Numbers in the pages come from
-    results in this way only.
+    results in this way only. A page of which a source is missing or wrong is left as
+    it is, the others are filled.
     """
+    left = False
     for page in pages or [Path("README.md"), *sorted(Path("docs").glob("*.md"))]:
-        text = page.read_text(encoding="utf-8")
-        filled = BLOCK.sub(partial(_filled, page), text)
-        for found in PICTURE.finditer(filled):
-            _copy(page, Path(found["source"]), page.parent / found["copy"])
-        if filled != text:
-            write_text(page, filled)
+        try:
+            _fill(page)
+        except InputError as error:
+            click.echo(f"hystbench: {error}", err=True)
+            left = True
+    if left:
+        raise SystemExit(2)
+
+
+def _fill(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    blocks, pictures = list(BLOCK.finditer(text)), list(PICTURE.finditer(text))
+    sources = dict.fromkeys(found["source"] for found in (*blocks, *pictures))
+    missing = [source for source in sources if not Path(source).is_file()]
+    if missing:
+        told = [f"{source} (made by '{_maker(source)}')" for source in missing]
+        raise InputError(f"{page}: left as it is: no file {', '.join(told)}")
+    filled = BLOCK.sub(partial(_filled, page), text)
+    for found in pictures:
+        _copy(Path(found["source"]), page.parent / found["copy"])
+    if filled != text:
+        write_text(page, filled)
+
+
+def _maker(source: str) -> str:
+    return next(command for start, command in MAKERS if source.startswith(start))
 
 
 def _filled(page: Path, found: re.Match[str]) -> str:
-    source = _existing(page, Path(found["source"]))
+    source = Path(found["source"])
     if source.suffix == ".csv":
         content = _table(page, source, found["choice"])
     else:
@@ -85,14 +119,8 @@ def _table(page: Path, source: Path, choice: str) -> str:
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
 
 
-def _copy(page: Path, source: Path, copy: Path) -> None:
-    content = _existing(page, source).read_bytes()
+def _copy(source: Path, copy: Path) -> None:
+    content = source.read_bytes()
     if not copy.is_file() or copy.read_bytes() != content:
         with atomic_path(copy) as temporary:
             temporary.write_bytes(content)
-
-
-def _existing(page: Path, source: Path) -> Path:
-    if not source.is_file():
-        raise InputError(f"{page}: no file {source}; expected 'make reproduce' to run")
-    return source

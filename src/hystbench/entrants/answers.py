@@ -152,9 +152,12 @@ def _read(file: Path) -> tuple[str, Any]:
     if file.stat().st_size > LARGEST_ANSWER:
         return f"gap.json: more than {LARGEST_ANSWER} bytes", None
     try:
-        return "answered", json.loads(file.read_bytes(), parse_constant=_refuse)
+        gap = json.loads(file.read_bytes(), parse_constant=_refuse)
+        # 1e999 is read as infinity, and half a character as text: neither can be kept.
+        json.dumps(gap, allow_nan=False, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:
         return f"gap.json: not JSON ({error})", None
+    return "answered", gap
 
 
 def _refuse(word: str) -> None:

@@ -3,6 +3,7 @@ import pytest
 from hystbench.challenge.contest.place import share_held, where_hit
 from hystbench.challenge.contest.rows import read_rows, write_rows
 from hystbench.challenge.contest.score import judge
+from hystbench.challenge.contest.tables import confusion
 from hystbench.errors import InputError
 from hystbench.gap.schema import SCHEMA
 
@@ -109,11 +110,35 @@ def test_outside_the_vocabulary_only_unnamed_is_right():
     assert judged(about, RIGHT).unnamed is False
 
 
+def test_names_beside_the_verdict_unnamed_name_nothing():
+    content = gap(named("resonance", ties=["creep"]), verdict="unnamed")
+    row = judged(truth(effect()), content)
+    assert (row.top1, row.top1_strict, row.in_set, row.in_set_raw) == (False,) * 4
+    assert (row.all_named, row.exact, row.set_size) == (False, False, None)
+    about = truth(effect(), effect("creep", "one-element"), kind="pair")
+    both = gap(named("creep"), named("resonance"), verdict="unnamed")
+    assert judged(about, both).all_named is False
+    assert [item[2] for item in confusion([row])] == ["unnamed"]
+
+
+def test_a_missing_item_of_a_list_is_not_compared():
+    true = {"magnitudes": [0.1, 0.2]}
+    about = truth(effect("creep", "one-element", true))
+    row = judged(about, with_creep([0.1, None], [0.01, None]))
+    assert (row.lost, row.parameters, row.intervals) == ("", 1, 1)
+
+
 def test_pairs():
     about = truth(effect(), effect("creep", "one-element"), kind="pair")
     both = judged(about, gap(named("creep"), named("resonance")))
     assert (both.all_named, both.exact, both.top1) == (True, True, None)
     assert judged(about, RIGHT).all_named is False
+
+
+def with_creep(value, error):
+    """An answer whose parameter comes as a list."""
+    said = {"value": value, "standard_error": error, "unit": "-"}
+    return gap(named("creep", parameters={"magnitudes": said}))
 
 
 @pytest.mark.parametrize(
@@ -127,6 +152,15 @@ def test_pairs():
         (gap(), "without an effect"),
         (gap(named("creep"), verdict="no-gap"), "with effects named"),
         (RIGHT | {"truth": 1}, "unknown key 'truth'"),
+        (gap(named("a resonance")), "'a resonance'; expected letters a-z"),
+        (gap(named("creep=1")), "'creep=1'; expected letters a-z"),
+        (gap(named("creep", ties=["drift "])), "'drift '; expected letters a-z"),
+        (gap(named("creep"), before=1e200), "a number beyond 1e+100"),
+        (gap(named("creep"), after=-(10**400)), "a number beyond 1e+100"),
+        (with_creep([0.1, "x"], None), "'magnitudes': value; expected numbers"),
+        (with_creep([[0.1]], None), "'magnitudes': value; expected numbers"),
+        (with_creep([0.1], [True]), "'magnitudes': standard_error; expected"),
+        (with_creep([0.1], [10**400]), "a number beyond 1e+100"),
     ],
 )
 def test_a_malformed_answer_loses_the_case_with_the_reason(content, reason):

@@ -1,3 +1,4 @@
+import csv
 import dataclasses
 import json
 from statistics import NormalDist
@@ -50,6 +51,9 @@ def test_no_cases_no_share():
 RESONANCE = gap(named("resonance", 0.95), views=[view()])
 CREEP = gap(named("creep", 0.75), views=[view()])
 NOTHING = gap(verdict="no-gap")
+
+
+ABOUT = {"set": "small", "scale": 0.5, "seeds_used_while_mending": [1, 9]}
 
 
 def a_contest():
@@ -158,7 +162,7 @@ def test_power_by_ratio():
 
 def test_the_score_as_files(tmp_path):
     rows = [*a_contest(), dataclasses.replace(a_contest()[0], solver="other")]
-    write_score(rows, [], "s", {"set": "small"}, {"absent": "needs x"}, tmp_path)
+    write_score(rows, [], "s", ABOUT, {"absent": "needs x"}, tmp_path)
     told = json.loads((tmp_path / "summary.json").read_text())
     asked = "cases where_hit top1 in_set exact_set false_alarm pairs_both triples_all"
     asked += " unlisted_unnamed shrink_median brier coverage seconds_per_case transfer"
@@ -171,3 +175,50 @@ def test_the_score_as_files(tmp_path):
     assert '"' not in lines[0]
     reached = (tmp_path / "reach.csv").read_text()
     assert "top1 GPI 20 dB,>= 0.97,0.6667" in reached
+
+
+def table(path):
+    with path.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_rivals_are_held_against_the_solver_on_their_own_cases(tmp_path):
+    own = [
+        row(truth(effect()), RESONANCE, case="a"),
+        row(truth(effect()), CREEP, case="b"),
+    ]
+    rival = row(truth(effect()), RESONANCE, case="a", solver="rival")
+    write_score([*own, rival], [], "s", ABOUT, {}, tmp_path)
+    told = {
+        line["solver"]: (line["cases"], line["top1 GPI 20 dB"])
+        for line in table(tmp_path / "rivals.csv")
+    }
+    same = "s, the rivals' cases"
+    assert told == {"s": ("2", "0.5"), same: ("1", "1.0"), "rival": ("1", "1.0")}
+
+
+def test_which_cases_the_score_is_of(tmp_path):
+    own = [row(truth(effect(), seed=seed), RESONANCE) for seed in (30, 10, 20)]
+    away = [row(truth(effect(), seed=40), RESONANCE)]
+    write_score(own, away, "s", ABOUT, {}, tmp_path)
+    assert [tuple(line.values()) for line in table(tmp_path / "contest.csv")] == [
+        ("small", "0.5", "3", "10", "30"),
+        ("transfer", "0.5", "1", "40", "40"),
+        ("development and tests", "", "", "1", "9"),
+    ]
+
+
+def test_what_carries_to_the_transfer_set(tmp_path):
+    single = truth(effect())
+    home = [row(single, RESONANCE)] * 19 + [row(single, CREEP)]
+    away = [row(single, RESONANCE, cpu_seconds=9.0)] * 9 + [row(single, CREEP)]
+    write_score(home, away, "s", ABOUT, {}, tmp_path)
+    told = {line["figure"]: line for line in table(tmp_path / "transfer.csv")}
+    # 19 of 20 here, 9 of 10 there: five points
+    assert list(told["top1 GPI 20 dB"].values())[1:] == ["0.95", "0.9", "-0.05", "yes"]
+    assert told["seconds_per_case"]["within 5 points"] == ""
+    assert "top1 foreign 20 dB" not in told
+    away = [row(single, RESONANCE)] * 8 + [row(single, CREEP)] * 2
+    write_score(home, away, "s", ABOUT, {}, tmp_path)
+    told = {line["figure"]: line for line in table(tmp_path / "transfer.csv")}
+    assert told["top1 GPI 20 dB"]["within 5 points"] == "no"

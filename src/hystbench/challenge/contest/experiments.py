@@ -10,7 +10,7 @@ RATES = "one amplitude at several rates, and one rate at several amplitudes"
 AMPLITUDES = "a sweep through the mode at several amplitudes"
 REVERSALS = "reversals of several sizes at a slow rate"
 REFERENCE = "a reference for the sensor at several levels"
-UNKNOWN = "none known; the two should be easy to tell apart"
+UNKNOWN = "none written down"
 
 _LAGS = ("input-delay", "drive-lag", "eddy-diffusion", "sensor-lag")
 _SLOW = ("creep", "thermal-drift")

@@ -123,7 +123,9 @@ def _pairs(
         errors = [None] * len(values)
     rows = zip(true, values, errors, strict=True)
     return [
-        (float(t), float(v), None if e is None else float(e)) for t, v, e in rows if t
+        (float(t), float(v), None if e is None else float(e))
+        for t, v, e in rows
+        if t and v is not None
     ]
 
 

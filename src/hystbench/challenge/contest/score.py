@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from math import isfinite
 from typing import Any
 
 from hystbench.challenge.contest.parameters import recovered
@@ -13,6 +15,10 @@ from hystbench.errors import InputError
 from hystbench.schema import check_against_schema
 
 SHAPE = "hysteresis-shape"
+#: What tables can hold: names are parted by spaces there.
+NAME = re.compile("[a-z0-9-]+")
+#: Numbers beyond it are no measurement, and their squares no numbers.
+LARGEST = 1e100
 #: Says which members of a set the judge's own fits find within the noise.
 Confirm = Callable[[tuple[str, ...]], tuple[str, ...]]
 
@@ -141,8 +147,12 @@ def judge(
     effects = [e for e in gap["effects"] if not (tolerated and e["name"] == SHAPE)]
     named = [effect["name"] for effect in effects]
     single, one = kind == "single", effects[0] if effects else None
+    # An answer is one thing: names beside another verdict than this name nothing.
+    names = gap["verdict"] == "named"
     members = (
-        tuple(dict.fromkeys([one["name"], *one["cannot_be_told_from"]])) if one else ()
+        tuple(dict.fromkeys([one["name"], *one["cannot_be_told_from"]]))
+        if one and names
+        else ()
     )
     if tolerated:
         members = tuple(name for name in members if name != SHAPE)
@@ -169,15 +179,15 @@ def judge(
         lost=lost,
         confidence=one["confidence"] if one else None,
         confidences=" ".join(f"{e['name']}={e['confidence']:g}" for e in effects),
-        top1=named[:1] == hidden if single else None,
-        top1_strict=strict[:1] == hidden if single else None,
+        top1=names and named[:1] == hidden if single else None,
+        top1_strict=names and strict[:1] == hidden if single else None,
         in_set=hidden[0] in confirmed if single else None,
         in_set_raw=hidden[0] in members if single else None,
-        set_size=len(confirmed) if single and one else None,
-        set_size_raw=len(members) if single and one else None,
+        set_size=len(confirmed) if single and members else None,
+        set_size_raw=len(members) if single and members else None,
         exact=right,
         exact_strict=right_strict,
-        all_named=set(hidden) <= set(named)
+        all_named=names and set(hidden) <= set(named)
         if set(hidden) <= set(VOCABULARY) and hidden
         else None,
         false_alarm=not right if kind == "none" else None,
@@ -202,16 +212,48 @@ _NOTHING: dict[str, Any] = {"verdict": "", "effects": [], "where": [], "gap": No
 def _why_lost(answer: Mapping[str, Any], schema: Mapping[str, Any]) -> str:
     if answer["status"] != "answered":
         return str(answer["status"])
+    if _too_large(answer["gap"]):
+        return f"gap.json: a number beyond {LARGEST:g}"
     try:
         check_against_schema(answer["gap"], schema, "gap.json")
     except InputError as error:
         return str(error)[:300]
-    names = [effect["name"] for effect in answer["gap"]["effects"]]
+    effects = answer["gap"]["effects"]
+    names = [effect["name"] for effect in effects]
+    for name in (*names, *(tie for e in effects for tie in e["cannot_be_told_from"])):
+        if not NAME.fullmatch(name):
+            return f"gap.json: effects: {name[:40]!r}; expected letters a-z, digits, -"
+    for effect in effects:
+        for key, said in effect["parameters"].items():
+            for part in ("value", "standard_error"):
+                if not _numbers(said[part]):
+                    told = f"gap.json: effects: {effect['name']}: {key[:40]!r}: {part}"
+                    return f"{told}; expected numbers or null in the list"
     if answer["gap"]["verdict"] == "named" and not names:
         return "gap.json: verdict named without an effect"
     if answer["gap"]["verdict"] in ("no-gap", "parameters") and names:
         return f"gap.json: verdict {answer['gap']['verdict']} with effects named"
     return ""
+
+
+def _too_large(content: Any) -> bool:
+    """Tell whether a number anywhere in it is too large to reckon with."""
+    left = [content]
+    while left:
+        item = left.pop()
+        if isinstance(item, dict | list):
+            left += item.values() if isinstance(item, dict) else item
+        elif isinstance(item, int | float) and abs(item) > LARGEST:
+            return True
+    return False
+
+
+def _numbers(value: Any) -> bool:
+    """Tell whether a list holds finite numbers or null; what is no list may pass."""
+    return not isinstance(value, list) or all(
+        item is None or (type(item) in (int, float) and isfinite(item))
+        for item in value
+    )
 
 
 def _right(

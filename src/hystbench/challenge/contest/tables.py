@@ -71,6 +71,8 @@ def confused(rows: Sequence[Row]) -> list[tuple[str, str, int, int, str]]:
 def _first(row: Row) -> str:
     if row.lost:
         return "lost"
+    if row.verdict == "unnamed":
+        return "unnamed"
     names = row.named.split()
     if row.family != "gpi" and row.truth != SHAPE and len(names) > 1:
         names = [name for name in names if name != SHAPE] or [SHAPE]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
@@ -13,9 +13,13 @@ from hystbench.challenge.contest.score import Row
 from hystbench.challenge.contest.summary import reach, summary
 from hystbench.files import write_csv, write_json
 
+#: With room for the rounding of a difference of two shares.
+FIVE_POINTS = 0.05 + 1e-9
 _SHARE = ("share", "low", "high", "cases")
 _CONFUSION = ("kind", "hidden", "answered", "right", "cases")
 _REACH = ("figure", "asked", "reached", "low", "high", "cases", "met")
+_CONTEST = ("set", "scale", "cases", "first_seed", "last_seed")
+_TRANSFER = ("figure", "published", "transfer", "difference", "within 5 points")
 _RIVALS = (
     "solver",
     "cases",
@@ -52,19 +56,22 @@ def write_score(
     solver : str
         Whose score it is.
     about : mapping
-        What summary.json says of the contest: the set, its seeds.
+        What summary.json says of the contest: ``set``, ``scale``, its seeds and
+        ``seeds_used_while_mending`` (first and last).
     skipped : mapping of str to str
         Solvers that did not enter, and why.
     out : Path
-        Folder: ``summary.json``, ``reach.csv``, ``cases.csv``, ``transfer-cases.csv``,
-        ``confusion.csv``, ``confused.csv``, ``effects.csv``, ``power.csv``,
-        ``reliability.csv`` and ``rivals.csv``.
+        Folder: ``summary.json``, ``contest.csv``, ``reach.csv``, ``transfer.csv``,
+        ``cases.csv``, ``transfer-cases.csv``, ``confusion.csv``, ``confused.csv``,
+        ``effects.csv``, ``power.csv``, ``reliability.csv`` and ``rivals.csv``.
     """
     own = [row for row in rows if row.solver == solver]
     asked = reach(own, transfer)
     write_csv(out / "reach.csv", _REACH, (_told(astuple(item)) for item in asked))
     write_rows(out / "cases.csv", rows)
     write_rows(out / "transfer-cases.csv", transfer)
+    write_csv(out / "contest.csv", _CONTEST, _held(own, transfer, about))
+    write_csv(out / "transfer.csv", _TRANSFER, map(_told, _carried(own, transfer)))
     counts = tables.confusion(own)
     write_csv(out / "confusion.csv", _CONFUSION, counts)
     write_csv(
@@ -87,7 +94,12 @@ def write_score(
         ("from", "to", "stated", *_SHARE),
         map(_told, tables.reliability(own)),
     )
-    rivals = [_rival(name, rows) for name in dict.fromkeys(r.solver for r in rows)]
+    rivals = []
+    for name in dict.fromkeys(row.solver for row in rows):
+        rivals.append(_rival(name, [row for row in rows if row.solver == name]))
+        same = _shared(own, rows)
+        if name == solver and len(same) < len(own):
+            rivals.append(_rival(f"{solver}, the rivals' cases", same))
     unheard = [(name, 0, *[None] * 10, why) for name, why in skipped.items()]
     write_csv(out / "rivals.csv", _RIVALS, [*rivals, *unheard])
     # Last: where it stands, all is there.
@@ -103,8 +115,43 @@ def write_score(
     )
 
 
-def _rival(name: str, rows: Sequence[Row]) -> tuple[Any, ...]:
-    mine = [row for row in rows if row.solver == name]
+def _held(
+    rows: Sequence[Row], transfer: Sequence[Row], about: Mapping[str, Any]
+) -> list[tuple[Any, ...]]:
+    """Say how large each set is and which seeds it has, and those used before."""
+    told: list[tuple[Any, ...]] = []
+    for name, judged in ((about["set"], rows), ("transfer", transfer)):
+        seeds = [row.seed for row in judged]
+        if seeds:
+            told.append((name, about["scale"], len(seeds), min(seeds), max(seeds)))
+    mended = about["seeds_used_while_mending"]
+    return [*told, ("development and tests", None, None, *mended)]
+
+
+def _carried(
+    rows: Sequence[Row], transfer: Sequence[Row]
+) -> Iterator[tuple[str, float, float, float, bool | None]]:
+    """Hold each figure on the transfer set beside the published set's.
+
+    Within 5 points is said of shares; seconds are none.
+    """
+    for here, there in zip(reach(rows, ()), reach(transfer, ()), strict=True):
+        if here.reached is not None and there.reached is not None:
+            apart = there.reached - here.reached
+            share = here.figure != "seconds_per_case"
+            within = abs(apart) <= FIVE_POINTS if share else None
+            yield here.figure, here.reached, there.reached, apart, within
+
+
+def _shared(own: Sequence[Row], rows: Sequence[Row]) -> list[Row]:
+    """Own rows of the cases that every solver was asked: some get a share of them."""
+    asked: dict[str, set[str]] = {}
+    for row in rows:
+        asked.setdefault(row.solver, set()).add(row.case)
+    return [row for row in own if all(row.case in each for each in asked.values())]
+
+
+def _rival(name: str, mine: Sequence[Row]) -> tuple[Any, ...]:
     found = {item.figure: item.reached for item in reach(mine, ())}
     lost = [row.lost for row in mine if row.lost]
     figures = [found[figure] for figure in _RIVALS[3:-1]]

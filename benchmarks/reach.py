@@ -1,0 +1,133 @@
+"""What was asked of the project's speed, beside what the other parts measured.
+
+A figure whose table or row is not there is listed as not measured. Of several rows that
+a figure speaks of the worst counts.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator
+
+from benchmarks.pipeline import CHANGED, NEEDED
+from benchmarks.timing import OUT, write_table
+
+NOT_MEASURED = "not measured"
+COLUMNS = ("figure", "asked", "reached", "met")
+#: Kernels and the samples that they are measured on.
+KERNELS = (
+    *(("LMS", 20_000), ("LMS", 1_000_000), ("backlash", 20_000), ("gpo", 20_000)),
+    *(("volterra", 20_000), ("GPI simulation", 20_000), ("RDGPI simulation", 20_000)),
+)
+PEERS = ("padasip", "adaptfilt", "PyDaptiveFiltering")
+BATCHES = ("step sizes", "orders", "seeds")
+
+Rows = list[dict[str, str]]
+Reached = tuple[str, str, float | None, str]
+
+
+def main() -> None:
+    """Write reach.csv."""
+    write_table("reach.csv", COLUMNS, list(reach()))
+
+
+def reach() -> Iterator[Reached]:
+    """List each figure with what was asked and what was reached."""
+    yield from kernels(table("kernels.csv"))
+    batches = table("batch.csv")
+    for name in BATCHES:
+        found = column(batches, "efficiency", batch=name)
+        yield least(f"many filters in one call, {name}: of two busy loops", 0.9, found)
+    yield from identification(table("identification.csv"))
+    seconds = table("pipeline.csv")
+    for what, limit in NEEDED.items():
+        same = [r for r in seconds if r["what"] == what or is_changed(r["what"], what)]
+        yield most(f"{what}: seconds", limit, column(same, "seconds"))
+    found = column(table("gap.csv"), "cpu_seconds", what="a case")
+    yield most("a case of the gap workflow: seconds of computing", 1.0, found)
+
+
+def kernels(rows: Rows) -> Iterator[Reached]:
+    """Ratios to the peers, to NumPy loops and to C."""
+    for samples in (20_000, 1_000_000):
+        for peer in PEERS:
+            found = column(rows, "ratio", kernel="LMS", peer=peer, samples=samples)
+            yield least(f"LMS, {samples:,} samples: times {peer}", 150, found)
+    for kernel in ("gpo", "volterra"):
+        found = column(rows, "ratio", kernel=kernel, peer="NumPy loop")
+        yield least(f"{kernel}: times a NumPy loop", 100, found)
+    found = column(rows, "ratio", kernel="volterra", peer="PyDaptiveFiltering")
+    yield least("volterra: times PyDaptiveFiltering", 1000, found)
+    allowed = [
+        row
+        for row in rows
+        if row["peer"].startswith("C,") and "-ffast-math" not in row["peer"]
+    ]
+    for kernel, samples in KERNELS:
+        found = column(allowed, "ratio", kernel=kernel, samples=samples)
+        # its least ratio is that of the fastest
+        over = [1 / min(found)] if found else []
+        yield most(f"{kernel}, {samples:,} samples: time over the best C", 1.3, over)
+    # A row says it of ours and the peer together: one yes is enough for ours.
+    same: dict[tuple[str, str], float] = {}
+    for row in rows:
+        key, told = (row["kernel"], row["samples"]), float(row["same_result"] == "yes")
+        same[key] = max(told, same.get(key, 0.0))
+    yield least("all kernels: the same result as plain loops", 1, [*same.values()])
+
+
+def identification(rows: Rows) -> Iterator[Reached]:
+    """Time and error of each rival over ours."""
+    for name, limit in (("least squares", 3), ("differential evolution", 100)):
+        mine = [row for row in rows if row["method"].startswith(name)]
+        found = column(mine, "seconds_over_ours")
+        yield least(f"identification: times faster than {name}", limit, found)
+    others = [row for row in rows if row["method"] != "variable projection"]
+    found = column(others, "error_over_ours")
+    yield least("identification: error of the best rival over ours", 1, found)
+
+
+def is_changed(name: str, what: str) -> bool:
+    """Tell whether a row of pipeline.csv is one filter's, whose step size changed."""
+    return what == CHANGED and name.startswith(f"{CHANGED}, ")
+
+
+def table(name: str) -> Rows:
+    """Read a table; no rows where it is not there."""
+    file = OUT / name
+    if not file.is_file():
+        return []
+    with file.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def column(rows: Iterable[dict[str, str]], name: str, **where: object) -> list[float]:
+    """Take the numbers of a column, of the rows that hold all that is given."""
+    return [
+        float(row[name])
+        for row in rows
+        if all(row[key] == str(value) for key, value in where.items())
+    ]
+
+
+def least(figure: str, asked: float, found: list[float]) -> Reached:
+    """Hold a figure that must be so large or more."""
+    if not found:
+        return figure, f">= {asked:g}", None, NOT_MEASURED
+    return figure, f">= {asked:g}", min(found), met(min(found) >= asked)
+
+
+def most(figure: str, asked: float, found: list[float]) -> Reached:
+    """Hold a figure that must be so large or less."""
+    if not found:
+        return figure, f"<= {asked:g}", None, NOT_MEASURED
+    return figure, f"<= {asked:g}", max(found), met(max(found) <= asked)
+
+
+def met(is_met: bool) -> str:
+    """Say it in the table's words."""
+    return "yes" if is_met else "no"
+
+
+if __name__ == "__main__":
+    main()
