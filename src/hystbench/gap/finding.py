@@ -145,7 +145,13 @@ def decide(
     if box_matters(left, bool(state.added)):
         rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
         explained = rest.explained_on_folds
-    verdict, reason = judge(left, bool(state.added), explained, bool(start.free))
+    verdict, reason = judge(
+        left,
+        bool(state.added),
+        explained,
+        bool(start.free),
+        floor.method == "upper-bound",
+    )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
