@@ -60,7 +60,8 @@ def start_state(
 def free_numbers(base: Model) -> tuple[Free, ...]:
     """Give the numbers that a model leaves free, with the size of a likely change.
 
-    A tolerance is a share of the value; of a zero it says nothing.
+    A tolerance is a share of the value; of a zero it says nothing. It is the most that
+    a number may change by, and the size of the change that is charged.
     """
     places = {label: k for k, (label, _) in enumerate(base.labelled())}
     found = []
@@ -73,5 +74,8 @@ def free_numbers(base: Model) -> tuple[Free, ...]:
                 continue
             size = None if not share or not number else share * abs(number)
             place = element if isinstance(value, tuple) else None
-            found.append(Free(places[label], parameter, place, size))
+            own = Free(places[label], parameter, place, size)
+            if size is not None:
+                own = own._replace(low=number - size, high=number + size)
+            found.append(own)
     return tuple(found)
