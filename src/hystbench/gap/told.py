@@ -23,21 +23,45 @@ from hystbench.model import Model
 from hystbench.record import FloatArray
 
 
+OFFSET = "offset"
+"""Of a plain gain."""
+
+
 def base_parameters(base: Model, state: State) -> dict[str, Any]:
-    """Give the base's free parameters before and after."""
-    own = {k for item in state.added for k in item.blocks}
-    after = iter([state.value(free) for free in state.free if free.block not in own])
+    """Give the base's free parameters before and after.
+
+    None after, where an effect stands for the block: the number is then the effect's.
+    """
+    labels = (label for label, _ in base.labelled())
+    blocks = dict(zip(labels, _blocks_of_base(state), strict=True))
     found: dict[str, Any] = {}
-    for parameter in base.free:
-        before = base.value(parameter)
-        if isinstance(before, tuple):
-            found[parameter] = {
-                "before": list(before),
-                "after": [next(after) for _ in before],
-            }
-        elif not isinstance(before, str):
-            found[parameter] = {"before": before, "after": next(after)}
+    for name in base.free:
+        label, _, parameter = name.rpartition(".")
+        before, block = base.value(name), blocks[label]
+        if isinstance(before, str):
+            continue
+        after = None if block is None else _plain(getattr(block, parameter))
+        found[name] = {"before": _plain(before), "after": after}
     return found
+
+
+def _blocks_of_base(state: State) -> list[Block | None]:
+    """Find the base's blocks, in their order; None where an effect stands for one."""
+    beside = {item.effect for item, _ in state.beside}
+    # An effect without a block lost it to a later one, which then stands for no block
+    # of the base.
+    lost = any(not item.blocks and item.effect not in beside for item in state.added)
+    own = {k for item in state.added for k in item.blocks}
+    instead = {k for item in state.added if item.replaced for k in item.blocks}
+    return [
+        None if k in own else block
+        for k, block in enumerate(state.chain)
+        if k not in own or (k in instead and not lost)
+    ]
+
+
+def _plain(value: object) -> object:
+    return list(value) if isinstance(value, tuple) else value
 
 
 def beside_blocks(state: State) -> list[Block]:
@@ -83,6 +107,8 @@ def _parameters(
     found: dict[str, Any] = {}
     if not item.blocks:
         blocks = {beside.effect: k for k, (beside, _) in enumerate(state.beside)}
+        if item.effect not in blocks:
+            return found  # a later effect stands for its block and has its numbers
         block = beside_blocks(state)[blocks[item.effect]]
         known = of_beside[blocks[item.effect]]
         for key, about in block.parameters().items():
@@ -93,6 +119,16 @@ def _parameters(
                     "standard_error": known.get(key),
                     "unit": _unit(about.unit, state),
                 }
+        return found
+    offsets = effects()[item.effect].offsets.get(item.form, ())
+    if offsets:
+        for place, (label, unit) in zip(item.blocks, offsets, strict=True):
+            value = getattr(state.chain[place], OFFSET)
+            found[label] = {
+                "value": value,
+                "standard_error": _errors_of(place, OFFSET, value, state, errors),
+                "unit": _unit(unit, state),
+            }
         return found
     for place in item.blocks:
         block = state.chain[place]
