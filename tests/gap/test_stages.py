@@ -18,7 +18,7 @@ from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.name import name
 from hystbench.gap.rank import make_score
 from hystbench.gap.search import Attempt, coarse
-from hystbench.gap.stages import begin, choose, named_by, try_one
+from hystbench.gap.stages import Recorded, begin, choose, named_by, try_one
 from hystbench.gap.start import start_state
 from hystbench.gap.work import Work
 from hystbench.model import load_model
@@ -110,6 +110,25 @@ def test_the_choice_searches_nothing_again(tiny, staged, monkeypatch):
     ranking = after["rounds"][0]["ranking"]
     finalists = {item["effect"] for item in ranking if item["state"]}
     assert finalists - set(again)
+
+
+def test_a_variant_that_a_job_refused_is_missing_and_no_other(tiny, staged):
+    """Of three variants the first has no entry: the others keep theirs."""
+    evidence, model, _, _ = tiny
+    progress, tried = staged
+    kept = tried[0]["calibration-error"]["variants"]
+    assert [item["number"] for item in kept] == [0, 1, 2]
+    restorer = Restorer(evidence.fit, model)
+    state = restorer.progress(progress[0]).state
+    some = {"calibration-error": tried[0]["calibration-error"] | {"variants": kept[1:]}}
+    work = Recorded(state, some, restorer)
+    score = make_score(state, progress[0]["floor"]["rms"])
+    found, why = work.tried(effects()["calibration-error"], state, score)
+    assert not why
+    assert [trial.variant.form for _, trial in found] == ["offset", "gain and offset"]
+    for (attempt, trial), entry in zip(found, kept[1:], strict=True):
+        assert trial.values == entry["coarse"]["values"]
+        assert work.fine(attempt, trial).values == entry["fine"]["values"]
 
 
 def test_an_effect_without_a_job_is_tried_by_the_choice(tiny, staged):
