@@ -22,6 +22,7 @@ from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.shortfall import shortfall
 from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink
+from hystbench.gap.start import check_finite
 from hystbench.gap.state import State
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
@@ -157,12 +158,23 @@ def show(
     Shown
         ``gap``, ``records``, ``ladder`` and ``black_box`` of gap.json, and the outputs
         before and after of each record, with what is new in it as estimated.
+
+    Raises
+    ------
+    InputError
+        If a model's output is not finite on a record.
     """
     nuisance = what_is_new(state)
-    before = _run(base.with_hold(state.hold).chain, records, state)
-    after = _run(state.chain, records, state)
+    before = _run(base.with_hold(state.hold).chain, records, state, base.name)
+    after = _run(state.chain, records, state, _name(base, state))
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
-    stages = [(rung.name, _run(rung.state.chain, records, state)) for rung in steps]
+    stages = [
+        (
+            rung.name,
+            _run(rung.state.chain, records, state, _name(base, rung.state)),
+        )
+        for rung in steps
+    ]
     content = {
         "gap": mapping(found),
         "records": records_mapping(found),
@@ -197,9 +209,16 @@ def what_is_new(state: State) -> Nuisance | None:
 
 
 def _run(
-    chain: Sequence[Block], records: tuple[Record, ...], state: State
+    chain: Sequence[Block], records: tuple[Record, ...], state: State, name: str
 ) -> tuple[FloatArray, ...]:
-    return Scene(tuple(chain), records, state.hold).output
+    outputs = Scene(tuple(chain), records, state.hold).output
+    check_finite(name, records, outputs)
+    return outputs
+
+
+def _name(base: Model, state: State) -> str:
+    effects = " and ".join(item.effect for item in state.added)
+    return f"{base.name} with {effects}" if effects else base.name
 
 
 def _write_hold_out(

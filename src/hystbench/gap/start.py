@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hystbench.blocks.held import Hold
@@ -12,7 +14,7 @@ from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Free, State
 from hystbench.model import Model
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
 
 
 def start_state(
@@ -40,13 +42,7 @@ def start_state(
     base = base.with_hold(hold)
     chain = base.chain
     exact = Scene(chain, records, hold, fine=True).output
-    for record, simulated in zip(records, exact, strict=True):
-        lost = np.flatnonzero(~np.isfinite(simulated))
-        if len(lost):
-            raise InputError(
-                f"{base.name}: the output is not finite from {lost[0] * record.dt:g} s "
-                f"of {record.name} on; expected a base that stays bounded"
-            )
+    check_finite(base.name, records, exact)
     state = State(
         chain, records, Sample.of(records), free=free_numbers(base), hold=hold
     ).settled()
@@ -55,6 +51,25 @@ def start_state(
         for record, simulated in zip(records, exact, strict=True)
     ]
     return state, noise_floor(compared, declared)
+
+
+def check_finite(
+    name: str, records: Sequence[Record], outputs: Sequence[FloatArray]
+) -> None:
+    """Refuse a model whose output is not finite on a record.
+
+    Raises
+    ------
+    InputError
+        With the model's name, the time and the record.
+    """
+    for record, simulated in zip(records, outputs, strict=True):
+        lost = np.flatnonzero(~np.isfinite(simulated))
+        if len(lost):
+            raise InputError(
+                f"{name}: the output is not finite from {lost[0] * record.dt:g} s "
+                f"of {record.name} on; expected a model that stays bounded"
+            )
 
 
 def free_numbers(base: Model) -> tuple[Free, ...]:
