@@ -11,6 +11,13 @@ from hystbench.gap.report.words import number, with_error
 from hystbench.gap.schema import SCHEMA
 from hystbench.schema import check_against_schema
 
+
+def ranked(number, name, place="mechanics", held_back=None, **more):
+    return {
+        "round": number, "name": name, "place": place, "held_back": held_back, **more
+    }  # fmt: skip
+
+
 VALUE = {"value": 69.7123, "standard_error": 0.0456, "unit": "Hz"}
 GAP = {
     "dataset": "bench",
@@ -79,16 +86,20 @@ GAP = {
     },
     "ranking": [
         {
+            "round": 1,
             "name": "resonance",
             "place": "mechanics",
+            "held_back": 288.25,
             "form": "one mode",
             "score": -812.5,
             "gain": 301.5,
-            "explained": 0.942,
         },
-        {"name": "creep", "place": "mechanics", "score": -620.1, "gain": 109.2},
-        {"name": "drive-lag", "place": "drive", "score": -500.3, "gain": -10.4},
-        {"name": "friction", "place": "mechanics", "declined": "u does not reverse"},
+        ranked(1, "creep", score=-620.1, gain=109.2),
+        ranked(1, "drive-lag", place="drive", score=-500.3, gain=-10.4),
+        ranked(1, "friction", declined="u does not reverse"),
+        ranked(2, "creep", held_back=93.75, score=-915.5, gain=103.25),
+        ranked(2, "drive-lag", place="drive", score=-810.1, gain=-2.4),
+        ranked(2, "friction", declined="u does not reverse"),
     ],
     "next_experiment": {
         "excitation": "steps-with-holds",
@@ -274,6 +285,12 @@ def test_page_says_every_number_and_word_of_gap_json(page):
         plain = {"um": "µm", "-": "", "repeats": "repeated", "named": "lacks"}
         told = plain.get(word, word)
         assert told in page.said or told.replace("-", " ") in page.said
+
+
+def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
+    assert page.said.count("u does not reverse") == 1
+    assert page.said.count("drive-lag") == 2  # a row of each round
+    assert "ranked by the score on all fit records" in page.said
 
 
 def test_page_stands_alone(page):

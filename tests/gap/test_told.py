@@ -1,5 +1,7 @@
 """What is told of the numbers of effects and of the base."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import yaml
@@ -7,10 +9,14 @@ import yaml
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.finding import augmented
+from hystbench.gap.name import Named
+from hystbench.gap.rank import Candidate, Round
+from hystbench.gap.schema import RANK
 from hystbench.gap.start import start_state
-from hystbench.gap.told import base_parameters, effect_mapping
+from hystbench.gap.told import base_parameters, effect_mapping, ranking_rows
 from hystbench.gap.verdict import Left
 from hystbench.model import Model, load_model
+from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import MODE, block, hysteresis, measured
 
@@ -73,6 +79,30 @@ def test_an_effect_whose_block_another_took_is_told_without_numbers():
     assert base_parameters(base, after) == {
         "gain.value": {"before": 12.0, "after": 12.0}
     }
+
+
+def test_the_ranking_gives_every_round_and_keeps_its_order():
+    _, state = started((block("gain", value=12.0),))
+    lag = Candidate("drive-lag", "drive", "", -90.0, 80.0, state, held_back=55.0)
+    creep = Candidate("creep", "mechanics", "two", -60.0, 50.0, state)
+    none = Candidate("friction", "mechanics", declined="too short")
+    then = replace(creep, score=-95.0, gain=5.0)
+    rounds = (
+        Round(state, -10.0, (lag, creep, none), True),
+        Round(state, -90.0, (then, none), False),
+    )
+    rows = ranking_rows(Named(state, rounds))
+    shown = [(row["round"], row["name"], row["held_back"]) for row in rows]
+    assert shown == [
+        (1, "drive-lag", 55.0),
+        (1, "creep", None),
+        (1, "friction", None),
+        (2, "creep", None),
+        (2, "friction", None),
+    ]
+    assert [row.get("gain") for row in rows] == [80.0, 50.0, None, 5.0, None]
+    for row in rows:
+        check_against_schema(row, RANK, "ranking")
 
 
 def test_a_field_bias_is_told_as_one_and_its_model_runs(tmp_path):

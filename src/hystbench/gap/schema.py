@@ -94,11 +94,17 @@ SHORTFALL = _object({"fit": NUMBER, "hold_out": NUMBER, "sentence": {"type": "st
 RUNG = _object({"name": {"type": "string"}, "rms": NUMBER})
 
 RANK = _object(
-    {"name": {"type": "string"}, "place": {"type": "string"}},
+    {
+        "round": {"type": "integer", "minimum": 1},
+        "name": {"type": "string"},
+        "place": {"type": "string"},
+        # The gain on records held back from the fit, of the best of a round where it
+        # had to decide whether that one is taken.
+        "held_back": OPTIONAL,
+    },
     form={"type": "string"},
     score=NUMBER,
     gain=NUMBER,
-    explained=NUMBER,
     declined={"type": "string"},
 )
 

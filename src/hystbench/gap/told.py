@@ -169,16 +169,25 @@ def _unit(text: str, state: State) -> str:
 
 
 def ranking_rows(named: Named) -> list[dict[str, Any]]:
-    """Give every candidate of the first round, best first."""
-    one = named.rounds[0]
-    rows = []
-    for item in one.ranking:
-        row: dict[str, Any] = {"name": item.effect, "place": item.place}
-        if item.form:
-            row["form"] = item.form
-        if item.declined:
-            row["declined"] = item.declined
-        elif np.isfinite(item.score):
-            row |= {"score": item.score, "gain": item.gain}
-        rows.append(row)
-    return rows
+    """Give every candidate of every round, best first."""
+    return [
+        _ranking_row(number, item)
+        for number, one in enumerate(named.rounds, start=1)
+        for item in one.ranking
+    ]
+
+
+def _ranking_row(number: int, item: Candidate) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "round": number,
+        "name": item.effect,
+        "place": item.place,
+        "held_back": item.held_back,
+    }
+    if item.form:
+        row["form"] = item.form
+    if item.declined:
+        row["declined"] = item.declined
+    elif np.isfinite(item.score):
+        row |= {"score": item.score, "gain": item.gain}
+    return row
