@@ -327,7 +327,8 @@ def test_what_is_not_there_is_said(tmp_path):
         tmp_path, small(gap=power), with_curves=False, with_tables=False
     )
     said = read(write_report(folder)).said
-    assert "There is no gap" in said
+    assert f"There is no gap: {GAP['reason']}" in said
+    assert "None is needed to tell likely effects apart" in said
     assert "Not drawn: curves.json" in said
     assert "the folder holds no hold-out tables" in said
     assert "gap.json holds no ladder" in said
@@ -356,6 +357,16 @@ def test_a_reader_is_told_of_a_promise_that_was_not_kept(tmp_path):
     (tmp_path / "gap.json").write_text(json.dumps({**GAP, "shortfall": None}))
     write_report(tmp_path)
     assert "Less than promised" not in read(tmp_path / "report.html").said
+
+
+@pytest.mark.parametrize("why", ["", "no input brings it out"])
+def test_an_experiment_that_was_not_computed_is_not_called_needless(tmp_path, why):
+    """The example's creep cannot be told from two others."""
+    told = {"no_experiment": why} if why else {}
+    gap = {**GAP, **told, "next_experiment": None}
+    said = read(write_report(write_folder(tmp_path, gap, False, False))).said
+    assert "None is needed" not in said
+    assert (f"None was computed: {why}." if why else "None was computed.") in said
 
 
 def test_a_range_is_printed_as_one(tmp_path):

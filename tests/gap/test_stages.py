@@ -27,7 +27,6 @@ from hystbench.model import load_model
 
 from .tiny import LAG_S, write_tiny
 
-
 KEPT = ("effect", "place", "form", "score", "gain", "declined", "held_back")
 
 

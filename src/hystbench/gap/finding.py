@@ -10,11 +10,13 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
+from hystbench.errors import InputError
 from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.compared import Compared
 from hystbench.gap.experiment import Experiment, next_experiment, parameter_tangents
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
+from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.name import Named, name
 from hystbench.gap.rank import Candidate, make_score, near
@@ -84,6 +86,7 @@ def find(
     base: Model,
     hold: Hold = "band-limited",
     declared: float | None = None,
+    asked: Mapping[str, float] | None = None,
     say: Say = silent,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
@@ -99,16 +102,20 @@ def find(
         How the input moves between samples.
     declared : float, optional
         RMS noise, where it is known.
+    asked : mapping of str to float, optional
+        Limits of the next experiment; the others are those of the records.
     say : callable
         Told a line of progress at a time.
 
     Raises
     ------
     InputError
-        If the base does not run on the records.
+        If the base does not run on the records, or no excitation fits the limits.
     """
+    limits = Limits.within(records, asked) if asked else None
     start, floor = start_state(records, base, hold, declared)
-    return decide(dataset, base, start, floor, name(start, floor.rms, say), say)
+    named = name(start, floor.rms, say)
+    return decide(dataset, base, start, floor, named, say, limits)
 
 
 def decide(
@@ -118,6 +125,7 @@ def decide(
     floor: Floor,
     named: Named,
     say: Say = silent,
+    limits: Limits | None = None,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
 
@@ -132,6 +140,8 @@ def decide(
     named : Named
     say : callable
         Told a line of progress at a time.
+    limits : Limits, optional
+        Of the next experiment; those of the records where none are given.
     """
     records, state = start.records, named.state
     compared = _compared(start.chain, start)
@@ -160,8 +170,8 @@ def decide(
     of_beside = beside_errors(finer, score)
     by_effect = named.reasons
     model = augmented(base, state)
-    experiment = _experiment(base, named, by_effect, records, floor)
-    content = {
+    experiment, why_none = _experiment(base, named, records, floor, limits)
+    content: dict[str, Any] = {
         "dataset": dataset,
         "model": base.name,
         "unit": records[0].output.unit,
@@ -180,6 +190,8 @@ def decide(
         "base_parameters": base_parameters(base, state),
         "black_box": {"explained_on_folds": box.explained_on_folds},
     }
+    if why_none:
+        content["no_experiment"] = why_none
     return Finding(
         base,
         model,
@@ -272,21 +284,53 @@ def _beside_signals(state: State) -> list[FloatArray]:
 def _experiment(
     base: Model,
     named: Named,
-    by_effect: Mapping[str, Sequence[Candidate]],
     records: Sequence[Record],
     floor: Floor,
-) -> Experiment | None:
-    """Look for the excitation that tells a set of likely effects apart."""
-    if not all(block.reruns for block in base.chain):
-        return None
-    for effect, ranking in by_effect.items():
-        first = next(x for x in ranking if x.effect == effect)
-        names = near(first, ranking)
-        rivals = [x for x in ranking if x.effect in (effect, *names) and x.state]
+    limits: Limits | None,
+) -> tuple[Experiment | None, str]:
+    """Look for the excitation that tells a set of likely effects apart.
+
+    Returns
+    -------
+    experiment : Experiment or None
+    str
+        Why there is none though effects cannot be told apart; else empty.
+    """
+    why = ""
+    for effect in (item.effect for item in named.state.added):
+        ranking = named.reasons.get(effect, ())
+        rivals = _rivals(effect, ranking)
+        if not rivals:
+            continue
+        if not all(block.reruns for block in base.chain):
+            return None, ELSEWHERE
         usable = [x for x in rivals if x.state is not None and not x.state.beside]
         if len(usable) < 2:
+            why = NEW_IN_EVERY_RECORD
             continue
         models = [(x.effect, augmented(base, x.state)) for x in usable[:3] if x.state]
         tangents = parameter_tangents([(model, model.free) for _, model in models])
-        return next_experiment(models, records, floor.rms, tangents=tangents)
-    return None
+        try:
+            found = next_experiment(models, records, floor.rms, limits, tangents)
+        except InputError as error:
+            return None, str(error)
+        return found, ""
+    return None, why
+
+
+def _rivals(effect: str, ranking: Sequence[Candidate]) -> list[Candidate]:
+    """Give an effect and those that cannot be told from it, if there are any."""
+    own = next((x for x in ranking if x.effect == effect), None)
+    names = () if own is None else near(own, ranking)
+    return [x for x in ranking if names and x.effect in (effect, *names) and x.state]
+
+
+ELSEWHERE = (
+    "the base holds the output of a simulator that ran elsewhere, which answers to no "
+    "other input"
+)
+NEW_IN_EVERY_RECORD = (
+    "one of those that cannot be told apart is new in every record, and no input "
+    "brings it out"
+)
+"""Why no experiment is computed."""

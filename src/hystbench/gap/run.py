@@ -35,6 +35,7 @@ def close_gap(
     folder: Path,
     *,
     place: str = "model",
+    limits: Mapping[str, float] | None = None,
     report: bool = True,
     say: Say = silent,
 ) -> Finding:
@@ -48,6 +49,9 @@ def close_gap(
         Gets gap.json, model.yaml, curves.json, holdout/ and report.html.
     place : str
         Where the base came from, for messages.
+    limits : mapping of str to float, optional
+        What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
+        What is not given is taken from the fit records.
     report : bool
         Whether to write the page.
     say : callable
@@ -67,6 +71,7 @@ def close_gap(
         base,
         evidence.hold,
         evidence.noise_rms,
+        limits,
         say,
     )
     # From here on the hold-out records are read; nothing is decided any more.

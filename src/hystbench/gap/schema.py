@@ -128,4 +128,6 @@ SCHEMA = _object(
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},
+    # Why next_experiment is null though effects cannot be told apart.
+    no_experiment={"type": "string"},
 )

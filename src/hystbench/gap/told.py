@@ -22,7 +22,6 @@ from hystbench.gap.verdict import (
 from hystbench.model import Model
 from hystbench.record import FloatArray
 
-
 OFFSET = "offset"
 """Of a plain gain."""
 

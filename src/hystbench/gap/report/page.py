@@ -18,6 +18,7 @@ OPTIONAL: dict[str, Any] = {
     "black_box": None,
     "base_parameters": {},
     "shortfall": None,
+    "no_experiment": "",
 }
 
 
