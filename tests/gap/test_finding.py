@@ -8,6 +8,7 @@ import pytest
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import finding as finding_module
+from hystbench.gap import tell_apart
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import next_experiment
@@ -121,7 +122,7 @@ def too_narrow(alike, names, monkeypatch):
         return next_experiment(*given, excitations=())
 
     with monkeypatch.context() as patched:
-        patched.setattr(finding_module, "next_experiment", refuse)
+        patched.setattr(tell_apart, "next_experiment", refuse)
         return decided(alike, *names)
 
 

@@ -110,7 +110,8 @@ def verdict(names, family):
     start, floor = start_state(records, base)
     state = naming.name(start, floor.rms).state
     left = what_is_left(start, state, floor.rms)
-    word, _ = judge(left, bool(state.added), None)
+    bound = floor.method == "upper-bound"
+    word, _ = judge(left, bool(state.added), None, bound=bound)
     return word, {item.effect for item in state.added}
 
 

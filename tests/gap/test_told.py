@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import yaml
 
+from hystbench.gap.augmented import augmented
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.finding import augmented
 from hystbench.gap.name import Named
 from hystbench.gap.rank import Candidate, Round
 from hystbench.gap.schema import RANK

@@ -10,24 +10,24 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
-from hystbench.errors import InputError
+from hystbench.gap.augmented import augmented
 from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.compared import Compared
-from hystbench.gap.experiment import Experiment, next_experiment, parameter_tangents
+from hystbench.gap.experiment import Experiment
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.name import Named, name
-from hystbench.gap.rank import Candidate, make_score, near
+from hystbench.gap.rank import make_score
 from hystbench.gap.rungs import Rung, rungs
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
+from hystbench.gap.tell_apart import tell_apart
 from hystbench.gap.told import (
     base_parameters,
-    beside_blocks,
     effect_mapping,
     ranking_rows,
 )
@@ -170,7 +170,7 @@ def decide(
     of_beside = beside_errors(finer, score)
     by_effect = named.reasons
     model = augmented(base, state)
-    experiment, why_none = _experiment(base, named, records, floor, limits)
+    experiment, why_none = tell_apart(base, named, records, floor.rms, limits)
     content: dict[str, Any] = {
         "dataset": dataset,
         "model": base.name,
@@ -239,24 +239,6 @@ def black_box(start: State, floor: Floor) -> BlackBox:
     return BlackBox.fit(_compared(start.chain, start), folds, floor.rms)
 
 
-def augmented(base: Model, state: State) -> Model:
-    """Give the base with the effects that were added, as a model that runs anywhere.
-
-    What is new in every record has the mean amplitude and the first record's phase.
-    """
-    chain = [*state.chain, *(block for block in beside_blocks(state))]
-    model = Model(f"{base.name}-augmented", base.input, base.output, tuple(chain))
-    names = list(model.parameter_names())
-    own = [k for item in state.added for k in item.blocks]
-    labels = [label for label, _ in model.labelled()]
-    free = tuple(n for n in names if n.rpartition(".")[0] in {labels[k] for k in own})
-    return replace(model, free=tuple(f for f in free if _numeric(model, f)))
-
-
-def _numeric(model: Model, name: str) -> bool:
-    return not isinstance(model.value(name), str)
-
-
 def _compared(chain: Sequence[Block], state: State) -> list[Compared]:
     outputs = Scene(tuple(chain), state.records, state.hold, fine=True).output
     offsets = _beside_signals(state) if state.beside else None
@@ -279,58 +261,3 @@ def _beside_signals(state: State) -> list[FloatArray]:
             signals[k] += shapes @ amplitudes[first : first + count]
             first += count
     return signals
-
-
-def _experiment(
-    base: Model,
-    named: Named,
-    records: Sequence[Record],
-    floor: Floor,
-    limits: Limits | None,
-) -> tuple[Experiment | None, str]:
-    """Look for the excitation that tells a set of likely effects apart.
-
-    Returns
-    -------
-    experiment : Experiment or None
-    str
-        Why there is none though effects cannot be told apart; else empty.
-    """
-    why = ""
-    for effect in (item.effect for item in named.state.added):
-        ranking = named.reasons.get(effect, ())
-        rivals = _rivals(effect, ranking)
-        if not rivals:
-            continue
-        if not all(block.reruns for block in base.chain):
-            return None, ELSEWHERE
-        usable = [x for x in rivals if x.state is not None and not x.state.beside]
-        if len(usable) < 2:
-            why = NEW_IN_EVERY_RECORD
-            continue
-        models = [(x.effect, augmented(base, x.state)) for x in usable[:3] if x.state]
-        tangents = parameter_tangents([(model, model.free) for _, model in models])
-        try:
-            found = next_experiment(models, records, floor.rms, limits, tangents)
-        except InputError as error:
-            return None, str(error)
-        return found, ""
-    return None, why
-
-
-def _rivals(effect: str, ranking: Sequence[Candidate]) -> list[Candidate]:
-    """Give an effect and those that cannot be told from it, if there are any."""
-    own = next((x for x in ranking if x.effect == effect), None)
-    names = () if own is None else near(own, ranking)
-    return [x for x in ranking if names and x.effect in (effect, *names) and x.state]
-
-
-ELSEWHERE = (
-    "the base holds the output of a simulator that ran elsewhere, which answers to no "
-    "other input"
-)
-NEW_IN_EVERY_RECORD = (
-    "one of those that cannot be told apart is new in every record, and no input "
-    "brings it out"
-)
-"""Why no experiment is computed."""
