@@ -62,10 +62,11 @@ def test_an_upper_bound_of_the_noise_never_shows_that_there_is_no_gap(
 @pytest.mark.parametrize("named", [False, True])
 def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are(named):
     reasons = [judge(left(90.0), named, box)[1] for box in (-0.3, None, 0.3, 0.0)]
-    assert "makes that worse on folds" in reasons[0]
+    what = "that" if named else "it"
+    assert f"a black box makes {what} worse on folds" in reasons[0]
     assert "is not known" in reasons[1]
-    assert "takes 30 % of that" in reasons[2]
-    assert "takes 0 % of that" in reasons[3]
+    assert f"takes 30 % of {what} away" in reasons[2]
+    assert f"takes 0 % of {what} away" in reasons[3]
 
 
 @given(st.floats(1.01 * ABOVE, 1e6), st.none() | SHARES)

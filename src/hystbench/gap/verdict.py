@@ -139,12 +139,12 @@ def judge(
             )
         return "unnamed", (
             f"a gap of {left.after:.2g} times the noise power is there and no effect "
-            f"of the vocabulary pays; {_box_words(explained_by_box)}"
+            f"of the vocabulary pays; {_box_words(explained_by_box, 'it')}"
         )
     if left.loose > LOOSE or box * left.loose > BOX:
         return "unnamed", (
             f"{100 * left.loose:.0f} % of the gap stays with the best named effects; "
-            f"{_box_words(explained_by_box)}"
+            f"{_box_words(explained_by_box, 'that')}"
         )
     return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
 
@@ -164,12 +164,12 @@ def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> fl
     return (1.0 - DOUBT) * trust / (1.0 + odds)
 
 
-def _box_words(explained: float | None) -> str:
+def _box_words(explained: float | None, what: str) -> str:
     if explained is None:
-        return "what a black box takes of that away on folds is not known"
+        return f"how much of {what} a black box takes away on folds is not known"
     if explained < 0:
-        return "a black box makes that worse on folds"
-    return f"a black box takes {100 * explained:.0f} % of that away on folds"
+        return f"a black box makes {what} worse on folds"
+    return f"a black box takes {100 * explained:.0f} % of {what} away on folds"
 
 
 def _beyond(model: State, score: Score) -> float:
