@@ -48,6 +48,17 @@ def test_a_refit_stays_within_the_tolerance_and_goes_as_far_as_it_may(tolerance)
     assert after.chain[0].value == pytest.approx(min(most, 12.0), rel=2e-3)
 
 
+def test_a_narrow_tolerance_leaves_the_tangent_what_it_is():
+    """Of a gain it is the input, however little the gain may change."""
+    chain = (block("gain", value=11.0),)
+    given = measured((block("gain", value=12.0),), NOISE)
+    for tolerance in (0.2, 1e-5):
+        model = base(chain, gain__value=tolerance)
+        state, _ = start_state(given, model, declared=NOISE)
+        u = state.sample.take([item.u for item in given])
+        np.testing.assert_allclose(state.tangents[:, 0], u, rtol=1e-6, atol=1e-8)
+
+
 def test_a_gap_beyond_the_tolerance_is_not_put_down_to_parameters():
     chain = (block("gain", value=11.0),)
     given = measured((block("gain", value=12.0),), NOISE)
