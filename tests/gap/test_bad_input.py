@@ -10,10 +10,15 @@ import pytest
 import yaml
 
 from hystbench.errors import InputError
+from hystbench.gap.change import with_effect
+from hystbench.gap.effects import effects
 from hystbench.gap.evidence import load_evidence
-from hystbench.gap.run import close_gap
-from hystbench.model import load_model
-from tests.gap.made import record, write_folder
+from hystbench.gap.finding import black_box
+from hystbench.gap.run import close_gap, show
+from hystbench.gap.start import start_state
+from hystbench.model import Model, load_model
+from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
+from tests.gap.small import block, measured
 
 ABOUT = {
     "name": "rig",
@@ -236,8 +241,43 @@ def test_a_fit_record_of_a_few_samples(rig):
     refused(rig, "one", "samples", records=records)
 
 
-# Left out: a base whose output is not finite. It ends in an IndexError in the views
-# where a line that names the base and the record is expected.
+SQUARES = 4 * [{"asymmetry": {"coefficient": 1e-6}}]
+SQUARE = {"chain": [{"gain": {"value": 12.0}}, *SQUARES]}
+"""A base whose output is beyond any number for an input of 1e29."""
+
+
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")
+@pytest.mark.parametrize("name", USES)
+def test_a_base_that_is_not_finite_on_a_record(rig, name):
+    """A fit record or a hold-out record: the model, the time and the record."""
+
+    def leap(table):
+        table[501:, 1] *= 1e29
+
+    refused(
+        rig,
+        f"simulator: the output is not finite from 0.501 s of {name} on",
+        records=changed(name, leap),
+        model=SQUARE,
+    )
+
+
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")
+def test_a_model_with_effects_that_is_not_finite_on_a_hold_out_record():
+    """Then the line names the effects: the base alone would run."""
+    chain = (block("gain", value=12.0),)
+    base = Model("simulator", CURRENT, DISPLACEMENT, chain)
+    state, floor = start_state(measured(chain, 0.02), base, declared=0.02)
+    (square, *_) = effects()["asymmetry"].variants(state.scene)
+    after = with_effect(state, square, {"coefficient": 0.01})
+    u = np.where(np.arange(600) < 300, 0.5, 1e160)
+    held = (record(u, name="far", use="hold-out"),)
+    with pytest.raises(InputError) as caught:
+        show(base, after, floor, black_box(state, floor), held, ())
+    assert str(caught.value) == (
+        "simulator with asymmetry: the output is not finite from 0.3 s of far on; "
+        "expected a model that stays bounded"
+    )
 
 
 def test_a_base_that_cannot_be_made(rig):

@@ -1,7 +1,26 @@
 """What is said of a verdict beside the word."""
 
-from hystbench.gap.finding import _whole
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.errors import InputError
+from hystbench.gap import finding as finding_module
+from hystbench.gap import tell_apart
+from hystbench.gap.change import with_effect
+from hystbench.gap.effects import effects
+from hystbench.gap.experiment import next_experiment
+from hystbench.gap.finding import _whole, decide, find
+from hystbench.gap.limits import Limits
+from hystbench.gap.name import Named
+from hystbench.gap.rank import Candidate, Round
+from hystbench.gap.start import start_state
 from hystbench.gap.verdict import Left
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT
+from tests.gap.small import block, measured
 
 
 def test_a_reason_tells_what_a_wrong_shape_could_leave_as_well():
@@ -15,3 +34,112 @@ def test_a_reason_that_holds_for_the_whole_is_left_alone():
     assert not _whole(Left(100.0, 5.0, 1000.0, 60.0))
     # The whole may be the lesser share: then the reason has it already.
     assert not _whole(Left(100.0, 50.0, 1000.0, 60.0))
+
+
+def test_noise_alone_is_no_gap_only_where_the_noise_is_known():
+    """The same records, a base that is right: the floor declared, and as a bound."""
+    noise = 0.05
+    chain = (block("gain", value=12.0),)
+    base = Model("base", CURRENT, DISPLACEMENT, chain)
+    given = measured(chain, noise)
+    content = find("made", given, base, declared=noise).content
+    assert content["verdict"] == "no-gap"
+    content = find("made", given, base).content
+    assert content["verdict"] == "unnamed"
+    assert "only an upper bound" in content["reason"]
+
+
+def with_named(state, effect, **values):
+    variant = next(iter(effects()[effect].variants(state.scene)))
+    return with_effect(state, variant, values)
+
+
+@pytest.fixture(scope="module")
+def alike():
+    """A lag before or behind a plain gain: no record can tell."""
+    chain = (block("gain", value=12.0),)
+    base = Model("base", CURRENT, DISPLACEMENT, chain)
+    lagged = (*chain, block("sensor-lag", time_constant_s=0.004))
+    start, floor = start_state(measured(lagged, 0.02), base, declared=0.02)
+    found = {
+        name: with_named(start, name, time_constant_s=0.004)
+        for name in ("drive-lag", "sensor-lag")
+    }
+    found["mains-pickup"] = with_named(start, "mains-pickup", frequency_hz=50.0)
+    return base, start, floor, found
+
+
+def candidates_of(found, *names):
+    return tuple(
+        Candidate(name, "drive", score=-100.0 + k, gain=90.0, state=found[name])
+        for k, name in enumerate(names)
+    )
+
+
+def decided(alike, *names, base=None, limits=None):
+    plain, start, floor, found = alike
+    ranking = candidates_of(found, *names)
+    reasons = {names[0]: ranking}
+    named = Named(found[names[0]], (Round(start, 0.0, ranking, True),), reasons)
+    base = plain if base is None else base
+    return decide("made", base, start, floor, named, limits=limits)
+
+
+def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
+    _, start, _, _ = alike
+    asked = {"low": 0.1, "high": 0.3, "rate": 20.0}
+    limits = Limits.within(start.records, asked)
+    own = Limits.of(start.records)
+    assert (limits.dt, limits.bandwidth_hz) == (own.dt, own.bandwidth_hz)
+    names = ("drive-lag", "sensor-lag")
+    inputs = []
+    for given in (None, limits):
+        finding = decided(alike, *names, limits=given)
+        assert "no_experiment" not in finding.content
+        made = finding.experiment.excitation
+        inputs.append((made.u, np.abs(np.diff(made.u)).max() / made.dt))
+    (u, rate), (within, slow) = inputs
+    assert within.min() > 0.1 - 1e-6
+    assert within.max() < 0.3 + 1e-6
+    assert slow < 20.0 * (1 + 1e-5)
+    # The records go beyond all of that, and so does what is taken from them.
+    assert u.min() < 0.1
+    assert u.max() > 0.3
+    assert rate > 20.0
+
+
+def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypatch):
+    base, start, _, _ = alike
+    monkeypatch.setattr(finding_module, "name", lambda *given: pytest.fail("searched"))
+    with pytest.raises(InputError, match="expected low < high"):
+        find("made", start.records, base, asked={"low": 1.0, "high": 0.5})
+
+
+def too_narrow(alike, names, monkeypatch):
+    """No excitation keeps within the limits."""
+
+    def refuse(*given):
+        return next_experiment(*given, excitations=())
+
+    with monkeypatch.context() as patched:
+        patched.setattr(tell_apart, "next_experiment", refuse)
+        return decided(alike, *names)
+
+
+def test_why_there_is_no_experiment_is_told(alike, monkeypatch):
+    base, start, _, _ = alike
+    names = ("drive-lag", "sensor-lag")
+    column = SimulatedColumn(column="y_um", records=start.records)
+    elsewhere = replace(base, chain=(column,))
+
+    for finding, word in (
+        (decided(alike, *names, base=elsewhere), "ran elsewhere"),
+        (decided(alike, "drive-lag", "mains-pickup"), "new in every record"),
+        (too_narrow(alike, names, monkeypatch), "expected wider limits"),
+    ):
+        assert finding.content["effects"][0]["cannot_be_told_from"]
+        assert finding.content["next_experiment"] is None
+        assert word in finding.content["no_experiment"]
+    alone = decided(alike, "drive-lag").content
+    assert alone["next_experiment"] is None
+    assert "no_experiment" not in alone

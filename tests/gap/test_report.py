@@ -11,6 +11,13 @@ from hystbench.gap.report.words import number, with_error
 from hystbench.gap.schema import SCHEMA
 from hystbench.schema import check_against_schema
 
+
+def ranked(number, name, place="mechanics", held_back=None, **more):
+    return {
+        "round": number, "name": name, "place": place, "held_back": held_back, **more
+    }  # fmt: skip
+
+
 VALUE = {"value": 69.7123, "standard_error": 0.0456, "unit": "Hz"}
 GAP = {
     "dataset": "bench",
@@ -79,16 +86,20 @@ GAP = {
     },
     "ranking": [
         {
+            "round": 1,
             "name": "resonance",
             "place": "mechanics",
+            "held_back": 288.25,
             "form": "one mode",
             "score": -812.5,
             "gain": 301.5,
-            "explained": 0.942,
         },
-        {"name": "creep", "place": "mechanics", "score": -620.1, "gain": 109.2},
-        {"name": "drive-lag", "place": "drive", "score": -500.3, "gain": -10.4},
-        {"name": "friction", "place": "mechanics", "declined": "u does not reverse"},
+        ranked(1, "creep", score=-620.1, gain=109.2),
+        ranked(1, "drive-lag", place="drive", score=-500.3, gain=-10.4),
+        ranked(1, "friction", declined="u does not reverse"),
+        ranked(2, "creep", held_back=93.75, score=-915.5, gain=103.25),
+        ranked(2, "drive-lag", place="drive", score=-810.1, gain=-2.4),
+        ranked(2, "friction", declined="u does not reverse"),
     ],
     "next_experiment": {
         "excitation": "steps-with-holds",
@@ -276,6 +287,12 @@ def test_page_says_every_number_and_word_of_gap_json(page):
         assert told in page.said or told.replace("-", " ") in page.said
 
 
+def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
+    assert page.said.count("u does not reverse") == 1
+    assert page.said.count("drive-lag") == 2  # a row of each round
+    assert "ranked by the score on all fit records" in page.said
+
+
 def test_page_stands_alone(page):
     assert len(page.sources) >= 8
     assert all(source.startswith("data:image/") for source in page.sources)
@@ -310,8 +327,8 @@ def test_what_is_not_there_is_said(tmp_path):
         tmp_path, small(gap=power), with_curves=False, with_tables=False
     )
     said = read(write_report(folder)).said
-    assert "There is no gap" in said
-    assert "cannot be claimed from it alone" in said
+    assert f"There is no gap: {GAP['reason']}" in said
+    assert "None is needed to tell likely effects apart" in said
     assert "Not drawn: curves.json" in said
     assert "the folder holds no hold-out tables" in said
     assert "gap.json holds no ladder" in said
@@ -340,6 +357,16 @@ def test_a_reader_is_told_of_a_promise_that_was_not_kept(tmp_path):
     (tmp_path / "gap.json").write_text(json.dumps({**GAP, "shortfall": None}))
     write_report(tmp_path)
     assert "Less than promised" not in read(tmp_path / "report.html").said
+
+
+@pytest.mark.parametrize("why", ["", "no input brings it out"])
+def test_an_experiment_that_was_not_computed_is_not_called_needless(tmp_path, why):
+    """The example's creep cannot be told from two others."""
+    told = {"no_experiment": why} if why else {}
+    gap = {**GAP, **told, "next_experiment": None}
+    said = read(write_report(write_folder(tmp_path, gap, False, False))).said
+    assert "None is needed" not in said
+    assert (f"None was computed: {why}." if why else "None was computed.") in said
 
 
 def test_a_range_is_printed_as_one(tmp_path):

@@ -42,6 +42,15 @@ def test_nothing_above_the_floor_has_no_share():
     assert share_explained(0.0, 0.0, 1.0, upper_bound=True) is None
 
 
+def test_no_spectrum_is_computed_before_one_is_drawn(monkeypatch):
+    def welch(*given, **more):
+        pytest.fail("a spectrum that nobody reads")
+
+    monkeypatch.setattr("scipy.signal.welch", welch)
+    made = record(sine(2), noise(1, 2000))
+    shrink([made], [np.zeros(2000)], [0.5 * made.y], 0.1, "declared")
+
+
 def test_before_and_after_over_records_of_other_lengths():
     records = [record(sine(2, count=n), noise(n, n), name=f"{n}") for n in (500, 1500)]
     simulated = [0.25 * item.y for item in records]

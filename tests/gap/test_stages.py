@@ -14,16 +14,20 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.finding import decide
+from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.name import name
 from hystbench.gap.rank import make_score
 from hystbench.gap.search import Attempt, coarse
-from hystbench.gap.stages import begin, choose, named_by, try_one
+from hystbench.gap.stages import Recorded, begin, choose, named_by, try_one
 from hystbench.gap.start import start_state
+from hystbench.gap.thresholds import PAYS, PAYS_HELD_BACK
 from hystbench.gap.work import Work
 from hystbench.model import load_model
 
 from .tiny import LAG_S, write_tiny
+
+KEPT = ("effect", "place", "form", "score", "gain", "declined", "held_back")
 
 
 def through_a_file(content):
@@ -82,13 +86,36 @@ def test_jobs_and_one_process_rank_and_name_alike(tiny, whole, staged):
     for here, there in zip(found.rounds, whole.rounds, strict=True):
         assert here.taken == there.taken
         for one, other in zip(here.ranking, there.ranking, strict=True):
-            for key in ("effect", "place", "form", "score", "gain", "declined"):
+            for key in KEPT:
                 assert getattr(one, key) == getattr(other, key), one.effect
             assert (one.state is None) == (other.state is None)
     decided = [
         decide("tiny", model, start, floor, named).content for named in (found, whole)
     ]
     assert decided[0] == decided[1]
+
+
+def test_the_ranking_tells_what_was_gained_on_records_held_back(tiny, whole, staged):
+    _, model, start, floor = tiny
+    progress, _ = staged
+    ranking = decide("tiny", model, start, floor, whole).content["ranking"]
+    for number, one in enumerate(whole.rounds, start=1):
+        rows = [item for item in ranking if item["round"] == number]
+        assert {item["name"] for item in rows} == set(effects())
+        best = one.ranking[0]
+        assert rows[0]["name"] == best.effect
+        assert [item["held_back"] for item in rows[1:]] == [None] * (len(rows) - 1)
+        kept = progress[-1]["rounds"][number - 1]["ranking"][0]["held_back"]
+        assert rows[0]["held_back"] == best.held_back == kept
+        if one.taken:
+            # Judged anew: what the taken one gains on records held back decides.
+            score = make_score(one.before, floor.rms)
+            again = gain_held_back(one.before, best.state, score)
+            assert rows[0]["held_back"] == pytest.approx(again)
+            assert again > PAYS_HELD_BACK
+        else:
+            assert (rows[0]["held_back"] is None) == (best.gain < PAYS)
+    assert whole.rounds[0].taken
 
 
 def test_the_choice_searches_nothing_again(tiny, staged, monkeypatch):
@@ -110,6 +137,25 @@ def test_the_choice_searches_nothing_again(tiny, staged, monkeypatch):
     ranking = after["rounds"][0]["ranking"]
     finalists = {item["effect"] for item in ranking if item["state"]}
     assert finalists - set(again)
+
+
+def test_a_variant_that_a_job_refused_is_missing_and_no_other(tiny, staged):
+    """Of three variants the first has no entry: the others keep theirs."""
+    evidence, model, _, _ = tiny
+    progress, tried = staged
+    kept = tried[0]["calibration-error"]["variants"]
+    assert [item["number"] for item in kept] == [0, 1, 2]
+    restorer = Restorer(evidence.fit, model)
+    state = restorer.progress(progress[0]).state
+    some = {"calibration-error": tried[0]["calibration-error"] | {"variants": kept[1:]}}
+    work = Recorded(state, some, restorer)
+    score = make_score(state, progress[0]["floor"]["rms"])
+    found, why = work.tried(effects()["calibration-error"], state, score)
+    assert not why
+    assert [trial.variant.form for _, trial in found] == ["offset", "gain and offset"]
+    for (attempt, trial), entry in zip(found, kept[1:], strict=True):
+        assert trial.values == entry["coarse"]["values"]
+        assert work.fine(attempt, trial).values == entry["fine"]["values"]
 
 
 def test_an_effect_without_a_job_is_tried_by_the_choice(tiny, staged):

@@ -42,6 +42,33 @@ def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
     assert judge(left(after), False, box)[0] == "no-gap"
 
 
+@given(SIZES, SIZES, SIZES, SIZES, st.floats(0, 1e6), st.booleans())
+def test_an_upper_bound_of_the_noise_never_shows_that_there_is_no_gap(
+    before, after, one, other, output, retuned
+):
+    """A floor that may hold the whole gap: all else is judged as with a known one."""
+    found = Left(before, after, one, other, output)
+    known = judge(found, False, 0.0, retuned)
+    bound = judge(found, False, 0.0, retuned, bound=True)
+    if known[0] != "no-gap":
+        assert bound == known
+        return
+    assert bound[0] == "unnamed"
+    assert "only an upper bound" in bound[1]
+    for key in ("period_samples", "noise_rms"):
+        assert key in bound[1]
+
+
+@pytest.mark.parametrize("named", [False, True])
+def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are(named):
+    reasons = [judge(left(90.0), named, box)[1] for box in (-0.3, None, 0.3, 0.0)]
+    what = "that" if named else "it"
+    assert f"a black box makes {what} worse on folds" in reasons[0]
+    assert "is not known" in reasons[1]
+    assert f"takes 30 % of {what} away" in reasons[2]
+    assert f"takes 0 % of {what} away" in reasons[3]
+
+
 @given(st.floats(1.01 * ABOVE, 1e6), st.none() | SHARES)
 def test_a_gap_that_nothing_takes_away_is_unnamed(after, box):
     assert judge(left(after), False, box)[0] == "unnamed"

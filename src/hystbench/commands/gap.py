@@ -26,9 +26,23 @@ from hystbench.gap.run import close_gap
     type=click.Path(dir_okay=False, path_type=Path),
     help="Write the excitation that would tell likely effects apart as a CSV signal.",
 )
+@click.option("--limit-low", type=float, help="Lowest input of the next experiment.")
+@click.option("--limit-high", type=float, help="Highest input of the next experiment.")
+@click.option(
+    "--limit-rate",
+    type=float,
+    help="Largest rate of its input, per second. What is not given is the records'.",
+)
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
 def gap(
-    dataset: Path, model: str, out: Path, write_experiment: Path | None, report: bool
+    dataset: Path,
+    model: str,
+    out: Path,
+    write_experiment: Path | None,
+    limit_low: float | None,
+    limit_high: float | None,
+    limit_rate: float | None,
+    report: bool,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
 
@@ -38,11 +52,13 @@ def gap(
     base, note = load_base(model, evidence)
     if note:
         click.echo(note)
+    limits = {"low": limit_low, "high": limit_high, "rate": limit_rate}
     finding = close_gap(
         evidence,
         base,
         out,
         place=model,
+        limits={key: value for key, value in limits.items() if value is not None},
         report=report,
         say=lambda line: click.echo(line, err=True),
     )
@@ -55,7 +71,8 @@ def gap(
 
 def _write_experiment(finding: Finding, evidence: Evidence, path: Path) -> None:
     if finding.experiment is None:
-        click.echo(f"{path}: not written: no effects that cannot be told apart")
+        why = finding.content.get("no_experiment", "no effects need to be told apart")
+        click.echo(f"{path}: not written: {why}")
         return
     save(finding.experiment.excitation, evidence.input, path)
     click.echo(f"{path}: {finding.experiment.sentence}")

@@ -73,9 +73,8 @@ def without_effect(state: State, number: int) -> State:
     """Take an added effect out again."""
     gone = state.added[number]
     rest = tuple(item for k, item in enumerate(state.added) if k != number)
-    if not gone.blocks:
-        order = [item.blocks for item in state.added[:number]].count(())
-        beside = tuple(x for k, x in enumerate(state.beside) if k != order)
+    if not gone.blocks:  # beside the chain, or its block was replaced by another's
+        beside = tuple(item for item in state.beside if item[0].effect != gone.effect)
         return replace(state, added=rest, beside=beside)
     chain: list[Block] = []
     moved = {}

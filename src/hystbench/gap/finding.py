@@ -10,22 +10,24 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
+from hystbench.gap.augmented import augmented
 from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.compared import Compared
-from hystbench.gap.experiment import Experiment, next_experiment, parameter_tangents
+from hystbench.gap.experiment import Experiment
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
+from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.name import Named, name
-from hystbench.gap.rank import Candidate, make_score, near
+from hystbench.gap.rank import make_score
 from hystbench.gap.rungs import Rung, rungs
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
+from hystbench.gap.tell_apart import tell_apart
 from hystbench.gap.told import (
     base_parameters,
-    beside_blocks,
     effect_mapping,
     ranking_rows,
 )
@@ -84,6 +86,7 @@ def find(
     base: Model,
     hold: Hold = "band-limited",
     declared: float | None = None,
+    asked: Mapping[str, float] | None = None,
     say: Say = silent,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
@@ -99,16 +102,20 @@ def find(
         How the input moves between samples.
     declared : float, optional
         RMS noise, where it is known.
+    asked : mapping of str to float, optional
+        Limits of the next experiment; the others are those of the records.
     say : callable
         Told a line of progress at a time.
 
     Raises
     ------
     InputError
-        If the base does not run on the records.
+        If the base does not run on the records, or no excitation fits the limits.
     """
+    limits = Limits.within(records, asked) if asked else None
     start, floor = start_state(records, base, hold, declared)
-    return decide(dataset, base, start, floor, name(start, floor.rms, say), say)
+    named = name(start, floor.rms, say)
+    return decide(dataset, base, start, floor, named, say, limits)
 
 
 def decide(
@@ -118,6 +125,7 @@ def decide(
     floor: Floor,
     named: Named,
     say: Say = silent,
+    limits: Limits | None = None,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
 
@@ -132,6 +140,8 @@ def decide(
     named : Named
     say : callable
         Told a line of progress at a time.
+    limits : Limits, optional
+        Of the next experiment; those of the records where none are given.
     """
     records, state = start.records, named.state
     compared = _compared(start.chain, start)
@@ -145,7 +155,13 @@ def decide(
     if box_matters(left, bool(state.added)):
         rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
         explained = rest.explained_on_folds
-    verdict, reason = judge(left, bool(state.added), explained, bool(start.free))
+    verdict, reason = judge(
+        left,
+        bool(state.added),
+        explained,
+        bool(start.free),
+        floor.method == "upper-bound",
+    )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
@@ -154,8 +170,8 @@ def decide(
     of_beside = beside_errors(finer, score)
     by_effect = named.reasons
     model = augmented(base, state)
-    experiment = _experiment(base, named, by_effect, records, floor)
-    content = {
+    experiment, why_none = tell_apart(base, named, records, floor.rms, limits)
+    content: dict[str, Any] = {
         "dataset": dataset,
         "model": base.name,
         "unit": records[0].output.unit,
@@ -174,6 +190,8 @@ def decide(
         "base_parameters": base_parameters(base, state),
         "black_box": {"explained_on_folds": box.explained_on_folds},
     }
+    if why_none:
+        content["no_experiment"] = why_none
     return Finding(
         base,
         model,
@@ -221,24 +239,6 @@ def black_box(start: State, floor: Floor) -> BlackBox:
     return BlackBox.fit(_compared(start.chain, start), folds, floor.rms)
 
 
-def augmented(base: Model, state: State) -> Model:
-    """Give the base with the effects that were added, as a model that runs anywhere.
-
-    What is new in every record has the mean amplitude and the first record's phase.
-    """
-    chain = [*state.chain, *(block for block in beside_blocks(state))]
-    model = Model(f"{base.name}-augmented", base.input, base.output, tuple(chain))
-    names = list(model.parameter_names())
-    own = [k for item in state.added for k in item.blocks]
-    labels = [label for label, _ in model.labelled()]
-    free = tuple(n for n in names if n.rpartition(".")[0] in {labels[k] for k in own})
-    return replace(model, free=tuple(f for f in free if _numeric(model, f)))
-
-
-def _numeric(model: Model, name: str) -> bool:
-    return not isinstance(model.value(name), str)
-
-
 def _compared(chain: Sequence[Block], state: State) -> list[Compared]:
     outputs = Scene(tuple(chain), state.records, state.hold, fine=True).output
     offsets = _beside_signals(state) if state.beside else None
@@ -261,26 +261,3 @@ def _beside_signals(state: State) -> list[FloatArray]:
             signals[k] += shapes @ amplitudes[first : first + count]
             first += count
     return signals
-
-
-def _experiment(
-    base: Model,
-    named: Named,
-    by_effect: Mapping[str, Sequence[Candidate]],
-    records: Sequence[Record],
-    floor: Floor,
-) -> Experiment | None:
-    """Look for the excitation that tells a set of likely effects apart."""
-    if not all(block.reruns for block in base.chain):
-        return None
-    for effect, ranking in by_effect.items():
-        first = next(x for x in ranking if x.effect == effect)
-        names = near(first, ranking)
-        rivals = [x for x in ranking if x.effect in (effect, *names) and x.state]
-        usable = [x for x in rivals if x.state is not None and not x.state.beside]
-        if len(usable) < 2:
-            continue
-        models = [(x.effect, augmented(base, x.state)) for x in usable[:3] if x.state]
-        tangents = parameter_tangents([(model, model.free) for _, model in models])
-        return next_experiment(models, records, floor.rms, tangents=tangents)
-    return None

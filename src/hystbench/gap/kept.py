@@ -193,6 +193,7 @@ def _candidate_mapping(item: Candidate) -> Mapped:
         "gain": item.gain,
         "state": None if item.state is None else state_mapping(item.state),
         "declined": item.declined,
+        "held_back": item.held_back,
     }
 
 

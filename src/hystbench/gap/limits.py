@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -68,6 +68,17 @@ class Limits:
             min(record.dt for record in records),
             max(len(record) * record.dt for record in records),
         )
+
+    @classmethod
+    def within(cls, records: Sequence[Record], asked: Mapping[str, float]) -> Limits:
+        """Take what is asked, by name, and the rest from records.
+
+        Raises
+        ------
+        InputError
+            If no excitation fits.
+        """
+        return replace(cls.of(records), **asked)
 
 
 def _bandwidth(record: Record) -> float:

@@ -142,6 +142,8 @@ def advance(
         held_back = gain_held_back(state, first.state, score)
         say(f"{first.effect}: {held_back:.1f} of it on records held back")
         taken = held_back > PAYS_HELD_BACK
+        first = replace(first, held_back=held_back)
+        ranking = (first, *ranking[1:])
     one = Round(state, first.score + first.gain, ranking, taken)
     rounds = (*progress.rounds, one)
     if taken:

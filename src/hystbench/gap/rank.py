@@ -43,6 +43,9 @@ class Candidate:
         With the effect, jointly refitted; finalists have it.
     declined : str
         Why it could not be judged, if so.
+    held_back : float, optional
+        What it gains on records held back; of the best one, where that had to decide
+        whether it is taken.
     """
 
     effect: str
@@ -52,6 +55,7 @@ class Candidate:
     gain: float = 0.0
     state: State | None = None
     declined: str = ""
+    held_back: float | None = None
 
 
 @dataclass(frozen=True)

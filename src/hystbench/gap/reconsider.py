@@ -25,7 +25,7 @@ def reconsidered(
     -------
     state : State
     rankings : dict of str to tuple of Candidate
-        Of the effects that were looked at again.
+        Of the effects that were looked at again, where they could be judged again.
     """
     rankings: dict[str, tuple[Candidate, ...]] = {}
     for number, item in enumerate(state.added):
@@ -43,7 +43,9 @@ def reconsidered(
             gain = now - best.score
             say(f"{item.effect} gives way to {best.effect}: {gain:.1f}")
             return best.state or state, {**rankings, best.effect: ranking}
-        rankings[item.effect] = ranking
+        own = next((x for x in ranking if x.effect == item.effect), None)
+        if own is not None and own.state is not None:
+            rankings[item.effect] = ranking
     return state, rankings
 
 

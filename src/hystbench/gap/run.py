@@ -22,6 +22,7 @@ from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.shortfall import shortfall
 from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink
+from hystbench.gap.start import check_finite
 from hystbench.gap.state import State
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
@@ -34,6 +35,7 @@ def close_gap(
     folder: Path,
     *,
     place: str = "model",
+    limits: Mapping[str, float] | None = None,
     report: bool = True,
     say: Say = silent,
 ) -> Finding:
@@ -47,6 +49,9 @@ def close_gap(
         Gets gap.json, model.yaml, curves.json, holdout/ and report.html.
     place : str
         Where the base came from, for messages.
+    limits : mapping of str to float, optional
+        What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
+        What is not given is taken from the fit records.
     report : bool
         Whether to write the page.
     say : callable
@@ -66,6 +71,7 @@ def close_gap(
         base,
         evidence.hold,
         evidence.noise_rms,
+        limits,
         say,
     )
     # From here on the hold-out records are read; nothing is decided any more.
@@ -157,12 +163,23 @@ def show(
     Shown
         ``gap``, ``records``, ``ladder`` and ``black_box`` of gap.json, and the outputs
         before and after of each record, with what is new in it as estimated.
+
+    Raises
+    ------
+    InputError
+        If a model's output is not finite on a record.
     """
     nuisance = what_is_new(state)
-    before = _run(base.with_hold(state.hold).chain, records, state)
-    after = _run(state.chain, records, state)
+    before = _run(base.with_hold(state.hold).chain, records, state, base.name)
+    after = _run(state.chain, records, state, _name(base, state))
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
-    stages = [(rung.name, _run(rung.state.chain, records, state)) for rung in steps]
+    stages = [
+        (
+            rung.name,
+            _run(rung.state.chain, records, state, _name(base, rung.state)),
+        )
+        for rung in steps
+    ]
     content = {
         "gap": mapping(found),
         "records": records_mapping(found),
@@ -197,9 +214,16 @@ def what_is_new(state: State) -> Nuisance | None:
 
 
 def _run(
-    chain: Sequence[Block], records: tuple[Record, ...], state: State
+    chain: Sequence[Block], records: tuple[Record, ...], state: State, name: str
 ) -> tuple[FloatArray, ...]:
-    return Scene(tuple(chain), records, state.hold).output
+    outputs = Scene(tuple(chain), records, state.hold).output
+    check_finite(name, records, outputs)
+    return outputs
+
+
+def _name(base: Model, state: State) -> str:
+    effects = " and ".join(item.effect for item in state.added)
+    return f"{base.name} with {effects}" if effects else base.name
 
 
 def _write_hold_out(

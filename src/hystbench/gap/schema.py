@@ -94,11 +94,17 @@ SHORTFALL = _object({"fit": NUMBER, "hold_out": NUMBER, "sentence": {"type": "st
 RUNG = _object({"name": {"type": "string"}, "rms": NUMBER})
 
 RANK = _object(
-    {"name": {"type": "string"}, "place": {"type": "string"}},
+    {
+        "round": {"type": "integer", "minimum": 1},
+        "name": {"type": "string"},
+        "place": {"type": "string"},
+        # The gain on records held back from the fit, of the best of a round where it
+        # had to decide whether that one is taken.
+        "held_back": OPTIONAL,
+    },
     form={"type": "string"},
     score=NUMBER,
     gain=NUMBER,
-    explained=NUMBER,
     declined={"type": "string"},
 )
 
@@ -122,4 +128,6 @@ SCHEMA = _object(
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},
+    # Why next_experiment is null though effects cannot be told apart.
+    no_experiment={"type": "string"},
 )

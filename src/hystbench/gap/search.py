@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Values, Variant
+from hystbench.gap.effects.base import Declined, Values, Variant
 from hystbench.gap.reshape import orthonormal
 from hystbench.gap.score import Amplitudes, Score
 from hystbench.gap.state import State, beside_columns
@@ -54,10 +54,16 @@ class Trial:
 
 
 class Attempt:
-    """One variant on one model, evaluated at values of its searched parameters."""
+    """One variant on one model, evaluated at values of its searched parameters.
 
-    def __init__(self, state: State, variant: Variant, score: Score) -> None:
+    Its number is its place among all that the effect offers.
+    """
+
+    def __init__(
+        self, state: State, variant: Variant, score: Score, number: int = 0
+    ) -> None:
         self.state, self.variant, self.score = state, variant, score
+        self.number = number
         self.freedom = state.freedom + variant.freedom
         self.known: dict[Point, Trial] = {}
         self.more = np.hstack([state.tangents, state.beside_columns])
@@ -189,17 +195,30 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     attempt : Attempt
     glance : Attempt, optional
         The same on fewer records, which then choose the point of the grid.
+
+    Raises
+    ------
+    Declined
+        If the blocks refuse every point of the grid: with what the last one said.
     """
     axes = attempt.variant.grids.values()
     look = attempt if glance is None or not axes else glance
-    trials = []
+    trials: list[tuple[float, Point]] = []
+    refused: InputError | None = None
     for point in itertools.product(*(axis.tolist() for axis in axes)):
         try:
             trials.append((look.at(tuple(point)).score, point))
-        except InputError:
-            continue  # values that the block itself refuses are no candidates
-    likely = sorted(trials)[: 1 + len(trials) // MANY]
-    return min((attempt.at(point) for _, point in likely), key=lambda x: x.score)
+        except InputError as error:
+            refused = error  # values that the block itself refuses are no candidates
+    found = []
+    for _, point in sorted(trials)[: 1 + len(trials) // MANY]:
+        try:
+            found.append(attempt.at(point))
+        except InputError as error:
+            refused = error
+    if not found:
+        raise Declined(str(refused)) from refused
+    return min(found, key=lambda trial: trial.score)
 
 
 @lru_cache(maxsize=1)

@@ -50,7 +50,6 @@ class RecordShrink:
     scored : ndarray of bool, shape (n,)
     residual_before, residual_after : ndarray, shape (n,)
         What is new in the record is taken off.
-    spectra : Spectra
     """
 
     name: str
@@ -60,7 +59,6 @@ class RecordShrink:
     scored: Mask
     residual_before: FloatArray
     residual_after: FloatArray
-    spectra: Spectra
 
 
 @dataclass(frozen=True, repr=False)
@@ -133,7 +131,6 @@ def shrink(
                 scored,
                 old,
                 new,
-                spectra(old[scored], new[scored], record.dt, noise_floor),
             )
         )
     pairs = [

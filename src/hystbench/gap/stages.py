@@ -100,6 +100,7 @@ def try_one(evidence: Evidence, base: Model, before: Mapped, name: str) -> Mappe
         finer = IN_PROCESS.fine(attempt, trial)
         found["variants"].append(
             {
+                "number": attempt.number,
                 "form": trial.variant.form,
                 "coarse": _trial_mapping(trial),
                 "fine": _trial_mapping(finer),
@@ -201,13 +202,14 @@ class Recorded(Work):
         if content["declined"]:
             return [], str(content["declined"])
         found = []
-        variants = effect.variants(state.scene)
-        for variant, entry in zip(variants, content["variants"], strict=True):
+        variants = list(effect.variants(state.scene))
+        for entry in content["variants"]:
+            number = entry["number"]
+            variant = variants[number]
             self._variants.append(variant)
             self._entries.append(entry)
-            found.append(
-                (Attempt(state, variant, score), _trial(variant, entry["coarse"]))
-            )
+            attempt = Attempt(state, variant, score, number)
+            found.append((attempt, _trial(variant, entry["coarse"])))
         return found, ""
 
     def fine(self, attempt: Attempt, trial: Trial) -> Trial:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hystbench.blocks.held import Hold
@@ -12,7 +14,7 @@ from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Free, State
 from hystbench.model import Model
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
 
 
 def start_state(
@@ -40,13 +42,7 @@ def start_state(
     base = base.with_hold(hold)
     chain = base.chain
     exact = Scene(chain, records, hold, fine=True).output
-    for record, simulated in zip(records, exact, strict=True):
-        lost = np.flatnonzero(~np.isfinite(simulated))
-        if len(lost):
-            raise InputError(
-                f"{base.name}: the output is not finite from {lost[0] * record.dt:g} s "
-                f"of {record.name} on; expected a base that stays bounded"
-            )
+    check_finite(base.name, records, exact)
     state = State(
         chain, records, Sample.of(records), free=free_numbers(base), hold=hold
     ).settled()
@@ -57,10 +53,30 @@ def start_state(
     return state, noise_floor(compared, declared)
 
 
+def check_finite(
+    name: str, records: Sequence[Record], outputs: Sequence[FloatArray]
+) -> None:
+    """Refuse a model whose output is not finite on a record.
+
+    Raises
+    ------
+    InputError
+        With the model's name, the time and the record.
+    """
+    for record, simulated in zip(records, outputs, strict=True):
+        lost = np.flatnonzero(~np.isfinite(simulated))
+        if len(lost):
+            raise InputError(
+                f"{name}: the output is not finite from {lost[0] * record.dt:g} s "
+                f"of {record.name} on; expected a model that stays bounded"
+            )
+
+
 def free_numbers(base: Model) -> tuple[Free, ...]:
     """Give the numbers that a model leaves free, with the size of a likely change.
 
-    A tolerance is a share of the value; of a zero it says nothing.
+    A tolerance is a share of the value; of a zero it says nothing. It is the most that
+    a number may change by, and the size of the change that is charged.
     """
     places = {label: k for k, (label, _) in enumerate(base.labelled())}
     found = []
@@ -73,5 +89,8 @@ def free_numbers(base: Model) -> tuple[Free, ...]:
                 continue
             size = None if not share or not number else share * abs(number)
             place = element if isinstance(value, tuple) else None
-            found.append(Free(places[label], parameter, place, size))
+            own = Free(places[label], parameter, place, size)
+            if size is not None:
+                own = own._replace(low=number - size, high=number + size)
+            found.append(own)
     return tuple(found)

@@ -249,6 +249,8 @@ class State:
         size = 1e-3 * abs(value)
         if size == 0:
             size = 1e-6
+        # A tolerance may leave less room than that.
+        size = min(size, (free.high - free.low) / 4)
         return -size if value + size > min(about.high, free.high) else size
 
 

@@ -22,22 +22,45 @@ from hystbench.gap.verdict import (
 from hystbench.model import Model
 from hystbench.record import FloatArray
 
+OFFSET = "offset"
+"""Of a plain gain."""
+
 
 def base_parameters(base: Model, state: State) -> dict[str, Any]:
-    """Give the base's free parameters before and after."""
-    own = {k for item in state.added for k in item.blocks}
-    after = iter([state.value(free) for free in state.free if free.block not in own])
+    """Give the base's free parameters before and after.
+
+    None after, where an effect stands for the block: the number is then the effect's.
+    """
+    labels = (label for label, _ in base.labelled())
+    blocks = dict(zip(labels, _blocks_of_base(state), strict=True))
     found: dict[str, Any] = {}
-    for parameter in base.free:
-        before = base.value(parameter)
-        if isinstance(before, tuple):
-            found[parameter] = {
-                "before": list(before),
-                "after": [next(after) for _ in before],
-            }
-        elif not isinstance(before, str):
-            found[parameter] = {"before": before, "after": next(after)}
+    for name in base.free:
+        label, _, parameter = name.rpartition(".")
+        before, block = base.value(name), blocks[label]
+        if isinstance(before, str):
+            continue
+        after = None if block is None else _plain(getattr(block, parameter))
+        found[name] = {"before": _plain(before), "after": after}
     return found
+
+
+def _blocks_of_base(state: State) -> list[Block | None]:
+    """Find the base's blocks, in their order; None where an effect stands for one."""
+    beside = {item.effect for item, _ in state.beside}
+    # An effect without a block lost it to a later one, which then stands for no block
+    # of the base.
+    lost = any(not item.blocks and item.effect not in beside for item in state.added)
+    own = {k for item in state.added for k in item.blocks}
+    instead = {k for item in state.added if item.replaced for k in item.blocks}
+    return [
+        None if k in own else block
+        for k, block in enumerate(state.chain)
+        if k not in own or (k in instead and not lost)
+    ]
+
+
+def _plain(value: object) -> object:
+    return list(value) if isinstance(value, tuple) else value
 
 
 def beside_blocks(state: State) -> list[Block]:
@@ -83,6 +106,8 @@ def _parameters(
     found: dict[str, Any] = {}
     if not item.blocks:
         blocks = {beside.effect: k for k, (beside, _) in enumerate(state.beside)}
+        if item.effect not in blocks:
+            return found  # a later effect stands for its block and has its numbers
         block = beside_blocks(state)[blocks[item.effect]]
         known = of_beside[blocks[item.effect]]
         for key, about in block.parameters().items():
@@ -93,6 +118,16 @@ def _parameters(
                     "standard_error": known.get(key),
                     "unit": _unit(about.unit, state),
                 }
+        return found
+    offsets = effects()[item.effect].offsets.get(item.form, ())
+    if offsets:
+        for place, (label, unit) in zip(item.blocks, offsets, strict=True):
+            value = getattr(state.chain[place], OFFSET)
+            found[label] = {
+                "value": value,
+                "standard_error": _errors_of(place, OFFSET, value, state, errors),
+                "unit": _unit(unit, state),
+            }
         return found
     for place in item.blocks:
         block = state.chain[place]
@@ -133,16 +168,25 @@ def _unit(text: str, state: State) -> str:
 
 
 def ranking_rows(named: Named) -> list[dict[str, Any]]:
-    """Give every candidate of the first round, best first."""
-    one = named.rounds[0]
-    rows = []
-    for item in one.ranking:
-        row: dict[str, Any] = {"name": item.effect, "place": item.place}
-        if item.form:
-            row["form"] = item.form
-        if item.declined:
-            row["declined"] = item.declined
-        elif np.isfinite(item.score):
-            row |= {"score": item.score, "gain": item.gain}
-        rows.append(row)
-    return rows
+    """Give every candidate of every round, best first."""
+    return [
+        _ranking_row(number, item)
+        for number, one in enumerate(named.rounds, start=1)
+        for item in one.ranking
+    ]
+
+
+def _ranking_row(number: int, item: Candidate) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "round": number,
+        "name": item.effect,
+        "place": item.place,
+        "held_back": item.held_back,
+    }
+    if item.form:
+        row["form"] = item.form
+    if item.declined:
+        row["declined"] = item.declined
+    elif np.isfinite(item.score):
+        row |= {"score": item.score, "gain": item.gain}
+    return row

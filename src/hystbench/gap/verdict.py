@@ -98,7 +98,11 @@ def box_matters(left: Left, named: bool) -> bool:
 
 
 def judge(
-    left: Left, named: bool, explained_by_box: float | None, retuned: bool = False
+    left: Left,
+    named: bool,
+    explained_by_box: float | None,
+    retuned: bool = False,
+    bound: bool = False,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -112,6 +116,9 @@ def judge(
         the fit records.
     retuned : bool
         Whether the base had numbers of its own to re-tune.
+    bound : bool
+        Whether the noise floor is only an upper bound: it may hold the whole gap, so
+        that there is none cannot be claimed from it.
     """
     box = explained_by_box or 0.0
     if not named:
@@ -120,6 +127,11 @@ def judge(
                 "re-tuning the base within what is free leaves "
                 f"{100 * left.loose:.0f} % of the gap, and no effect pays beside it"
             )
+        if left.slight and bound:
+            return "unnamed", (
+                "no effect pays; the floor is only an upper bound, so that there is "
+                "no gap cannot be claimed: give period_samples or noise_rms"
+            )
         if left.slight:
             return "no-gap", (
                 "what is left is noise, or no more than a slightly wrong shape of the "
@@ -127,13 +139,12 @@ def judge(
             )
         return "unnamed", (
             f"a gap of {left.after:.2g} times the noise power is there and no effect "
-            f"of the vocabulary pays; a black box takes {100 * max(box, 0):.0f} % of "
-            "it away on folds"
+            f"of the vocabulary pays; {_box_words(explained_by_box, 'it')}"
         )
     if left.loose > LOOSE or box * left.loose > BOX:
         return "unnamed", (
-            f"{100 * left.loose:.0f} % of the gap stays with the best named effects; a "
-            f"black box takes {100 * max(box, 0):.0f} % of that away on folds"
+            f"{100 * left.loose:.0f} % of the gap stays with the best named effects; "
+            f"{_box_words(explained_by_box, 'that')}"
         )
     return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
 
@@ -151,6 +162,14 @@ def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> fl
     )
     trust = max(0.0, 1.0 - left.loose / DISTRUST)
     return (1.0 - DOUBT) * trust / (1.0 + odds)
+
+
+def _box_words(explained: float | None, what: str) -> str:
+    if explained is None:
+        return f"how much of {what} a black box takes away on folds is not known"
+    if explained < 0:
+        return f"a black box makes {what} worse on folds"
+    return f"a black box takes {100 * explained:.0f} % of {what} away on folds"
 
 
 def _beyond(model: State, score: Score) -> float:

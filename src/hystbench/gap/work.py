@@ -28,15 +28,25 @@ class Work:
             variants = list(effect.variants(state.scene))
         except Declined as reason:
             return [], str(reason)
-        runnable = [item for item in variants if not _needs_rerun(state, item)]
+        runnable = [
+            (number, item)
+            for number, item in enumerate(variants)
+            if not _needs_rerun(state, item)
+        ]
         if variants and not runnable:
             return [], NEEDS_RERUN
         few, few_score = at_a_glance(state, score)
         found = []
-        for item in runnable:
-            attempt = Attempt(state, item, score)
-            found.append((attempt, coarse(attempt, Attempt(few, item, few_score))))
-        return found, ""
+        refused = ""
+        for number, item in runnable:
+            attempt = Attempt(state, item, score, number)
+            try:
+                trial = coarse(attempt, Attempt(few, item, few_score))
+            except Declined as reason:
+                refused = str(reason)
+                continue
+            found.append((attempt, trial))
+        return found, "" if found else refused
 
     def fine(self, attempt: Attempt, trial: Trial) -> Trial:
         """Search a variant around the best point of its grid."""

@@ -1,7 +1,9 @@
-"""The yardstick: a black box of the residual, fitted and judged on the same folds.
+"""The yardstick: a black box of the residual, judged on folds of the fit records.
 
-It names nothing. Where it explains clearly more than the named effects, something is
-there that the vocabulary has no name for.
+It is judged on blocks of every record; an effect has to pay on whole records where
+there are three or more. So the black box has the easier task: of sines of one frequency
+a record it cannot guess the next frequency. It names nothing. Where it explains clearly
+more than the named effects, something is there that the vocabulary has no name for.
 """
 
 from __future__ import annotations

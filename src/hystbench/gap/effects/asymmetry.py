@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
@@ -15,6 +16,7 @@ class Asymmetry(Effect):
 
     name = "asymmetry"
     place = "material"
+    offsets: ClassVar = {"bias": (("bias", "U"), ("zero", "Y"))}
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer the square behind the hysteresis and the bias before it."""

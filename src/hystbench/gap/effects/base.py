@@ -132,6 +132,9 @@ class Effect(ABC):
 
     name: ClassVar[str]
     place: ClassVar[str]
+    offsets: ClassVar[Mapping[str, tuple[tuple[str, str], ...]]] = {}
+    """By form, where its blocks are plain gains: the name and the unit that the offset
+    of each has as a number of the effect."""
 
     @abstractmethod
     def variants(self, scene: Scene) -> Iterator[Variant]:

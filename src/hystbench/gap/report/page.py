@@ -18,6 +18,7 @@ OPTIONAL: dict[str, Any] = {
     "black_box": None,
     "base_parameters": {},
     "shortfall": None,
+    "no_experiment": "",
 }
 
 
@@ -51,9 +52,9 @@ def page(content: Content) -> str:
         ranking=_ranking(gap),
         ranked=sorted(
             (item for item in gap["ranking"] if "declined" not in item),
-            key=lambda item: -item.get("gain", float("-inf")),
+            key=lambda item: (item["round"], -item.get("gain", float("-inf"))),
         ),
-        declined=[item for item in gap["ranking"] if "declined" in item],
+        declined=_declined(gap),
         series=_series(content),
         drawn=min(len(content.hold_out), pictures.RECORDS),
         held=len(content.hold_out),
@@ -72,7 +73,8 @@ def _shares(gap: dict[str, Any]) -> Picture | None:
 
 
 def _ranking(gap: dict[str, Any]) -> Picture | None:
-    ranked = [item for item in gap["ranking"] if "gain" in item]
+    first = [item for item in gap["ranking"] if item["round"] == 1]
+    ranked = [item for item in first if "gain" in item]
     ranked = sorted(ranked, key=lambda item: -item["gain"])[: pictures.BARS]
     if not ranked:
         return None
@@ -86,9 +88,19 @@ def _ranking(gap: dict[str, Any]) -> Picture | None:
         gains,
         "gain in the score that ranks",
         picked,
-        words="Gain over the base of each effect tried; named effects blue",
+        words="Gain over the base of each effect, tried alone; named effects blue",
         height=0.6 + 0.2 * len(names),
     )
+
+
+def _declined(gap: dict[str, Any]) -> list[dict[str, Any]]:
+    """Give what declined, each reason once though it may hold in every round."""
+    found = {
+        (item["name"], item["place"], item["declined"]): item
+        for item in reversed(gap["ranking"])
+        if "declined" in item
+    }
+    return list(reversed(found.values()))
 
 
 def _ladder(gap: dict[str, Any]) -> Picture | None:

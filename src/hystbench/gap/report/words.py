@@ -16,7 +16,7 @@ VERDICTS = {
     "named": "The simulator lacks {effects}.",
     "parameters": "The simulator lacks no effect: other values of its parameters, "
     "within their tolerances, close the gap.",
-    "no-gap": "There is no gap: what measurement and simulation differ by is noise.",
+    "no-gap": "There is no gap: {reason}.",
     "unnamed": "Something is missing that the vocabulary has no name for.",
 }
 
@@ -30,7 +30,9 @@ FLOORS = {
 def verdict_sentence(gap: dict[str, Any]) -> str:
     """Say the verdict in plain words."""
     names = [effect["name"].replace("-", " ") for effect in gap["effects"]]
-    sentence = VERDICTS[gap["verdict"]].format(effects=listed(names))
+    sentence = VERDICTS[gap["verdict"]].format(
+        effects=listed(names), reason=gap["reason"].rstrip(".")
+    )
     if gap["verdict"] == "unnamed" and names:
         sentence += f" Beside it the simulator lacks {listed(names)}."
     return sentence

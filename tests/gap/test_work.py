@@ -1,0 +1,70 @@
+"""Variants that their own blocks refuse: the effect declines, the search goes on."""
+
+from dataclasses import replace
+
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Declined
+from hystbench.gap.rank import rank
+from hystbench.gap.search import Attempt, coarse
+from hystbench.gap.work import IN_PROCESS
+from tests.gap.small import block, measured, plain_score, state_of
+
+NOISE = 0.02
+
+
+class Lags:
+    """The drive's lag, of which some variants refuse every value."""
+
+    name, place = "drive-lag", "drive"
+
+    def __init__(self, *refused):
+        self.refused = refused
+
+    def variants(self, scene):
+        (lag,) = effects()["drive-lag"].variants(scene)
+
+        def refuse(values):
+            raise InputError(f"time_constant_s: {values['time_constant_s']:g} is not")
+
+        for refused in self.refused:
+            yield replace(lag, build=refuse) if refused else lag
+
+
+@pytest.fixture(scope="module")
+def beside():
+    lag = block("drive-lag", time_constant_s=0.004)
+    gain = block("gain", value=12.0)
+    state = state_of((gain,), measured((lag, gain), NOISE))
+    return state, plain_score(state, NOISE**2)
+
+
+def test_a_variant_that_refuses_every_point_declines_with_the_last_message(beside):
+    state, score = beside
+    (variant,) = Lags(True).variants(state.scene)
+    last = variant.grids["time_constant_s"][-1]
+    with pytest.raises(Declined, match=f"^time_constant_s: {last:g} is not$"):
+        coarse(Attempt(state, variant, score))
+
+
+def test_an_effect_declines_if_all_of_its_variants_do(beside):
+    state, score = beside
+    trials, why = IN_PROCESS.tried(Lags(True, True), state, score)
+    assert not trials
+    assert why.startswith("time_constant_s: ")
+    lag, gain = rank(state, score, [Lags(True), effects()["calibration-error"]])[::-1]
+    assert (lag.effect, lag.state) == ("drive-lag", None)
+    assert lag.declined == why
+    assert not gain.declined
+
+
+def test_one_variant_that_refuses_leaves_the_others(beside):
+    state, score = beside
+    trials, why = IN_PROCESS.tried(Lags(True, False), state, score)
+    assert not why
+    ((attempt, trial),) = trials
+    assert attempt.number == 1
+    (alone,), _ = IN_PROCESS.tried(Lags(False), state, score)
+    assert trial.values == alone[1].values
