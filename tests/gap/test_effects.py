@@ -8,7 +8,7 @@ import pytest
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.gap.change import with_effect, without_effect
+from hystbench.gap.change import removable, with_effect, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, logarithmic
 from hystbench.gap.fit import score_of
@@ -249,6 +249,24 @@ def test_of_several_effects_each_can_be_taken_out(base):
         after = without_effect(after, 0)
     assert after.chain == before.chain
     assert after.free == before.free
+
+
+def with_effects(base, *names):
+    """Add effects one after the other, each in its first form."""
+    after = state_with_free(base)
+    for name in names:
+        variant = next(iter(effects()[name].variants(after.scene)))
+        after = with_effect(after, variant, next(iter(values_of(variant))))
+    return after
+
+
+def test_what_others_stand_on_cannot_be_taken_out():
+    """A wrapped hysteresis has to stay, and a block that was replaced is gone."""
+    wrapped = with_effects("gain", "hysteresis", "rate-dependent-hysteresis", "drift")
+    assert [removable(wrapped, k) for k in range(3)] == [False, True, True]
+    assert removable(with_effects("gain", "hysteresis", "creep"), 0)
+    replaced = with_effects("gain", "resonance", "stiffness-hardening", "mains-pickup")
+    assert [removable(replaced, k) for k in range(3)] == [False, True, True]
 
 
 @pytest.mark.parametrize(("chain", "variant"), SEARCHED)

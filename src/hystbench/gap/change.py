@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects.base import Values, Variant
 from hystbench.gap.state import Added, Free, State
 
@@ -89,6 +90,23 @@ def without_effect(state: State, number: int) -> State:
         chain=tuple(chain),
         free=tuple(_moved(state.free, moved)),
         added=tuple(_placed(item, moved) for item in rest),
+    )
+
+
+def removable(state: State, number: int) -> bool:
+    """Tell whether an added effect can be taken out with the others left in.
+
+    Not a hysteresis that another effect wraps, nor a block that another replaced.
+    """
+    gone = state.added[number]
+    if not gone.blocks:
+        return any(item.effect == gone.effect for item, _ in state.beside)
+    chain = without_effect(state, number).chain
+    before = [None, *chain[:-1]]
+    return all(
+        first is not None and (first.hysteretic or isinstance(first, WrappingBlock))
+        for first, block in zip(before, chain, strict=True)
+        if isinstance(block, WrappingBlock)
     )
 
 

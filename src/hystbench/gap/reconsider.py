@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hystbench.gap.change import without_effect
+from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import finished, score_of
 from hystbench.gap.rank import Candidate, Round, make_score, rank
@@ -29,7 +29,7 @@ def reconsidered(
     """
     rankings: dict[str, tuple[Candidate, ...]] = {}
     for number, item in enumerate(state.added):
-        if item.effect == SHAPE:
+        if item.effect == SHAPE or not removable(state, number):
             continue
         score = make_score(state, floor_rms)
         now = score_of(state, score)
@@ -56,6 +56,8 @@ def without_needless(state: State, floor_rms: float, say: Say) -> State:
     stand in for it.
     """
     for number, item in enumerate(state.added if len(state.added) > 1 else ()):
+        if not removable(state, number):
+            continue
         short = without_effect(state, number)
         score = make_score(short, floor_rms)
         short, value = finished(short, score)
