@@ -6,17 +6,6 @@ if TWIN:
     # Found by name, so that no import tells of them.
     CALIBRATED_FILTERS = sorted(GRAPH.find_children("hystbench.filters"))
 
-    def structures_tried(wildcards):
-        """Results of the structures that the settings ask for."""
-        # Imported only where they are asked for: it takes a quarter of a second.
-        from hystbench.calibration.structures import asked_structures
-
-        try:
-            asked = asked_structures(SETTINGS.structures)
-        except InputError as error:
-            sys.exit(f"hystbench: {PLACE}: structures: tried: {error}")
-        return [f"{RESULTS}/structures/{each.name}.json" for each in asked]
-
     # What the calibration tried and found, for docs/.
     rule tried:
         input:

@@ -101,6 +101,18 @@ def identified(wildcards):
     return []
 
 
+def structures_tried(wildcards):
+    """Results of the structures that the settings ask for."""
+    # Imported only where they are asked for: it takes a quarter of a second.
+    from hystbench.calibration.structures import asked_structures
+
+    try:
+        asked = asked_structures(SETTINGS.structures)
+    except InputError as error:
+        sys.exit(f"hystbench: {PLACE}: structures: tried: {error}")
+    return [f"{RESULTS}/structures/{each.name}.json" for each in asked]
+
+
 def figure(name, suffix):
     """Picture of a figure; those of the identification lie beside its numbers."""
     shown = {"identification", "figure-03-play", "figure-04-generalized-play"}
