@@ -46,3 +46,8 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     assert kept is state
     # What is not in here keeps the ranking by which the effect was taken.
     assert set(rankings) == {"asymmetry"} | (set() if declined else {"drive-lag"})
+    # The model that is there scores better than what the second look came to.
+    ((own,),) = (rankings["asymmetry"],)
+    assert own.state is state
+    assert own.score < 0.0
+    assert own.score + own.gain == pytest.approx(1.0)

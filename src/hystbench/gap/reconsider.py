@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
@@ -45,7 +46,13 @@ def reconsidered(
             return best.state or state, {**rankings, best.effect: ranking}
         own = next((x for x in ranking if x.effect == item.effect), None)
         if own is not None and own.state is not None:
-            rankings[item.effect] = ranking
+            # A search from anew may end worse than the model that is there.
+            as_is = replace(
+                own, score=now, gain=own.gain + own.score - now, state=state
+            )
+            rankings[item.effect] = tuple(
+                as_is if x is own and now < own.score else x for x in ranking
+            )
     return state, rankings
 
 
