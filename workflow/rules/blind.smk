@@ -27,11 +27,11 @@ rule blind_solve:
         f"{BLIND}/logs/solve-{{set}}-{{solver}}-{{chunk}}.log",
     wildcard_constraints:
         chunk=r"\d+",
-    params:
-        settings=blind_solver_settings,
     # Minutes, if every case takes its whole time; ten for the rest.
     resources:
         runtime=blind_solver_minutes,
+    params:
+        settings=blind_solver_settings,
     message:
         "blind: {wildcards.solver} on {wildcards.set} {wildcards.chunk}"
     shell:
