@@ -14,7 +14,7 @@ from hystbench.gap.state import State
 
 Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
-LOOSE = 0.2
+LOOSE = 0.27
 """Share of the gap, beyond what reshaping could leave, that no effect takes away."""
 ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
