@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.dataset import load_dataset
-from hystbench.errors import InputError
 from tests.conftest import csv_text
+from tests.messages import message
 
 TIME = np.arange(50) / 1000
 U = np.sin(40 * TIME)
@@ -16,14 +16,6 @@ time: {column: time_s, unit: s}
 input: {column: current_A, unit: A}
 output: {column: displacement_um, unit: um}
 """
-
-
-def message(call) -> str:
-    with pytest.raises(InputError) as caught:
-        call()
-    text = str(caught.value)
-    assert "\n" not in text
-    return text
 
 
 def test_reads_what_was_written(write_dataset):

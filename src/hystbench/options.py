@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -41,4 +42,11 @@ identified = click.option(
 )
 arrays = click.option(
     "--arrays", type=NEW_FILE, required=True, help="Archive of output and error."
+)
+search_threads = click.option(
+    "--threads",
+    type=click.IntRange(min=1),
+    default=lambda: len(os.sched_getaffinity(0)),
+    show_default="all cores",
+    help="How many try effects at a time; what is found does not depend on it.",
 )

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.simulated_column import SimulatedColumn
-from hystbench.errors import InputError
 from hystbench.gap.bases import identified_gpi, identified_linear, load_base
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
 from hystbench.gap.evidence import Evidence
@@ -18,20 +17,13 @@ from hystbench.model import Model, load_model
 from hystbench.record import Channel
 from tests.conftest import run_hystbench
 from tests.gap.made import multisine, play_sum, record, sine, steady, write_folder
+from tests.messages import message
 
 
 def evidence(*records, hold="band-limited", **about):
     last = records[-1]
     held = record(last.u, last.y, name="held", dt=last.dt, use="hold-out")
     return Evidence("made", records, (held,), hold, **about)
-
-
-def message(call) -> str:
-    with pytest.raises(InputError) as caught:
-        call()
-    text = str(caught.value)
-    assert "\n" not in text
-    return text
 
 
 def rms(values):

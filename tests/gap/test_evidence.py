@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.gain import Gain
-from hystbench.errors import InputError
 from hystbench.gap.evidence import check_units, load_evidence
 from hystbench.model import Model
 from hystbench.record import Channel
 from tests.gap.made import record, sine, write_folder
+from tests.messages import message
 
 U = sine(2.0, count=1000)
 Y = 5 * U + 0.3 * sine(7.0, count=1000)
@@ -20,14 +20,6 @@ def pair(y=Y, u=U, **about):
         record(u, y, name="a", **about),
         record(U, Y, name="b", use="hold-out"),
     ]
-
-
-def message(call) -> str:
-    with pytest.raises(InputError) as caught:
-        call()
-    text = str(caught.value)
-    assert "\n" not in text
-    return text
 
 
 def test_roles_hold_and_noise_come_from_the_file(tmp_path):
@@ -79,6 +71,13 @@ def test_an_output_may_rest_with_its_input_and_be_coarsely_digitized(tmp_path):
     u[300:600], y[300:600] = u[300], y[300]
     found = load_evidence(write_folder(tmp_path / "d", pair(y, u)))
     np.testing.assert_array_equal(found.fit[0].y, y)
+
+
+def test_an_output_of_a_few_steps_may_stand_still_while_its_input_moves(tmp_path):
+    # A motion that is done in four steps stands on each of them for a while.
+    y = np.round(Y / (np.ptp(Y) / 4)) * (np.ptp(Y) / 4)
+    found = load_evidence(write_folder(tmp_path / "d", pair(y)))
+    np.testing.assert_allclose(found.fit[0].y, y)
 
 
 @pytest.mark.parametrize(

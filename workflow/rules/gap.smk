@@ -170,11 +170,13 @@ rule gap_decide:
             f"--named {shlex.quote(input.named)}" if input.named else ""
         ),
         folder=subpath(output.model, parent=True),
+    # Where effects are named here and not by jobs of their own.
+    threads: 1 if config["gap"]["jobs"] == "effects" else 2
     message:
         "verdict on {wildcards.case}"
     shell:
         "hystbench gap-decide {input.dataset:q} --base {input.base:q} {params.named}"
-        " --out {params.folder:q} 2> {log:q}"
+        " --threads {threads} --out {params.folder:q} 2> {log:q}"
 
 
 # The one job that reads hold-out records: verdict, effects and model are written.

@@ -21,7 +21,10 @@ from hystbench.gap.jobs import decide_in
     help="Progress after the last round; without it effects are named here.",
 )
 @click.option("--out", type=click.Path(path_type=Path), required=True)
-def gap_decide(dataset: Path, base: Path, named: Path | None, out: Path) -> None:
+@options.search_threads
+def gap_decide(
+    dataset: Path, base: Path, named: Path | None, out: Path, threads: int
+) -> None:
     """Decide what BASE lacks beside the fit records of DATASET; opens no other.
 
     Writes model.yaml, curves.json, stages/decision.json and stages/named.json to OUT.
@@ -34,4 +37,5 @@ def gap_decide(dataset: Path, base: Path, named: Path | None, out: Path) -> None
         model,
         named,
         say=lambda line: click.echo(line, err=True),
+        threads=threads,
     )

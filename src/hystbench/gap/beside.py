@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from hystbench.gap.nuisance import Nuisance
-from hystbench.gap.shrink import Shrink, records_mapping, shrink
+from hystbench.gap.shrink import Shrink, plain, records_mapping, shrink
 from hystbench.gap.yardstick import BlackBox
 from hystbench.record import FloatArray, Record
 
@@ -50,10 +50,9 @@ def black_box_mapping(
     for row, record, other in zip(rows, records, named.records, strict=True):
         row["named"] = other.after
         row["outside"] = list(box.outside(record))
-    explained = reached.explained
     return {
         "explained_on_folds": box.explained_on_folds,
         "after": reached.after,
-        "explained": list(explained) if isinstance(explained, tuple) else explained,
+        "explained": plain(reached.explained),
         "records": rows,
     }

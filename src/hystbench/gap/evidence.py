@@ -16,6 +16,8 @@ from hystbench.units import check_same_unit
 
 STUCK = 0.05
 """Share of a record, and of the input's range, over which no output stands still."""
+COARSE = 3.0
+"""Steps of a digitized output that it may be off by in a motion: it shows less."""
 
 
 @dataclass(frozen=True)
@@ -139,8 +141,9 @@ def _check_usable(dataset: Dataset, record: Record) -> None:
     edges = np.concatenate([[0], changes + 1, [len(y)]])
     longest = int(np.argmax(np.diff(edges)))
     first, last = int(edges[longest]), int(edges[longest + 1])
-    moved = float(np.ptp(u[first:last]))
-    if last - first > STUCK * len(y) and moved > STUCK * float(np.ptp(u)):
+    moved = float(np.ptp(u[first:last])) / max(float(np.ptp(u)), 1e-300)
+    seen = moved * float(np.ptp(y)) > COARSE * _quantum(y)
+    if last - first > STUCK * len(y) and moved > STUCK and seen:
         file = dataset.record_files[record.name]
         at_end = y[first] in (y.min(), y.max())
         raise InputError(
@@ -148,6 +151,12 @@ def _check_usable(dataset: Dataset, record: Record) -> None:
             f"{record.output.unit} for {last - first} samples while the input moves; "
             f"expected a channel that is not {'clipped' if at_end else 'stuck'}"
         )
+
+
+def _quantum(y: FloatArray) -> float:
+    """Give the smallest step of a channel: at least what it is digitized by."""
+    moves = np.abs(np.diff(y))
+    return float(moves[moves > 0].min(initial=np.inf))
 
 
 def _check_input(dataset: Dataset, record: Record) -> None:

@@ -38,6 +38,7 @@ from hystbench.gap.verdict import (
     judge,
     what_is_left,
 )
+from hystbench.gap.work import Work
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -88,6 +89,7 @@ def find(
     declared: float | None = None,
     asked: Mapping[str, float] | None = None,
     say: Say = silent,
+    threads: int = 1,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
 
@@ -106,6 +108,8 @@ def find(
         Limits of the next experiment; the others are those of the records.
     say : callable
         Told a line of progress at a time.
+    threads : int
+        How many try effects at a time.
 
     Raises
     ------
@@ -114,7 +118,7 @@ def find(
     """
     limits = Limits.within(records, asked) if asked else None
     start, floor = start_state(records, base, hold, declared)
-    named = name(start, floor.rms, say)
+    named = name(start, floor.rms, say, Work(threads))
     return decide(dataset, base, start, floor, named, say, limits)
 
 
@@ -153,7 +157,9 @@ def decide(
     box = black_box(start, floor)
     explained = None
     if box_matters(left, bool(state.added)):
-        rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
+        rest = box
+        if state is not start:
+            rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
         explained = rest.explained_on_folds
     verdict, reason = judge(
         left,
@@ -250,8 +256,7 @@ def _compared(chain: Sequence[Block], state: State) -> list[Compared]:
 
 def _beside_signals(state: State) -> list[FloatArray]:
     """Give what lies beside, over whole records, as the scored samples fit it."""
-    columns = state.beside_columns
-    amplitudes = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
+    amplitudes = state.beside_amplitudes
     signals = [np.zeros(len(record)) for record in state.records]
     first = 0
     for beside, values in state.beside:

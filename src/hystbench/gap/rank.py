@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -121,15 +121,21 @@ def rank(
     known = tuple(effects().values()) if known is None else tuple(known)
     have = {item.effect for item in state.added}
     now = score_of(state, score)
+    declined = [
+        Candidate(effect.name, effect.place, declined="added already")
+        for effect in known
+        if effect.name in have
+    ]
+    others = [effect for effect in known if effect.name not in have]
     found: list[Tried] = []
-    declined = []
-    for effect in known:
-        if effect.name in have:
-            declined.append(
-                Candidate(effect.name, effect.place, declined="added already")
-            )
-            continue
-        trials, why = work.tried(effect, state, score)
+
+    def tried(effect: Effect) -> tuple[list[Tried], str]:
+        return work.tried(effect, state, score)
+
+    # The first computes what all share, before the others begin.
+    answers = [tried(effect) for effect in others[:1]]
+    answers += work.each(tried, others[1:])
+    for effect, (trials, why) in zip(others, answers, strict=True):
         found += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
@@ -137,48 +143,73 @@ def rank(
         return tuple(declined)
     best = min(trial.score for _, trial in found)
     reach = max(NEAR, (now - best) * STILL)
-    refined = [
-        work.fine(attempt, trial) if trial.score < best + reach else trial
-        for attempt, trial in found
-    ]
+    refined = work.each(
+        lambda tried: work.fine(*tried) if tried[1].score < best + reach else tried[1],
+        found,
+    )
     refined.sort(key=lambda trial: trial.score)
     of_effect: dict[str, Trial] = {}
     for trial in refined:
         of_effect.setdefault(trial.variant.effect, trial)
-    candidates = []
-    for number, trial in enumerate(of_effect.values()):
-        variant = trial.variant
-        own = (variant.effect, variant.place, variant.form)
-        after = None
-        value = trial.score
-        likely = number < FINALISTS or (variant.effect == SHAPE and now - value > PAYS)
-        if likely and now - value > 0:
-            try:
-                after, value = work.added(state, trial, score)
-            except InputError as error:
-                declined.append(
-                    Candidate(*own[:2], declined=f"fits best where {error}")
-                )
-                continue
-            end = at_end(after, variant)
-            if end:
-                why = f"fits best at the end of what it can be: {end}"
-                declined.append(Candidate(*own[:2], declined=why))
-                continue
-            power = state.power(score.floor)
-            if after.share(state, score.floor, power) < -WORSE:
-                declined.append(Candidate(*own[:2], declined="makes the gap wider"))
-                continue
-        candidates.append(Candidate(*own, value, now - value, after))
-    candidates.sort(key=lambda item: (item.state is None, item.score))
-    candidates = [
-        exactly(item, score, now, work)
-        if place < EXACT and item.score < candidates[0].score + NEAR
-        else item
+    likely = [
+        trial
+        for number, trial in enumerate(of_effect.values())
+        if number < FINALISTS
+        or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
+    ]
+    judged = work.each(lambda trial: _judged(trial, state, score, now, work), likely)
+    judged += [
+        _candidate(trial, now)
+        for trial in of_effect.values()
+        if not any(trial is item for item in likely)
+    ]
+    declined += [item for item in judged if item.declined]
+    candidates = _in_order(item for item in judged if not item.declined)
+    near_first = [
+        place < EXACT and item.score < candidates[0].score + NEAR
         for place, item in enumerate(candidates)
     ]
-    candidates.sort(key=lambda item: (item.state is None, item.score))
-    return (*candidates, *declined)
+    candidates = work.each(
+        lambda item: exactly(item[0], score, now, work) if item[1] else item[0],
+        zip(candidates, near_first, strict=True),
+    )
+    return (*_in_order(candidates), *declined)
+
+
+def _in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Put finalists first, and what scores least first among them."""
+    return sorted(candidates, key=lambda item: (item.state is None, item.score))
+
+
+def _candidate(trial: Trial, now: float) -> Candidate:
+    variant = trial.variant
+    gain = now - trial.score
+    return Candidate(variant.effect, variant.place, variant.form, trial.score, gain)
+
+
+def _judged(
+    trial: Trial, state: State, score: Score, now: float, work: Work
+) -> Candidate:
+    """Add an effect that gains anything, refit all together, and say what is wrong."""
+    variant = trial.variant
+    item = _candidate(trial, now)
+    if item.gain <= 0:
+        return item
+
+    def declined(why: str) -> Candidate:
+        return Candidate(variant.effect, variant.place, declined=why)
+
+    try:
+        after, value = work.added(state, trial, score)
+    except InputError as error:
+        return declined(f"fits best where {error}")
+    end = at_end(after, variant)
+    if end:
+        return declined(f"fits best at the end of what it can be: {end}")
+    power = state.power(score.floor)
+    if after.share(state, score.floor, power) < -WORSE:
+        return declined("makes the gap wider")
+    return replace(item, score=value, gain=now - value, state=after)
 
 
 def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:

@@ -12,10 +12,15 @@ from hystbench.gap.rank import Candidate, Round, make_score, rank
 from hystbench.gap.say import Say
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import CLOSE, FURTHER, SHAPE, SWAP
+from hystbench.gap.work import IN_PROCESS, Work
 
 
 def reconsidered(
-    state: State, rounds: Sequence[Round], floor_rms: float, say: Say
+    state: State,
+    rounds: Sequence[Round],
+    floor_rms: float,
+    say: Say,
+    work: Work = IN_PROCESS,
 ) -> tuple[State, dict[str, tuple[Candidate, ...]]]:
     """Try the rivals of each effect in its place, now that others are there.
 
@@ -37,7 +42,8 @@ def reconsidered(
         short = without_effect(state, number)
         have = {other.effect for other in short.added}
         names = _rivals(item.effect, rounds) - have
-        ranking = rank(short, score, [effects()[name] for name in sorted(names)])
+        known = [effects()[name] for name in sorted(names)]
+        ranking = rank(short, score, known, work)
         best = ranking[0]
         other = best.state is not None and best.effect != item.effect
         if other and best.score < now - SWAP:

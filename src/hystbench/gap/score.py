@@ -103,12 +103,6 @@ class Score:
         squares = [float(np.mean(rest[part] ** 2)) for part in self.parts]
         return self._value(np.array(squares), float(inside @ inside), freedom)
 
-    def free(self, residual: FloatArray, freedom: float = 0.0) -> float:
-        """Score a residual when its part inside the directions is fitted away."""
-        rest, _ = self.split(residual)
-        squares = [float(np.mean(rest[part] ** 2)) for part in self.parts]
-        return self._value(np.array(squares), 0.0, freedom)
-
     def amplitudes(
         self,
         residual: FloatArray,

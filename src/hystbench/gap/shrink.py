@@ -207,7 +207,7 @@ def mapping(shrunk: Shrink) -> dict[str, Any]:
         "after": shrunk.after,
         "noise_floor": shrunk.noise_floor,
         "floor_method": shrunk.floor_method,
-        "explained": _plain(shrunk.explained),
+        "explained": plain(shrunk.explained),
     }
     if shrunk.interval is not None:
         content["interval"] = list(shrunk.interval)
@@ -221,11 +221,12 @@ def records_mapping(shrunk: Shrink) -> list[dict[str, Any]]:
             "name": item.name,
             "before": item.before,
             "after": item.after,
-            "explained": _plain(item.explained),
+            "explained": plain(item.explained),
         }
         for item in shrunk.records
     ]
 
 
-def _plain(explained: Explained) -> float | list[float] | None:
+def plain(explained: Explained) -> float | list[float] | None:
+    """Give a share, or the ends of its range, as JSON holds it."""
     return list(explained) if isinstance(explained, tuple) else explained

@@ -186,6 +186,12 @@ class State:
             [beside_columns(self, *item) for item in self.beside], len(self.sample)
         )
 
+    @cached_property
+    def beside_amplitudes(self) -> FloatArray:
+        """Amplitudes of the shapes beside that fit the residual best."""
+        found = np.linalg.lstsq(self.beside_columns, self.residual, rcond=1e-10)[0]
+        return np.asarray(found, dtype=np.float64)
+
     def share(self, other: State, floor: float, gap: float) -> float:
         """Tell which share of a gap is gone here and is there in another state.
 
@@ -203,8 +209,7 @@ class State:
         """Mean square of the residual above the floor, of the records alike."""
         rest = self.residual
         if self.beside:
-            columns = self.beside_columns
-            rest = rest - columns @ np.linalg.lstsq(columns, rest, rcond=None)[0]
+            rest = rest - self.beside_columns @ self.beside_amplitudes
         squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
         return float(np.mean(squares)) - floor
 

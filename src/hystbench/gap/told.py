@@ -67,13 +67,11 @@ def beside_blocks(state: State) -> list[Block]:
     """Give the blocks of what lies beside the chain."""
     if not state.beside:
         return []
-    columns = state.beside_columns
-    amplitudes = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
     blocks, first = [], 0
     for beside, values in state.beside:
         shape = beside.columns(state.records[0], values, beside.order).shape[1]
         count = shape * len(state.records)
-        own = np.asarray(amplitudes[first : first + count], dtype=np.float64)
+        own = state.beside_amplitudes[first : first + count]
         rows = own.reshape(len(state.records), shape)
         described = effects()[beside.effect].describe(values, rows)
         blocks.append(registry()[beside.effect].from_mapping(described))
