@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import importlib
 import json
-import resource
+import os
 import subprocess
 import sys
 import tempfile
@@ -21,16 +21,18 @@ from dataclasses import replace
 from pathlib import Path
 from time import perf_counter, process_time
 
-from benchmarks.timing import write_table
+from benchmarks.timing import peak_mib, write_table
 from hystbench.gap.bases import load_base
 from hystbench.gap.effects import effects
 from hystbench.gap.evidence import Evidence, load_evidence
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.run import close_gap
 from hystbench.gap.start import start_state
+from hystbench.gap.work import Work
 from hystbench.record import Record
 
-CASES = 5
+CASES = 15
+CORES = os.cpu_count() or 1
 SHARES = (0.25, 0.5, 0.75, 1.0)  # of each record
 CANDIDATES = (5, 10, 15, len(effects()))
 COLUMNS = (
@@ -65,7 +67,8 @@ def measured(
     """Measure in a process of its own: a row of the table."""
     words = [sys.executable, "-m", "benchmarks.gap"]
     words += [what, str(case), str(candidates), str(share)]
-    done = subprocess.run(words, check=True, capture_output=True, text=True)
+    alone = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}  # as hystbench itself
+    done = subprocess.run(words, check=True, capture_output=True, text=True, env=alone)
     found = json.loads(done.stdout)
     return (
         *(what, case.name, found["records"], found["samples"], candidates),
@@ -86,9 +89,9 @@ def close(evidence: Evidence, model: str) -> str:
     """Find what the model lacks, without the page; give its names."""
     base, _ = load_base(model, evidence)
     with tempfile.TemporaryDirectory() as out:
-        content = close_gap(evidence, base, Path(out, "gap"), report=False).content
-    named = "+".join(item["name"] for item in content["effects"])
-    return named or str(content["verdict"])
+        found = close_gap(evidence, base, Path(out, "gap"), report=False, threads=CORES)
+    named = "+".join(item["name"] for item in found.content["effects"])
+    return named or str(found.content["verdict"])
 
 
 def one_round(evidence: Evidence, model: str, candidates: int, share: float) -> str:
@@ -97,7 +100,8 @@ def one_round(evidence: Evidence, model: str, candidates: int, share: float) -> 
     fit = tuple(cut(record, share) for record in evidence.fit)
     state, floor = start_state(fit, base, evidence.hold, evidence.noise_rms)
     known = list(effects().values())[:candidates]
-    return rank(state, make_score(state, floor.rms), known)[0].effect
+    score = make_score(state, floor.rms)
+    return rank(state, score, known, Work(CORES))[0].effect
 
 
 def work(what: str, case: str, candidates: int, share: float) -> dict[str, object]:
@@ -118,7 +122,7 @@ def work(what: str, case: str, candidates: int, share: float) -> dict[str, objec
         "cpu_seconds": process_time() - cpu,
         "records": len(records),
         "samples": sum(round(share * len(record.u)) for record in records),
-        "peak_mib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "peak_mib": peak_mib(),
         "answer": answer,
     }
 

@@ -7,14 +7,13 @@ are one record's, again and again: what is filtered is kept nowhere.
 from __future__ import annotations
 
 import json
-import resource
 import subprocess
 import sys
 from time import perf_counter
 
 import numpy as np
 
-from benchmarks.timing import write_table
+from benchmarks.timing import peak_mib, write_table
 from benchmarks.work import adaptive, record
 from hystbench.filters import FILTERS
 
@@ -49,8 +48,7 @@ def stream(name: str, samples: int) -> tuple[float, float, float, float, bool]:
         squares += float(np.dot(result.error, result.error))
         diverged = diverged or result.diverged_at is not None
     seconds = perf_counter() - start
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return seconds, seconds * 1e9 / samples, peak, squares / samples, diverged
+    return seconds, seconds * 1e9 / samples, peak_mib(), squares / samples, diverged
 
 
 if __name__ == "__main__":

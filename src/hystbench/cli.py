@@ -7,6 +7,7 @@ and ``hystbench --help`` for nothing.
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 
 import click
@@ -94,6 +95,9 @@ def cli() -> None:
 
 def main() -> None:
     """Run the command line; a user's mistake is one line and exit status 2."""
+    # Products of matrices are small here: threads of BLAS would cost more than they
+    # give, and the last bits would depend on their number.
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
     try:
         cli(prog_name="hystbench")
     except InputError as error:

@@ -94,7 +94,6 @@ def held(tmp_path_factory):
         "bad": entered(folder, "bad", SOLVER + BAD),
     }
     workflow.configure(contest(folder, solvers, "spy"))
-    workflow.environment["OPENBLAS_NUM_THREADS"] = "1"
     done = workflow.run("blind")
     return workflow, done
 
@@ -192,7 +191,6 @@ def test_the_gaps_own_solver_in_the_contest(tmp_path):
     own = small_config()["blind"]["solvers"]["gap"]
     config = contest(tmp_path, {"gap": own}, "gap")
     workflow.configure(config)
-    workflow.environment["OPENBLAS_NUM_THREADS"] = "1"
     workflow.run("blind")
     rows = table(workflow, "cases")
     assert not [row["lost"] for row in rows if row["lost"]]

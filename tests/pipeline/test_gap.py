@@ -27,7 +27,7 @@ class Finished(Workflow):
 
 
 def configured(folder, config, jobs: str) -> Workflow:
-    workflow = Workflow(folder, {"OPENBLAS_NUM_THREADS": "1"})
+    workflow = Workflow(folder)
     write_tiny(folder / "tiny")
     config["gap"] |= {
         "jobs": jobs,

@@ -39,6 +39,8 @@ if TWIN:
             base=GAP_CASES["twin"]["model"],
         log:
             f"{RESULTS}/logs/gap/twin/dataset.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/gap/twin/dataset.tsv"
         params:
             fit=lambda wildcards, input: options("--fit", input.fit),
             hold_out=lambda wildcards, input: options("--hold-out", input.hold_out),
@@ -91,6 +93,8 @@ rule gap_start:
         start=f"{STAGES}/round-0.json",
     log:
         f"{RESULTS}/logs/gap/{{case}}/start.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/gap/{{case}}/start.tsv"
     params:
         model=of_case("model"),
     message:
@@ -119,6 +123,8 @@ if config["gap"]["jobs"] == "effects":
             f"{STAGES}/round-{{round}}/{{effect}}.json",
         log:
             f"{RESULTS}/logs/gap/{{case}}/round-{{round}}/{{effect}}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/gap/{{case}}/round-{{round}}/{{effect}}.tsv"
         message:
             "{wildcards.effect} on {wildcards.case}, round {wildcards.round}"
         shell:
@@ -144,6 +150,8 @@ if config["gap"]["jobs"] == "effects":
             f"{STAGES}/round-{{round}}.json",
         log:
             f"{RESULTS}/logs/gap/{{case}}/round-{{round}}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/gap/{{case}}/round-{{round}}.tsv"
         message:
             "choice on {wildcards.case}, round {wildcards.round}"
         shell:
@@ -165,13 +173,15 @@ rule gap_decide:
         decision=f"{STAGES}/decision.json",
     log:
         f"{RESULTS}/logs/gap/{{case}}/decide.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/gap/{{case}}/decide.tsv"
+    # Where effects are named here and not by jobs of their own.
+    threads: 1 if config["gap"]["jobs"] == "effects" else 2
     params:
         named=lambda wildcards, input: (
             f"--named {shlex.quote(input.named)}" if input.named else ""
         ),
         folder=subpath(output.model, parent=True),
-    # Where effects are named here and not by jobs of their own.
-    threads: 1 if config["gap"]["jobs"] == "effects" else 2
     message:
         "verdict on {wildcards.case}"
     shell:
@@ -195,6 +205,8 @@ rule gap_show:
         hold_out=directory(f"{GAP_CASE}/holdout"),
     log:
         f"{RESULTS}/logs/gap/{{case}}/show.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/gap/{{case}}/show.tsv"
     params:
         folder=subpath(output.gap, parent=True),
     message:
@@ -215,6 +227,8 @@ rule gap_report:
         f"{GAP_CASE}/report.html",
     log:
         f"{RESULTS}/logs/gap/{{case}}/report.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/gap/{{case}}/report.tsv"
     params:
         folder=subpath(input.gap, parent=True),
     message:
@@ -236,6 +250,8 @@ rule gap_summary:
         adds=[f"{GAP}/twin-adds.csv"] if TWIN else [],
     log:
         f"{RESULTS}/logs/gap/summary.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/gap/summary.tsv"
     params:
         twin=lambda wildcards, input, output: (
             f"--twin {shlex.quote(input.twin)} --adds {shlex.quote(output.adds[0])}"

@@ -35,6 +35,16 @@ def run_many(
     list of Result
         In the order of the jobs.
     """
-    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        running = [pool.submit(item.run, x, d, None, limit) for item, x, d in jobs]
-        return [job.result() for job in running]
+    listed = list(jobs)
+    done: list[Result | None] = [None] * len(listed)
+    todo = iter(range(len(listed)))  # one for all: each thread takes the next
+
+    def work(_: int) -> None:
+        for k in todo:
+            item, x, d = listed[k]
+            done[k] = item.run(x, d, None, limit)
+
+    count = workers or os.cpu_count() or 1
+    with ThreadPoolExecutor(count) as pool:
+        list(pool.map(work, range(count)))  # so that what one raises is raised here
+    return [result for result in done if result is not None]
