@@ -10,12 +10,9 @@ import numpy as np
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside, Values
 from hystbench.gap.score import Score
-from hystbench.gap.state import State, beside_columns
+from hystbench.gap.state import SMALL, State, beside_count, beside_slope
 from hystbench.gap.uncertainty import between_stretches, by_record
 from hystbench.record import FloatArray
-
-SMALL = 1e-6
-"""Change of a number, as a share of it, by which a derivative is taken."""
 
 Errors = dict[str, float | list[float] | None]
 
@@ -50,10 +47,10 @@ def beside_errors(state: State, score: Score) -> list[Errors]:
     places = []
     first = len(state.free)
     for beside, values in state.beside:
-        count = _count(state, beside, values)
+        count = beside_count(state, beside, values)
         own = fitted[first : first + count]
         places.append((first, count, columns.shape[1] + len(searched)))
-        searched += [_moved(state, beside, values, key, own) for key in values]
+        searched += [beside_slope(state, beside, values, key, own) for key in values]
         first += count
     columns = np.column_stack([columns, *searched])
     covariance = _covariance(columns, residual, state, score.floor)
@@ -66,24 +63,6 @@ def beside_errors(state: State, score: Score) -> list[Errors]:
         part = covariance[np.ix_(at, at)]
         told.append(_told(state, beside, values, own, part))
     return told
-
-
-def _count(state: State, beside: Beside, values: Values) -> int:
-    """Give the number of amplitudes of a signal, in all records together."""
-    each: int = beside.columns(state.records[0], values, beside.order).shape[1]
-    return each * len(state.records)
-
-
-def _moved(
-    state: State, beside: Beside, values: Values, key: str, amplitudes: FloatArray
-) -> FloatArray:
-    """How the output changes with a number of the shapes."""
-    step = SMALL * max(abs(values[key]), SMALL)
-    ends = [
-        beside_columns(state, beside, {**values, key: values[key] + sign * step})
-        for sign in (1, -1)
-    ]
-    return np.asarray((ends[0] - ends[1]) @ amplitudes / (2 * step))
 
 
 def _covariance(

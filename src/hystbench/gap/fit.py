@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.change import with_effect
 from hystbench.gap.score import Score
 from hystbench.gap.search import Trial
-from hystbench.gap.state import State
+from hystbench.gap.state import State, beside_count, beside_slope
 from hystbench.record import FloatArray
 
 ROUNDS = 5
@@ -81,9 +83,46 @@ def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
     return refit(after, score)
 
 
+def tuned(state: State, score: Score) -> State:
+    """Refine what was searched of the signals beside (a frequency): Gauss and Newton.
+
+    Returns
+    -------
+    State
+        Never worse than the one given.
+    """
+    for number, key in _searched(state):
+        for _ in range(ROUNDS):
+            before = score_of(state, score)
+            beside, values = state.beside[number]
+            slope = beside_slope(state, beside, values, key, _own(state, number))
+            columns = np.column_stack([state.tangents, state.beside_columns, slope])
+            stiffness = np.zeros(columns.shape[1])
+            stiffness[: len(state.free)] = state.stiffness
+            step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]
+            items = list(state.beside)
+            items[number] = (beside, {**values, key: values[key] + float(step)})
+            moved = replace(state, beside=tuple(items))
+            if before - score_of(moved, score) < ENOUGH:
+                break
+            state = moved
+    return state
+
+
+def _searched(state: State) -> list[tuple[int, str]]:
+    return [(k, key) for k, (_, values) in enumerate(state.beside) for key in values]
+
+
+def _own(state: State, number: int) -> FloatArray:
+    """Give the amplitudes of one of the signals beside."""
+    counts = [beside_count(state, *item) for item in state.beside[: number + 1]]
+    return state.beside_amplitudes[sum(counts[:-1]) : sum(counts)]
+
+
 def finished(state: State, score: Score) -> tuple[State, float]:
     """Simulate a model exactly and refit it to the end."""
     state = state.settled()
     state, _ = refit(state, score)
+    state = tuned(state, score)
     state = state.settled()
     return state, score_of(state, score)

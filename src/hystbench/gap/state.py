@@ -48,6 +48,9 @@ class Added(NamedTuple):
 FORMS = (0.3, 0.6, 1.6, 3.0)
 """Factors on a number of an added effect: what other forms of it could do."""
 
+SMALL = 1e-6
+"""Change of a number of the shapes beside, as a share, by which a slope is taken."""
+
 MANY = 4
 """An effect of more numbers has no other forms."""
 
@@ -279,6 +282,24 @@ def beside_columns(state: State, beside: Beside, values: Values) -> FloatArray:
         full[where] = own
         parts.append(full)
     return np.hstack(parts)
+
+
+def beside_count(state: State, beside: Beside, values: Values) -> int:
+    """Give the number of amplitudes of a signal beside, in all records together."""
+    each: int = beside.columns(state.records[0], values, beside.order).shape[1]
+    return each * len(state.records)
+
+
+def beside_slope(
+    state: State, beside: Beside, values: Values, key: str, amplitudes: FloatArray
+) -> FloatArray:
+    """How the output changes with a number of the shapes beside."""
+    step = SMALL * max(abs(values[key]), SMALL)
+    ends = [
+        beside_columns(state, beside, {**values, key: values[key] + sign * step})
+        for sign in (1, -1)
+    ]
+    return np.asarray((ends[0] - ends[1]) @ amplitudes / (2 * step))
 
 
 def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:
