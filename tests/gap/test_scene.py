@@ -134,4 +134,4 @@ def test_what_effects_ask_of_a_scene():
     assert scene.shortest == pytest.approx(0.6)
     assert scene.largest(0) == max(np.abs(one.u).max() for one in records())
     rates = [np.abs(np.diff(one.u) / one.dt).max() for one in records()]
-    assert scene.fastest == pytest.approx(max(rates))
+    assert scene.fastest() == pytest.approx(max(rates))

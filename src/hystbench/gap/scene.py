@@ -138,12 +138,10 @@ class Scene:
         """Largest size of the signal before a block."""
         return float(max(np.abs(z).max() for z in self.before[place]))
 
-    @cached_property
-    def fastest(self) -> float:
-        """Largest rate of the input, in its unit a second."""
-        return float(
-            max(np.abs(np.diff(record.u)).max() / record.dt for record in self.records)
-        )
+    def fastest(self, place: int = 0) -> float:
+        """Largest rate of the signal before a block, in its unit a second."""
+        pairs = zip(self.before[place], self.records, strict=True)
+        return float(max(np.abs(np.diff(z)).max() / record.dt for z, record in pairs))
 
 
 @lru_cache(maxsize=1024)

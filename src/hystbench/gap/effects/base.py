@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray
@@ -233,6 +234,29 @@ def places_inside(scene: Scene) -> list[int]:
     """
     linear = [k for k, item in enumerate(scene.chain) if item.name == LINEAR]
     return linear[1:]
+
+
+def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
+    """Give the places among the drive's effects where another one does another thing.
+
+    Before the first block, and behind each of them that does not commute with what is
+    put there: a limit with anything, a lag with a limit. A pure delay may stand where
+    it is.
+
+    Parameters
+    ----------
+    scene : Scene
+    linear : bool
+        Whether what is put there is linear.
+    """
+    places = [0]
+    for k, block in enumerate(scene.chain):
+        if block.place != "drive":
+            break
+        is_limit = not isinstance(block, HeldBlock)
+        if is_limit or (not linear and isinstance(block, LinearBlock)):
+            places.append(k + 1)
+    return places
 
 
 LINEAR = "transfer-function"

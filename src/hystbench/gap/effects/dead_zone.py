@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
+from hystbench.gap.effects.base import (
+    Effect,
+    Variant,
+    logarithmic,
+    places_in_drive,
+    places_inside,
+)
 from hystbench.gap.scene import Scene
 
 
@@ -15,8 +21,8 @@ class DeadZone(Effect):
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer the dead zone before the first block."""
-        for place in (0, *places_inside(scene)):
+        """Offer the dead zone in the drive, and inside a linear base."""
+        for place in (*places_in_drive(scene), *places_inside(scene)):
             largest = scene.largest(place)
             widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
             yield self.inserted(scene, place, grids={"half_width": widths})

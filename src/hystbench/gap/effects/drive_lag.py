@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_in_drive
 from hystbench.gap.scene import Scene
 
 
@@ -15,9 +15,7 @@ class DriveLag(Effect):
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer the lag before the first block."""
-        yield self.inserted(
-            scene,
-            0,
-            grids={"time_constant_s": logarithmic(scene.step / 20, scene.span / 20, 2)},
-        )
+        """Offer the lag before the first block, and behind the drive's limits."""
+        times = logarithmic(scene.step / 20, scene.span / 20, 2)
+        for place in places_in_drive(scene, linear=True):
+            yield self.inserted(scene, place, grids={"time_constant_s": times})

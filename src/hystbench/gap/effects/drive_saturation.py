@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.effects.base import Effect, Variant, places_in_drive
 from hystbench.gap.scene import Scene
 
 
@@ -17,6 +17,8 @@ class DriveSaturation(Effect):
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer limits from 30 to 99.5 % of the largest input."""
+        """Offer limits from 30 to 99.5 % of the largest signal there."""
         share = 1.0 - np.geomspace(0.7, 0.005, 12)
-        yield self.inserted(scene, 0, grids={"limit": scene.largest(0) * share})
+        for place in places_in_drive(scene):
+            limits = scene.largest(place) * share
+            yield self.inserted(scene, place, grids={"limit": limits})

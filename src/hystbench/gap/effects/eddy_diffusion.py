@@ -6,7 +6,13 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
-from hystbench.gap.effects.base import Effect, Values, Variant, logarithmic
+from hystbench.gap.effects.base import (
+    Effect,
+    Values,
+    Variant,
+    logarithmic,
+    places_in_drive,
+)
 from hystbench.gap.scene import Scene
 
 
@@ -17,17 +23,17 @@ class EddyDiffusion(Effect):
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer both shapes of the cross-section before the first block."""
-        for geometry in ("slab", "rod"):
-            yield self.inserted(
-                scene,
-                0,
-                partial(_values, geometry),
-                form=geometry,
-                grids={
-                    "time_constant_s": logarithmic(scene.step / 5, scene.span / 5, 1.5)
-                },
-            )
+        """Offer both shapes of the cross-section, behind the drive's limits as well."""
+        times = logarithmic(scene.step / 5, scene.span / 5, 1.5)
+        for place in places_in_drive(scene, linear=True):
+            for geometry in ("slab", "rod"):
+                yield self.inserted(
+                    scene,
+                    place,
+                    partial(_values, geometry),
+                    form=geometry,
+                    grids={"time_constant_s": times},
+                )
 
 
 def _values(geometry: str, given: Values) -> dict[str, Any]:

@@ -22,7 +22,7 @@ class Friction(Effect):
             end,
             grids={
                 "velocity_scale": logarithmic(
-                    1e-4 * scene.fastest, scene.fastest / 5, 2
+                    1e-4 * scene.fastest(), scene.fastest() / 5, 2
                 )
             },
             inside=("velocity_scale",),

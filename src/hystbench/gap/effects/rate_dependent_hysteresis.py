@@ -40,7 +40,7 @@ class RateDependentHysteresis(Effect):
                     scene.hysteresis + 1,
                     partial(_values, form, exponent),
                     form=f"{form}, {exponent:g}",
-                    grids={"coefficient": at_fastest / scene.fastest**exponent},
+                    grids={"coefficient": at_fastest / scene.fastest() ** exponent},
                     free=("coefficient", "exponent"),
                     zero={"coefficient": 0.0},
                 )

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.effects.base import Effect, Variant, places_in_drive
 from hystbench.gap.scene import Scene
 
 
@@ -17,7 +17,8 @@ class SlewLimit(Effect):
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer rates from 2 to 98 % of the fastest."""
-        yield self.inserted(
-            scene, 0, grids={"rate": scene.fastest * np.geomspace(0.02, 0.98, 14)}
-        )
+        """Offer rates from 2 to 98 % of the fastest there."""
+        share = np.geomspace(0.02, 0.98, 14)
+        for place in places_in_drive(scene):
+            rates = scene.fastest(place) * share
+            yield self.inserted(scene, place, grids={"rate": rates})
