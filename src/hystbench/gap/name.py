@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 from hystbench.gap.fit import finished, score_of
@@ -41,6 +42,10 @@ class Named:
     rounds: tuple[Round, ...] = ()
     reasons: dict[str, tuple[Candidate, ...]] = field(default_factory=dict)
 
+    def taken_back(self) -> Named:
+        """Give the same with no effect named: the base as it was before the first."""
+        return replace(self, state=self.rounds[0].before, reasons={})
+
 
 def name(
     state: State, floor_rms: float, say: Say = silent, work: Work = IN_PROCESS
@@ -66,10 +71,20 @@ def settled(
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, work, shape_first=True)
     state = without_needless(found.state, floor_rms, say)
+    reasons = found.reasons
+    if len(state.added) > 1 and _others_than_taken(state, found.rounds):
+        state, again = reconsidered(state, found.rounds, floor_rms, say, work, True)
+        reasons = reasons | again
     if state.added:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
-    return Named(state, found.rounds, found.reasons)
+    return Named(state, found.rounds, reasons)
+
+
+def _others_than_taken(state: State, rounds: Sequence[Round]) -> bool:
+    """Tell whether effects gave way or went: no round has seen just these together."""
+    taken = {one.ranking[0].effect for one in rounds if one.taken}
+    return {item.effect for item in state.added} != taken
 
 
 @dataclass(frozen=True)

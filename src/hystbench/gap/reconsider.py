@@ -21,11 +21,23 @@ def reconsidered(
     floor_rms: float,
     say: Say,
     work: Work = IN_PROCESS,
+    every: bool = False,
 ) -> tuple[State, dict[str, tuple[Candidate, ...]]]:
     """Try the rivals of each effect in its place, now that others are there.
 
     The first effect was named while the others were missing: one like it may have
     looked better for that.
+
+    Parameters
+    ----------
+    state : State
+    rounds : sequence of Round
+        Tell which effects came near one.
+    floor_rms : float
+    say : callable
+    work : Work
+    every : bool
+        Whether all effects are rivals, not only those that came near.
 
     Returns
     -------
@@ -41,8 +53,8 @@ def reconsidered(
         now = score_of(state, score)
         short = without_effect(state, number)
         have = {other.effect for other in short.added}
-        names = _rivals(item.effect, rounds) - have
-        known = [effects()[name] for name in sorted(names)]
+        names = set(effects()) if every else _rivals(item.effect, rounds)
+        known = [effects()[name] for name in sorted(names - have)]
         ranking = rank(short, score, known, work)
         best = ranking[0]
         other = best.state is not None and best.effect != item.effect

@@ -110,6 +110,22 @@ class Scene:
             k += 1
         return k
 
+    @property
+    def behind_material(self) -> int:
+        """Place behind the hysteresis and the material's curves that follow it."""
+        k = self.behind_hysteresis
+        while k < len(self.chain) and self.chain[k].place == "material":
+            k += 1
+        return k
+
+    @property
+    def behind_mechanics(self) -> int:
+        """Place behind the last block that is not the sensor's."""
+        k = len(self.chain)
+        while k and self.chain[k - 1].place == "sensor":
+            k -= 1
+        return k
+
     def hold_at(self, place: int) -> Hold:
         """Tell how the signal before a block moves between samples.
 

@@ -61,10 +61,18 @@ class Left:
         of its output. So little tells of an effect only if most of it is nothing that
         reshaping the hysteresis could do.
         """
-        if self.after <= ABOVE:
+        return self._slight(self.after, self.all_after)
+
+    @property
+    def slight_before(self) -> bool:
+        """Whether the base leaves no more than that."""
+        return self._slight(self.before, self.all_before)
+
+    def _slight(self, beyond: float, whole: float) -> bool:
+        if beyond <= ABOVE:
             return True
-        small = self.after < SLIGHT**2 * self.output
-        return small and self.after < (1 - INSIDE) * self.all_after
+        small = beyond < SLIGHT**2 * self.output
+        return small and beyond < (1 - INSIDE) * whole
 
     @property
     def loose(self) -> float:

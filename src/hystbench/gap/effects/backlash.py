@@ -16,7 +16,7 @@ class Backlash(Effect):
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer half-widths up to a third of the largest output."""
-        end = len(scene.chain)
+        end = scene.behind_mechanics
         largest = scene.largest(end)
         yield self.inserted(
             scene,

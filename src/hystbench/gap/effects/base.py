@@ -259,6 +259,24 @@ def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
     return places
 
 
+def places_in_sensor(scene: Scene, linear: bool = False) -> list[int]:
+    """Give the places among the sensor's effects where another one does another thing.
+
+    Behind the last block, and before each of the sensor's that does not commute with
+    what is put there: a lag before a curve, or a curve before a lag.
+
+    Parameters
+    ----------
+    scene : Scene
+    linear : bool
+        Whether what is put there is linear.
+    """
+    end = len(scene.chain)
+    own = range(scene.behind_mechanics, end)
+    before = (k for k in own if isinstance(scene.chain[k], LinearBlock) is not linear)
+    return [end, *before]
+
+
 LINEAR = "transfer-function"
 INSIDE = "inside the base"
 """Place of an effect between two transfer functions."""

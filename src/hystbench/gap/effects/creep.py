@@ -42,7 +42,7 @@ class Creep(Effect):
 
             yield self.inserted(
                 scene,
-                scene.behind_hysteresis,
+                scene.behind_material,
                 values,
                 form="one element" if count == 1 else "three elements",
                 grids={

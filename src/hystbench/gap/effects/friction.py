@@ -9,14 +9,14 @@ from hystbench.gap.scene import Scene
 
 
 class Friction(Effect):
-    """Smooth Coulomb friction behind the mechanics."""
+    """Smooth Coulomb friction of what moves."""
 
     name = "friction"
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer it behind the last block, by the velocity at which it saturates."""
-        end = len(scene.chain)
+        """Offer it behind the mechanics, by the velocity at which it saturates."""
+        end = scene.behind_mechanics
         yield self.inserted(
             scene,
             end,

@@ -25,7 +25,7 @@ class Resonance(Effect):
         low, high = 2 / scene.shortest, 0.45 / scene.step
         yield self.inserted(
             scene,
-            scene.behind_hysteresis,
+            scene.behind_material,
             grids={
                 "frequency_hz": logarithmic(low, high, 6),
                 "damping_ratio": np.array([0.01, 0.15]),

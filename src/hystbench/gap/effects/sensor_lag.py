@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_in_sensor
 from hystbench.gap.scene import Scene
 
 
@@ -15,9 +15,7 @@ class SensorLag(Effect):
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer the lag behind the last block."""
-        yield self.inserted(
-            scene,
-            len(scene.chain),
-            grids={"time_constant_s": logarithmic(scene.step / 20, scene.span / 20)},
-        )
+        """Offer the lag behind the last block, and before the sensor's curves."""
+        times = logarithmic(scene.step / 20, scene.span / 20)
+        for place in places_in_sensor(scene, linear=True):
+            yield self.inserted(scene, place, grids={"time_constant_s": times})

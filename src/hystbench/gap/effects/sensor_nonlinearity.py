@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.effects.base import Effect, Variant, places_in_sensor
 from hystbench.gap.scene import Scene
 
 
@@ -15,19 +15,19 @@ class SensorNonlinearity(Effect):
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer the square, the cube and both."""
-        end = len(scene.chain)
-        largest = scene.largest(end)
-        unit = {"quadratic": 1e-3 / largest, "cubic": 1e-3 / largest**2}
-        for form, used in FORMS.items():
-            yield self.inserted(
-                scene,
-                end,
-                lambda given: {"quadratic": 0.0, "cubic": 0.0, **given},
-                form=form,
-                unit={name: unit[name] for name in used},
-                free=used,
-            )
+        """Offer the square, the cube and both, before the sensor's lag as well."""
+        for place in places_in_sensor(scene):
+            largest = scene.largest(place)
+            unit = {"quadratic": 1e-3 / largest, "cubic": 1e-3 / largest**2}
+            for form, used in FORMS.items():
+                yield self.inserted(
+                    scene,
+                    place,
+                    lambda given: {"quadratic": 0.0, "cubic": 0.0, **given},
+                    form=form,
+                    unit={name: unit[name] for name in used},
+                    free=used,
+                )
 
 
 FORMS = {

@@ -15,8 +15,8 @@ class ThermalDrift(Effect):
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer it behind the last block, by its time constant."""
-        end = len(scene.chain)
+        """Offer it behind the mechanics, by its time constant."""
+        end = scene.behind_mechanics
         small = 1e-3 * scene.largest(end) / scene.largest(0) ** 2
         yield self.inserted(
             scene,
