@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from hystbench.gap.effects.base import Effect, Variant, places_in_sensor
 from hystbench.gap.scene import Scene
@@ -20,7 +21,7 @@ class SensorNonlinearity(Effect):
             largest = scene.largest(place)
             unit = {"quadratic": 1e-3 / largest, "cubic": 1e-3 / largest**2}
             for form, used in FORMS.items():
-                yield self.inserted(
+                found = self.inserted(
                     scene,
                     place,
                     lambda given: {"quadratic": 0.0, "cubic": 0.0, **given},
@@ -28,8 +29,15 @@ class SensorNonlinearity(Effect):
                     unit={name: unit[name] for name in used},
                     free=used,
                 )
+                yield replace(found, charge=CHARGE)
 
 
+CHARGE = 2.0
+"""Of each form: a sensor's curve has both terms, as a rule.
+
+One that is a square alone is more likely the material's asymmetry, and one that is a
+cube alone its saturation: the same curve to the data, and one number less.
+"""
 FORMS = {
     "square": ("quadratic",),
     "cube": ("cubic",),
