@@ -9,6 +9,7 @@ from hystbench.gap.rank import Candidate, near
 from hystbench.gap.thresholds import TIE
 from hystbench.gap.verdict import (
     ABOVE,
+    LONE,
     LOOSE,
     SLIGHT,
     Left,
@@ -40,6 +41,26 @@ def test_every_finding_has_a_word_and_a_reason(before, after, one, other, named,
 @given(st.floats(-1, ABOVE), st.none() | SHARES)
 def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
     assert judge(left(after), False, box)[0] == "no-gap"
+
+
+@given(st.floats(-1, ABOVE), SHARES)
+def test_noise_that_stands_in_lone_samples_is_none(after, lone):
+    word, reason = judge(left(after), False, 0.0, lone=lone)
+    assert word == ("unnamed" if lone > LONE else "no-gap")
+    assert ("lone samples" in reason) == (lone > LONE)
+
+
+def test_a_slightly_wrong_shape_beside_a_named_effect_does_not_undo_the_name():
+    # 40 % of the gap stays, nearly all of it what reshaping could do.
+    within = Left(20.0, 2.0, 100.0, 40.0, 1e6)
+    beyond = Left(100.0, 40.0, 100.0, 40.0, 1e6)
+    assert within.slight
+    assert judge(within, True, 0.9)[0] == "named"
+    assert judge(beyond, True, 0.9)[0] == "unnamed"
+    most = Left(2.0, 2.0, 100.0, 60.0, 1e6)
+    assert judge(most, True, 0.0)[0] == "unnamed"
+    assert most.little_named
+    assert not within.little_named
 
 
 @given(SIZES, SIZES, SIZES, SIZES, st.floats(0, 1e6), st.booleans())

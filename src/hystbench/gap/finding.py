@@ -18,6 +18,7 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
+from hystbench.gap.lone import lone_share
 from hystbench.gap.name import Named, name
 from hystbench.gap.rank import make_score
 from hystbench.gap.rungs import Rung, rungs
@@ -33,7 +34,6 @@ from hystbench.gap.told import (
 )
 from hystbench.gap.uncertainty import on_more_samples, standard_errors
 from hystbench.gap.verdict import (
-    LOOSE,
     Left,
     box_matters,
     judge,
@@ -149,7 +149,7 @@ def decide(
         Of the next experiment; those of the records where none are given.
     """
     left = what_is_left(start, named.state, floor.rms)
-    if named.state.added and left.slight_before and left.loose > LOOSE:
+    if named.state.added and left.little_named:
         say(
             "what the effects leave of a slightly wrong shape is most of it: none named"
         )
@@ -174,6 +174,7 @@ def decide(
         explained,
         bool(start.free),
         floor.method == "upper-bound",
+        0.0 if state.added else lone_share([item.residual for item in compared]),
     )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")

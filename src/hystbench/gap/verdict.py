@@ -22,6 +22,10 @@ SLIGHT = 0.012
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
 INSIDE = 0.5
 """Share of the gap that then has to lie in what a wrong shape of it could do."""
+HALF = 0.5
+"""The same, where what stays is no more than a slightly wrong shape leaves."""
+LONE = 0.3
+"""Share of the power of what is left, in samples far off, that is not noise."""
 BOX = 0.15
 """Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
@@ -75,6 +79,11 @@ class Left:
         return small and beyond < (1 - INSIDE) * whole
 
     @property
+    def little_named(self) -> bool:
+        """Whether effects leave most of what may be a slightly wrong shape alone."""
+        return self.slight_before and self.loose > HALF
+
+    @property
     def loose(self) -> float:
         """Share of the gap that no effect takes away.
 
@@ -111,6 +120,7 @@ def judge(
     explained_by_box: float | None,
     retuned: bool = False,
     bound: bool = False,
+    lone: float = 0.0,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -140,6 +150,11 @@ def judge(
                 "no effect pays; the floor is only an upper bound, so that there is "
                 "no gap cannot be claimed: give period_samples or noise_rms"
             )
+        if left.slight and lone > LONE:
+            return "unnamed", (
+                f"{100 * lone:.0f} % of what is left stands in lone samples, far off "
+                "from the others, which no effect of the vocabulary does"
+            )
         if left.slight:
             return "no-gap", (
                 "what is left is noise, or no more than a slightly wrong shape of the "
@@ -149,7 +164,8 @@ def judge(
             f"a gap of {left.after:.2g} times the noise power is there and no effect "
             f"of the vocabulary pays; {_box_words(explained_by_box, 'it')}"
         )
-    if left.loose > LOOSE or box * left.loose > BOX:
+    much = left.loose > LOOSE or box * left.loose > BOX
+    if left.loose > HALF or (much and not left.slight):
         return "unnamed", (
             f"{100 * left.loose:.0f} % of the gap stays with the best named effects; "
             f"{_box_words(explained_by_box, 'that')}"
