@@ -17,7 +17,14 @@ from hystbench.gap.search import Attempt
 from hystbench.gap.state import Free
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
-from tests.gap.small import block, chains, plain_score, records, state_of
+from tests.gap.small import (
+    block,
+    chains,
+    hysteresis,
+    plain_score,
+    records,
+    state_of,
+)
 
 # As printed in the vocabulary that users and figures share, by place.
 VOCABULARY = {
@@ -304,6 +311,56 @@ def test_a_trial_scores_as_the_model_that_it_stands_for(chain, variant):
 def test_what_makes_no_sense_in_a_chain_is_declined_with_a_reason(name, chain, why):
     with pytest.raises(Declined, match=why):
         list(effects()[name].variants(Scene(chains()[chain], records())))
+
+
+PLACES = (
+    # A limit commutes with nothing, a lag with a lag, a delay with all.
+    (("slew-limit",), "eddy-diffusion", {0, 1}),
+    (("slew-limit",), "drive-saturation", {0, 1}),
+    (("slew-limit",), "input-delay", {0}),
+    (("drive-lag",), "eddy-diffusion", {0}),
+    (("drive-lag",), "slew-limit", {0, 1}),
+    (("input-delay", "drive-saturation", "drive-lag"), "dead-zone", {0, 2, 3}),
+    # What moves is before what is read, the material before the mechanics.
+    (("gpi", "sensor-lag"), "friction", {1}),
+    (("gpi", "sensor-lag"), "backlash", {1}),
+    (("gpi", "sensor-lag"), "thermal-drift", {1}),
+    (("gpi", "asymmetry"), "resonance", {2}),
+    (("gpi", "asymmetry", "resonance"), "creep", {2}),
+    (("gpi", "sensor-lag"), "sensor-nonlinearity", {1, 2}),
+    (("gpi", "sensor-nonlinearity"), "sensor-lag", {1, 2}),
+    (("gpi", "sensor-lag"), "sensor-lag", {2}),
+)
+GIVEN = {
+    "slew-limit": {"rate": 5.0},
+    "drive-lag": {"time_constant_s": 1e-3},
+    "sensor-lag": {"time_constant_s": 1e-3},
+    "input-delay": {"delay_s": 1e-3},
+    "drive-saturation": {"limit": 0.5},
+    "asymmetry": {"coefficient": 1e-3},
+    "sensor-nonlinearity": {"quadratic": 1e-3, "cubic": 0.0},
+    "resonance": {"frequency_hz": 60.0, "damping_ratio": 0.05, "participation": 0.1},
+}
+
+
+@pytest.mark.parametrize(("names", "added", "expected"), PLACES)
+def test_an_effect_is_offered_wherever_it_does_another_thing(names, added, expected):
+    chain = [hysteresis() if x == "gpi" else block(x, **GIVEN[x]) for x in names]
+    if "gpi" not in names:
+        chain.append(hysteresis())
+    scene = Scene(tuple(chain), records())
+    found = {
+        item.start + item.positions[0] for item in effects()[added].variants(scene)
+    }
+    assert found == expected
+
+
+def test_beside_another_shape_a_gain_is_no_error_of_the_sensor():
+    (shape,) = effects()["hysteresis-shape"].variants(Scene((hysteresis(),), records()))
+    values = dict.fromkeys(shape.unit, 1e-3)
+    chain = shape.build(values)
+    with pytest.raises(Declined, match="gain of its own"):
+        list(effects()["calibration-error"].variants(Scene(chain, records())))
 
 
 @pytest.mark.parametrize("name", ["creep", "mains-pickup"])

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.scene import Scene
+from hystbench.gap.thresholds import SHAPE
 
 
 class CalibrationError(Effect):
@@ -15,7 +16,18 @@ class CalibrationError(Effect):
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer the gain, the offset and both."""
+        """Offer the gain, the offset and both.
+
+        Beside another shape of the hysteresis there is nothing to offer: what the shape
+        misses would pass for a gain, which is the shape's own already.
+
+        Raises
+        ------
+        Declined
+            If the chain has such a shape.
+        """
+        if any(block.name == SHAPE for block in scene.chain):
+            raise Declined("the other shape of the hysteresis has a gain of its own")
         end = len(scene.chain)
         step = {"gain": 1e-3, "offset": 1e-3 * scene.largest(end)}
         for used in (("gain",), ("offset",), ("gain", "offset")):
