@@ -36,7 +36,9 @@ def missing(needs: Sequence[str], environment: str | None) -> list[str]:
         return [name for name in needs if not importlib.util.find_spec(name)]
     places = [str(path) for path in Path(environment).glob("lib/python*/site-packages")]
     lacking = [name for name in needs if not PathFinder.find_spec(name, places)]
-    return lacking + ["hystbench"] * (not Path(begun_by(environment)).is_file())
+    if not lacking and not Path(begun_by(environment)).is_file():
+        return ["hystbench"]
+    return lacking
 
 
 def not_entered(needs: Sequence[str], environment: str | None) -> str | None:
