@@ -8,18 +8,22 @@ endif
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+PIP_INSTALL := -m pip install --quiet --disable-pip-version-check
+INSTALL := $(BIN)/python $(PIP_INSTALL)
+# An environment of their own: they want an older numpy.
+RIVALS := .venv-rivals
 SOURCES := $(wildcard src/hystbench/kernels/*.c src/hystbench/kernels/*.h \
   src/hystbench/challenge/kernels/*.c src/hystbench/challenge/kernels/*.h)
 
-.PHONY: help reproduce test lint docs bench test-slurm clean requirements
+.PHONY: help reproduce test lint docs bench rivals test-slurm clean requirements
 help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
 	@echo "make docs       fill the tables of README.md and docs/ from results/"
 	@echo "make bench      measure kernels and pipeline beside their peers"
+	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
-	@echo "make clean      remove .venv and results"
+	@echo "make clean      remove .venv, .venv-rivals and results"
 
 # Look first, so that what is missing is said in one line and not by a compiler.
 $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
@@ -36,6 +40,15 @@ $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
 $(VENV)/ready-%: requirements-%.txt $(READY)
 	$(INSTALL) --require-hashes -r $<
 	touch $@
+
+# After .venv, which looks first and builds the kernels that both use.
+$(RIVALS)/ready: requirements-rivals.txt $(READY)
+	test -x $(RIVALS)/bin/python || $(PYTHON) -m venv $(RIVALS)
+	$(RIVALS)/bin/python $(PIP_INSTALL) --require-hashes -r $<
+	CC="$(CC)" $(RIVALS)/bin/python $(PIP_INSTALL) --no-deps --no-build-isolation -e .
+	touch $@
+
+rivals: $(RIVALS)/ready
 
 reproduce: $(READY)
 	$(BIN)/snakemake --cores all
@@ -74,6 +87,7 @@ requirements:
 	$(COMPILE) --extra dev --output-file requirements.txt pyproject.toml
 	for group in bench slurm; do $(COMPILE) --extra $$group \
 	  --constraint requirements.txt --output-file requirements-$$group.txt pyproject.toml || exit 1; done
+	$(COMPILE) --extra rivals --output-file requirements-rivals.txt pyproject.toml
 
 clean:
-	rm -rf $(VENV) results .snakemake
+	rm -rf $(VENV) $(RIVALS) results .snakemake

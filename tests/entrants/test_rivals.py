@@ -1,5 +1,7 @@
 """Rivals answer in the format of the contest; who knows what."""
 
+import subprocess
+
 import grimp
 import numpy as np
 import pytest
@@ -8,10 +10,11 @@ from scipy.integrate import solve_ivp
 from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec
 from hystbench.challenge.writing import write_folder
-from hystbench.commands.rival import RIVALS
 from hystbench.entrants import gaussian_process, naive, random_namer
-from hystbench.entrants.black_box import kept
+from hystbench.entrants.black_box import best, kept
+from hystbench.entrants.environment import begun_by, missing
 from hystbench.entrants.sindy import simulate
+from hystbench.entrants.task import Given
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
 from hystbench.record import Channel, Record
@@ -19,6 +22,7 @@ from hystbench.refit import Task, effects, fit, within_noise
 from hystbench.schema import check_against_schema
 
 SPEC = CaseSpec(150_001, "single", ("thermal-drift",), "gpi", 20.0)
+STATIC = CaseSpec(150_003, "single", ("sensor-nonlinearity",), "gpi", 20.0)
 
 
 @pytest.fixture(scope="module")
@@ -62,12 +66,68 @@ def test_a_black_box_names_nothing(folder, tmp_path):
 @pytest.mark.parametrize(
     ("name", "needed"), [("sindy", "pysindy"), ("narx", "sysidentpy")]
 )
-def test_optional_rivals_answer_where_they_are_installed(
-    folder, tmp_path, name, needed
+def test_black_boxes_of_another_environment_shrink_a_static_gap(
+    root, tmp_path, name, needed
 ):
-    pytest.importorskip(needed)
-    module = __import__(f"hystbench.entrants.{RIVALS[name]}", fromlist=["solve"])
-    assert solved(module, folder, tmp_path)["verdict"] == "unnamed"
+    environment = str(root / ".venv-rivals")
+    if missing([needed], environment):
+        pytest.skip("no .venv-rivals: make rivals")
+    write_folder(make_case(STATIC), tmp_path)
+    words = [tmp_path / "dataset", "--model", tmp_path / "model.yaml"]
+    subprocess.run(
+        [begun_by(environment), "rival", name, *words, "--out", tmp_path], check=True
+    )
+    gap = read_json(tmp_path / "gap.json")
+    check_against_schema(gap, SCHEMA, "gap.json")
+    assert (gap["verdict"], gap["effects"]) == ("unnamed", [])
+    # a smooth function of the base's output: both libraries hold its leading terms
+    assert gap["gap"]["after"] < 0.5 * gap["gap"]["before"]
+
+
+def records(count):
+    """Records of a ramp, each twice as high as the one before."""
+    channel = Channel("u", "A")
+    u = np.linspace(0.0, 1.0, 50)
+    return tuple(
+        Record(str(k), 1e-3, u, 2.0**k * u, channel, channel, "twin", "fit")
+        for k in range(count)
+    )
+
+
+class Nothing:
+    """A model that gives zero."""
+
+    def simulate(self, u, dt):
+        return np.zeros_like(u)
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_the_way_that_does_best_is_taught_all_fit_records(count):
+    given = Given("d", Nothing(), records(count), (), {})
+    taught = []
+
+    def near(learned):
+        taught.append(tuple(record.name for record in learned))
+        return lambda record: 0.9 * record.y
+
+    def far(learned):
+        return lambda record: 3.0 * record.y
+
+    predict = best(given, [far, near])
+    np.testing.assert_array_equal(predict(given.fit[0]), 0.9 * given.fit[0].y)
+    assert taught[-1] == tuple(record.name for record in given.fit)
+
+
+def test_a_way_is_judged_where_it_did_not_learn():
+    given = Given("d", Nothing(), records(4), (), {})
+
+    def by_heart(learned):
+        known = {record.name for record in learned}
+        return lambda record: record.y if record.name in known else 9.0 * record.y
+
+    predict = best(given, [by_heart])
+    # the base is nearer to what was left out
+    np.testing.assert_array_equal(predict(given.fit[0]), 0.0)
 
 
 def test_sparse_dynamics_are_integrated():
@@ -87,6 +147,16 @@ def test_sparse_dynamics_are_integrated():
     ).y[0]
     # the drive is held over a step
     np.testing.assert_allclose(found, known, atol=2 * dt)
+
+
+@pytest.mark.parametrize("rate", [0.0, -3.0, -2e4])
+def test_linear_dynamics_are_exact_however_fast(rate):
+    # dr/dt = rate r + 2, from rest; an explicit method would run away at -2e4
+    powers, dt = np.array([[0, 0], [1, 0]]), 1e-2
+    found = simulate(np.array([2.0, rate]), powers, np.zeros((200, 1)), dt)
+    time = np.arange(200) * dt
+    known = 2 * np.expm1(rate * time) / rate if rate else 2 * time
+    np.testing.assert_allclose(found, known, rtol=1e-9, atol=1e-12)
 
 
 def test_dynamics_that_run_away_end_at_the_limit():

@@ -36,10 +36,11 @@ rule blind_solve:
         runtime=blind_solver_minutes,
     params:
         settings=blind_solver_settings,
+        begun=blind_solver_begun,
     message:
         "blind: {wildcards.solver} on {wildcards.set} {wildcards.chunk}"
     shell:
-        "hystbench blind-solve {input.data:q} --settings {params.settings:q}"
+        "{params.begun:q} blind-solve {input.data:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"
 
 

@@ -1,24 +1,21 @@
 # The blind contest: `snakemake blind`. Data are made, solved and thrown away chunk by
 # chunk. A solver's job has the data as its only input; the truth is in no file until
 # the judge, who has the answers as input, makes it anew from the seeds.
-import importlib.util
 import math
 
 from hystbench.challenge.contest.plan import chunks, plan
+from hystbench.commands.rival import RIVALS
+from hystbench.entrants.environment import begun_by, not_entered
 from hystbench.errors import nearest
 
 BLIND = "results/blind"
 CONTEST = config["blind"]
 PLANT_KERNELS = sorted(map(str, PACKAGE.glob("challenge/kernels/*.so")))
 # Solvers that need a package that is not there, and those that enter.
-MISSING = {
-    name: [needed for needed in about["needs"] if not importlib.util.find_spec(needed)]
-    for name, about in CONTEST["solvers"].items()
-}
 SKIPPED = {
-    name: f"not entered: needs {' and '.join(needed)} (pip install hystbench[rivals])"
-    for name, needed in MISSING.items()
-    if needed
+    name: why
+    for name, about in CONTEST["solvers"].items()
+    if (why := not_entered(about["needs"], about.get("environment")))
 }
 ENTERED = [name for name in CONTEST["solvers"] if name not in SKIPPED]
 # The set that is judged, with all solvers, and the transfer set, with one.
@@ -76,6 +73,11 @@ def blind_solver_settings(wildcards):
     )
 
 
+def blind_solver_begun(wildcards):
+    """The hystbench that runs a solver: the workflow's own, or its environment's."""
+    return begun_by(CONTEST["solvers"][wildcards.solver].get("environment"))
+
+
 def blind_solver_minutes(wildcards):
     """The longest that a solver can take for a chunk, and some minutes beside."""
     limit = CONTEST["solvers"][wildcards.solver]["time_limit_s"]
@@ -90,8 +92,11 @@ def blind_solver_code(wildcards):
         called = f"hystbench.commands.{command[1].replace('-', '_')}"
         modules += [called] if called in GRAPH.modules else []
         if command[1] == "gap":
-            # Effects are found by name, so that no import tells of them.
+            # Effects are found by name, so that no import tells of them; so are rivals.
             modules += sorted(GRAPH.find_descendants("hystbench.gap"))
+        if command[1] == "rival":
+            named = [RIVALS[word] for word in command if word in RIVALS]
+            modules += [f"hystbench.entrants.{name}" for name in named]
     return code(*modules)
 
 

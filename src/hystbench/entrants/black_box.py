@@ -1,16 +1,19 @@
-"""What the black boxes share: features of a record, and the residual they learn."""
+"""What the black boxes share: features, the residual they learn, and which is best."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from hystbench.entrants.task import Given
+from hystbench.entrants.task import Given, Predict
 from hystbench.record import FloatArray, Record
 
 #: A prediction that runs away is kept within so many times the measured range.
 RUNAWAY = 10.0
+#: Learns from records how to predict others.
+Learn = Callable[[Sequence[Record]], Predict]
 
 
 class Scale(NamedTuple):
@@ -58,3 +61,29 @@ def kept(prediction: FloatArray, record: Record) -> FloatArray:
     """
     limit = RUNAWAY * float(np.abs(record.y).max())
     return np.clip(np.nan_to_num(prediction, nan=limit), -limit, limit)
+
+
+def best(given: Given, ways: Sequence[Learn]) -> Predict:
+    """Learn from all fit records in the way that does best where it did not learn.
+
+    Every other fit record is left out, then the others; where no way comes nearer to
+    them than the base, the base is left as it is. What runs free can run away, and its
+    fit does not tell.
+
+    Parameters
+    ----------
+    given : Given
+    ways : sequence of callable
+    """
+    halves = given.fit[::2], given.fit[1::2]
+    folds = [halves, halves[::-1]] if halves[1] else [(given.fit, given.fit)]
+
+    def error(learn: Learn) -> float:
+        return sum(
+            float(np.sum((record.y - predict(record)) ** 2))
+            for learned, others in folds
+            for predict in [learn(learned)]
+            for record in others
+        )
+
+    return min([lambda _: given.base, *ways], key=error)(given.fit)

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from hystbench.entrants.black_box import kept, residual
-from hystbench.entrants.task import Given, read, write
+from hystbench.entrants.black_box import best, kept, residual
+from hystbench.entrants.task import Given, Predict, read, write
 from hystbench.record import FloatArray, Record
 
-DEGREE, LAG, TERMS = 2, 2, 10
+DEGREES, LAG, TERMS = (1, 2, 3), 2, 20
+#: With the residual's own past, and without it (sysidentpy's names): the case of NARX
+#: that cannot run away.
+KINDS = ("NARMAX", "NFIR")
 #: Samples of each record that it is fitted to.
 SAMPLES = 1500
 
@@ -18,7 +24,8 @@ SAMPLES = 1500
 def solve(dataset: Path, model: Path, out: Path) -> None:
     """Fit the residual from its own past, the input and the base; let it run free.
 
-    Lags are samples, whatever the record's rate, as is usual.
+    Lags are samples, whatever the record's rate, as is usual. Of several degrees, with
+    and without the residual's past, the one is taken that predicts best.
 
     Parameters
     ----------
@@ -30,23 +37,30 @@ def solve(dataset: Path, model: Path, out: Path) -> None:
     .. [1] S. A. Billings, Nonlinear System Identification: NARMAX Methods in the Time,
        Frequency, and Spatio-Temporal Domains, Wiley, 2013.
     """
-    from sysidentpy.basis_function import (  # an optional package: hystbench[rivals]
-        Polynomial,
+    given = read(dataset, model)
+    predict = best(
+        given, [partial(_learn, given, *way) for way in product(KINDS, DEGREES)]
     )
+    write(given, [], "unnamed", "A black box names nothing.", predict, out)
+
+
+def _learn(given: Given, kind: str, degree: int, records: Sequence[Record]) -> Predict:
+    # an optional package: make rivals
+    from sysidentpy.basis_function import Polynomial
     from sysidentpy.model_structure_selection import FROLS
     from sysidentpy.parameter_estimation import LeastSquares
 
-    given = read(dataset, model)
-    r = np.concatenate([residual(given, record)[:SAMPLES] for record in given.fit])
-    x = np.concatenate([_driven(given, record)[:SAMPLES] for record in given.fit])
+    r = np.concatenate([residual(given, record)[:SAMPLES] for record in records])
+    x = np.concatenate([_driven(given, record)[:SAMPLES] for record in records])
     size, spread = float(np.std(r)) or 1.0, np.std(x, axis=0)
     found = FROLS(
+        model_type=kind,
         order_selection=True,
         n_info_values=TERMS,
         info_criteria="bic",
         ylag=LAG,
         xlag=[list(range(1, LAG + 1))] * x.shape[1],
-        basis_function=Polynomial(degree=DEGREE),
+        basis_function=Polynomial(degree=degree),
         estimator=LeastSquares(),
     )
     found.fit(X=x / spread, y=r[:, np.newaxis] / size)
@@ -57,7 +71,7 @@ def solve(dataset: Path, model: Path, out: Path) -> None:
             ran = found.predict(X=_driven(given, record) / spread, y=start)
         return kept(given.base(record) + size * ran[:, 0], record)
 
-    write(given, [], "unnamed", "A black box names nothing.", predict, out)
+    return predict
 
 
 def _driven(given: Given, record: Record) -> FloatArray:
