@@ -1,5 +1,7 @@
 """Fits: never worse than what they start from, and where a plain minimiser ends."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -200,3 +202,21 @@ def test_gains_are_what_the_score_falls_by():
     for item in judged:
         if item.state is not None:
             assert score_of(item.state, score) == pytest.approx(item.score)
+
+
+def test_the_frequency_of_a_tone_is_found_to_what_the_noise_lets_see():
+    noise, hertz = 0.002, 50.037
+    plain = measured(chains()["gain"], noise)
+    picked = [
+        replace(item, y=item.y + 0.3 * np.sin(2 * np.pi * hertz * item.time + k))
+        for k, item in enumerate(plain)
+    ]
+    state = state_of(chains()["gain"], tuple(picked))
+    tone = next(effects()["mains-pickup"].variants(state.scene))
+    near = with_effect(state, tone, {"frequency_hz": hertz + 0.02})
+    after, _ = finished(near, plain_score(state, noise**2))
+    ((_, values),) = after.beside
+    # The bound of Cramer and Rao for the longer record alone, its scored samples.
+    length, count = plain[0].time[-1], len(state.sample.positions[0])
+    bound = np.sqrt(6 / count) * noise / (np.pi * 0.3 * length)
+    assert abs(values["frequency_hz"] - hertz) < 4 * bound

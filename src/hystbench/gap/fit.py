@@ -55,7 +55,7 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
                 value = score_of(moved, score)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
-            if value < best:
+            if value <= best:  # at the floor the score is flat, the step still right
                 state, best = moved, value
                 break
         if before - best < ENOUGH:
@@ -103,9 +103,11 @@ def tuned(state: State, score: Score) -> State:
             items = list(state.beside)
             items[number] = (beside, {**values, key: values[key] + float(step)})
             moved = replace(state, beside=tuple(items))
-            if before - score_of(moved, score) < ENOUGH:
+            after = score_of(moved, score)
+            if after <= before:
+                state = moved
+            if before - after < ENOUGH:
                 break
-            state = moved
     return state
 
 
