@@ -28,11 +28,9 @@ from hystbench.gap.evidence import Evidence, load_evidence
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.run import close_gap
 from hystbench.gap.start import start_state
-from hystbench.gap.work import Work
 from hystbench.record import Record
 
 CASES = 15
-CORES = os.cpu_count() or 1
 SHARES = (0.25, 0.5, 0.75, 1.0)  # of each record
 CANDIDATES = (5, 10, 15, len(effects()))
 COLUMNS = (
@@ -89,7 +87,7 @@ def close(evidence: Evidence, model: str) -> str:
     """Find what the model lacks, without the page; give its names."""
     base, _ = load_base(model, evidence)
     with tempfile.TemporaryDirectory() as out:
-        found = close_gap(evidence, base, Path(out, "gap"), report=False, threads=CORES)
+        found = close_gap(evidence, base, Path(out, "gap"), report=False)
     named = "+".join(item["name"] for item in found.content["effects"])
     return named or str(found.content["verdict"])
 
@@ -101,7 +99,7 @@ def one_round(evidence: Evidence, model: str, candidates: int, share: float) -> 
     state, floor = start_state(fit, base, evidence.hold, evidence.noise_rms)
     known = list(effects().values())[:candidates]
     score = make_score(state, floor.rms)
-    return rank(state, score, known, Work(CORES))[0].effect
+    return rank(state, score, known)[0].effect
 
 
 def work(what: str, case: str, candidates: int, share: float) -> dict[str, object]:

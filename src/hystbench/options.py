@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -42,11 +41,4 @@ identified = click.option(
 )
 arrays = click.option(
     "--arrays", type=NEW_FILE, required=True, help="Archive of output and error."
-)
-search_threads = click.option(
-    "--threads",
-    type=click.IntRange(min=1),
-    default=lambda: len(os.sched_getaffinity(0)),
-    show_default="all cores",
-    help="How many try effects at a time; what is found does not depend on it.",
 )

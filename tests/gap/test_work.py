@@ -1,7 +1,6 @@
 """Variants that their own blocks refuse: the effect declines, the search goes on."""
 
 from dataclasses import replace
-from threading import Barrier
 
 import pytest
 
@@ -10,7 +9,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.rank import rank
 from hystbench.gap.search import Attempt, coarse
-from hystbench.gap.work import IN_PROCESS, Work
+from hystbench.gap.work import IN_PROCESS
 from tests.gap.small import block, measured, plain_score, state_of
 
 NOISE = 0.02
@@ -69,26 +68,3 @@ def test_one_variant_that_refuses_leaves_the_others(beside):
     assert attempt.number == 1
     (alone,), _ = IN_PROCESS.tried(Lags(False), state, score)
     assert trial.values == alone[1].values
-
-
-def test_what_is_found_does_not_depend_on_the_number_of_threads(beside):
-    state, score = beside
-    alone, together = (
-        [
-            (item.effect, item.form, item.score, item.gain, item.declined)
-            for item in rank(state, score, work=Work(threads))
-        ]
-        for threads in (1, 3)
-    )
-    assert alone == together
-
-
-def test_steps_are_done_in_order_and_at_once():
-    both_there = Barrier(2, timeout=30)
-
-    def meet(item):
-        if item < 2:  # each of these two waits for the other
-            both_there.wait()
-        return item
-
-    assert Work(2).each(meet, range(5)) == [0, 1, 2, 3, 4]

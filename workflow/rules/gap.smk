@@ -175,8 +175,6 @@ rule gap_decide:
         f"{RESULTS}/logs/gap/{{case}}/decide.log",
     benchmark:
         f"{RESULTS}/logs/benchmarks/gap/{{case}}/decide.tsv"
-    # Where effects are named here and not by jobs of their own.
-    threads: 1 if config["gap"]["jobs"] == "effects" else 2
     params:
         named=lambda wildcards, input: (
             f"--named {shlex.quote(input.named)}" if input.named else ""
@@ -186,7 +184,7 @@ rule gap_decide:
         "verdict on {wildcards.case}"
     shell:
         "hystbench gap-decide {input.dataset:q} --base {input.base:q} {params.named}"
-        " --threads {threads} --out {params.folder:q} 2> {log:q}"
+        " --out {params.folder:q} 2> {log:q}"
 
 
 # The one job that reads hold-out records: verdict, effects and model are written.

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import click
 
-from hystbench import options
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import Evidence, load_evidence
 from hystbench.gap.excitations import write_experiment as save
@@ -34,7 +33,6 @@ from hystbench.gap.run import close_gap
     type=float,
     help="Largest rate of its input, per second. What is not given is the records'.",
 )
-@options.search_threads
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
 def gap(
     dataset: Path,
@@ -44,7 +42,6 @@ def gap(
     limit_low: float | None,
     limit_high: float | None,
     limit_rate: float | None,
-    threads: int,
     report: bool,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
@@ -64,7 +61,6 @@ def gap(
         limits={key: value for key, value in limits.items() if value is not None},
         report=report,
         say=lambda line: click.echo(line, err=True),
-        threads=threads,
     )
     if write_experiment is not None:
         _write_experiment(finding, evidence, write_experiment)

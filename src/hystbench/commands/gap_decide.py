@@ -21,10 +21,7 @@ from hystbench.gap.jobs import decide_in
     help="Progress after the last round; without it effects are named here.",
 )
 @click.option("--out", type=click.Path(path_type=Path), required=True)
-@options.search_threads
-def gap_decide(
-    dataset: Path, base: Path, named: Path | None, out: Path, threads: int
-) -> None:
+def gap_decide(dataset: Path, base: Path, named: Path | None, out: Path) -> None:
     """Decide what BASE lacks beside the fit records of DATASET; opens no other.
 
     Writes model.yaml, curves.json, stages/decision.json and stages/named.json to OUT.
@@ -37,5 +34,4 @@ def gap_decide(
         model,
         named,
         say=lambda line: click.echo(line, err=True),
-        threads=threads,
     )

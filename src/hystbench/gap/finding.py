@@ -39,7 +39,6 @@ from hystbench.gap.verdict import (
     judge,
     what_is_left,
 )
-from hystbench.gap.work import Work
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -90,7 +89,6 @@ def find(
     declared: float | None = None,
     asked: Mapping[str, float] | None = None,
     say: Say = silent,
-    threads: int = 1,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
 
@@ -109,8 +107,6 @@ def find(
         Limits of the next experiment; the others are those of the records.
     say : callable
         Told a line of progress at a time.
-    threads : int
-        How many try effects at a time.
 
     Raises
     ------
@@ -119,7 +115,7 @@ def find(
     """
     limits = Limits.within(records, asked) if asked else None
     start, floor = start_state(records, base, hold, declared)
-    named = name(start, floor.rms, say, Work(threads))
+    named = name(start, floor.rms, say)
     return decide(dataset, base, start, floor, named, say, limits)
 
 

@@ -15,7 +15,6 @@ from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
-from hystbench.gap.work import Work
 from hystbench.model import Model
 
 DECISION = "stages/decision.json"
@@ -28,7 +27,6 @@ def decide_in(
     base: Model,
     progress: Path | None,
     say: Say = silent,
-    threads: int = 1,
 ) -> None:
     """Give the verdict and write it, the model and the curves to a folder.
 
@@ -42,12 +40,10 @@ def decide_in(
         After the last round; None names the effects here.
     say : callable
         Told a line of progress at a time.
-    threads : int
-        How many try effects at a time.
     """
     start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     if progress is None:
-        named = name(start, floor.rms, say, Work(threads))
+        named = name(start, floor.rms, say)
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
     finding = decide(evidence.name, base, start, floor, named, say)

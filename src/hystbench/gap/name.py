@@ -47,20 +47,12 @@ class Named:
         return replace(self, state=self.rounds[0].before, reasons={})
 
 
-def name(
-    state: State, floor_rms: float, say: Say = silent, work: Work = IN_PROCESS
-) -> Named:
+def name(state: State, floor_rms: float, say: Say = silent) -> Named:
     """Add effects to a model for as long as one pays."""
-    return settled(_path(state, floor_rms, say, work), state, floor_rms, say, work)
+    return settled(_path(state, floor_rms, say), state, floor_rms, say)
 
 
-def settled(
-    found: Progress,
-    start: State,
-    floor_rms: float,
-    say: Say,
-    work: Work = IN_PROCESS,
-) -> Named:
+def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     """Give what a path found, or another where a wrong shape is to go first.
 
     Where a wrong shape of the hysteresis takes more of the gap away than the effect
@@ -69,11 +61,11 @@ def settled(
     """
     if found.deferred and any(item.effect == SHAPE for item in found.state.added):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
-        found = _path(start, floor_rms, say, work, shape_first=True)
+        found = _path(start, floor_rms, say, shape_first=True)
     state = without_needless(found.state, floor_rms, say)
     reasons = found.reasons
     if len(state.added) > 1 and _others_than_taken(state, found.rounds):
-        state, again = reconsidered(state, found.rounds, floor_rms, say, work, True)
+        state, again = reconsidered(state, found.rounds, floor_rms, say, True)
         reasons = reasons | again
     if state.added:
         # Its own numbers are found without what other forms of it could do.
@@ -128,12 +120,12 @@ class Progress:
 
 
 def _path(
-    state: State, floor_rms: float, say: Say, work: Work, shape_first: bool = False
+    state: State, floor_rms: float, say: Say, shape_first: bool = False
 ) -> Progress:
     """Add effects one by one."""
     progress = Progress.begun(state, floor_rms)
     while not progress.done:
-        progress = advance(progress, floor_rms, say, shape_first, work)
+        progress = advance(progress, floor_rms, say, shape_first)
     return progress
 
 
@@ -174,7 +166,7 @@ def advance(
         state = first.state
         reasons[first.effect] = ranking
         if len(state.added) > 1:
-            state, again = reconsidered(state, rounds, floor_rms, say, work)
+            state, again = reconsidered(state, rounds, floor_rms, say)
             reasons |= again
     return Progress(state, progress.gap, rounds, deferred, reasons)
 

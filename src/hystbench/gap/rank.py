@@ -128,14 +128,8 @@ def rank(
     ]
     others = [effect for effect in known if effect.name not in have]
     found: list[Tried] = []
-
-    def tried(effect: Effect) -> tuple[list[Tried], str]:
-        return work.tried(effect, state, score)
-
-    # The first computes what all share, before the others begin.
-    answers = [tried(effect) for effect in others[:1]]
-    answers += work.each(tried, others[1:])
-    for effect, (trials, why) in zip(others, answers, strict=True):
+    for effect in others:
+        trials, why = work.tried(effect, state, score)
         found += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
@@ -143,10 +137,10 @@ def rank(
         return tuple(declined)
     best = min(trial.score for _, trial in found)
     reach = max(NEAR, (now - best) * STILL)
-    refined = work.each(
-        lambda tried: work.fine(*tried) if tried[1].score < best + reach else tried[1],
-        found,
-    )
+    refined = [
+        work.fine(attempt, trial) if trial.score < best + reach else trial
+        for attempt, trial in found
+    ]
     refined.sort(key=lambda trial: trial.score)
     of_effect: dict[str, Trial] = {}
     for trial in refined:
@@ -157,7 +151,7 @@ def rank(
         if number < FINALISTS
         or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
     ]
-    judged = work.each(lambda trial: _judged(trial, state, score, now, work), likely)
+    judged = [_judged(trial, state, score, now, work) for trial in likely]
     judged += [
         _candidate(trial, now)
         for trial in of_effect.values()
@@ -165,14 +159,12 @@ def rank(
     ]
     declined += [item for item in judged if item.declined]
     candidates = _in_order(item for item in judged if not item.declined)
-    near_first = [
-        place < EXACT and item.score < candidates[0].score + NEAR
+    candidates = [
+        exactly(item, score, now, work)
+        if place < EXACT and item.score < candidates[0].score + NEAR
+        else item
         for place, item in enumerate(candidates)
     ]
-    candidates = work.each(
-        lambda item: exactly(item[0], score, now, work) if item[1] else item[0],
-        zip(candidates, near_first, strict=True),
-    )
     return (*_in_order(candidates), *declined)
 
 

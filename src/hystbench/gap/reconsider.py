@@ -12,7 +12,6 @@ from hystbench.gap.rank import Candidate, Round, make_score, rank
 from hystbench.gap.say import Say
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import CLOSE, FURTHER, SHAPE, SWAP
-from hystbench.gap.work import IN_PROCESS, Work
 
 
 def reconsidered(
@@ -20,7 +19,6 @@ def reconsidered(
     rounds: Sequence[Round],
     floor_rms: float,
     say: Say,
-    work: Work = IN_PROCESS,
     every: bool = False,
 ) -> tuple[State, dict[str, tuple[Candidate, ...]]]:
     """Try the rivals of each effect in its place, now that others are there.
@@ -35,7 +33,6 @@ def reconsidered(
         Tell which effects came near one.
     floor_rms : float
     say : callable
-    work : Work
     every : bool
         Whether all effects are rivals, not only those that came near.
 
@@ -55,7 +52,7 @@ def reconsidered(
         have = {other.effect for other in short.added}
         names = set(effects()) if every else _rivals(item.effect, rounds)
         known = [effects()[name] for name in sorted(names - have)]
-        ranking = rank(short, score, known, work)
+        ranking = rank(short, score, known)
         best = ranking[0]
         other = best.state is not None and best.effect != item.effect
         if other and best.score < now - SWAP:

@@ -38,7 +38,6 @@ def close_gap(
     limits: Mapping[str, float] | None = None,
     report: bool = True,
     say: Say = silent,
-    threads: int = 1,
 ) -> Finding:
     """Find what the base lacks, show on hold-out records how the gap shrinks, write it.
 
@@ -57,8 +56,6 @@ def close_gap(
         Whether to write the page.
     say : callable
         Told a line of progress at a time.
-    threads : int
-        How many try effects at a time.
 
     Raises
     ------
@@ -76,7 +73,6 @@ def close_gap(
         evidence.noise_rms,
         limits,
         say,
-        threads,
     )
     # From here on the hold-out records are read; nothing is decided any more.
     shown = show(

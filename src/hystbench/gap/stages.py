@@ -188,7 +188,6 @@ class Recorded(Work):
     def __init__(
         self, state: State, tried: Mapping[str, Mapped], restorer: Restorer
     ) -> None:
-        super().__init__()
         self._state, self._tried, self._restorer = state, tried, restorer
         self._variants: list[Variant] = []
         self._entries: list[Mapped] = []

@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
-
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.fit import added, finished
@@ -16,34 +12,13 @@ from hystbench.gap.state import State
 Tried = tuple[Attempt, Trial]
 """A variant beside a model, and how it does over its grid."""
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
-
 
 class Work:
     """The four steps that take the time; all are computed here and now.
 
     Naming decides by what they give and by nothing else, so that jobs which compute
     them elsewhere lead to the same names.
-
-    Parameters
-    ----------
-    threads : int
-        How many do independent steps at a time. NumPy and the kernels let each other
-        run; what is found does not depend on how many there are.
     """
-
-    def __init__(self, threads: int = 1) -> None:
-        self.threads = threads
-
-    def each(
-        self, step: Callable[[Item], Result], items: Iterable[Item]
-    ) -> list[Result]:
-        """Do a step for each of several items, on all threads."""
-        if self.threads == 1:
-            return [step(item) for item in items]
-        with ThreadPoolExecutor(self.threads) as pool:
-            return list(pool.map(step, items))
 
     def tried(
         self, effect: Effect, state: State, score: Score
