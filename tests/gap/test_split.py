@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap.bases import load_base
+from hystbench.gap.bases import load_base, written_base
 from hystbench.gap.bases.halves import Halves, HalvesError
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
@@ -228,3 +228,11 @@ def test_a_given_base_stays_where_there_is_no_curve(tmp_path):
     found, note = load_base(str(tmp_path / "rig.yaml"), measured(lambda w: w))
     assert found.chain == given().chain
     assert "series" not in note
+
+
+def test_the_base_of_a_round_is_taken_as_it_is_written(tmp_path, clipped_records):
+    given().save(tmp_path / "rig.yaml")
+    found = written_base(tmp_path / "rig.yaml", clipped_records)
+    assert found.chain == given().chain
+    split, _ = load_base(str(tmp_path / "rig.yaml"), clipped_records)
+    assert len(split.chain) > len(found.chain)

@@ -9,7 +9,7 @@ import click
 from hystbench import options
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json, write_json
-from hystbench.gap.bases import load_base
+from hystbench.gap.bases import written_base
 from hystbench.gap.effects import effects
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.stages import try_one
@@ -30,5 +30,5 @@ def gap_candidate(
     if effect not in effects():
         raise InputError(f"no effect {effect!r}; {nearest(effect, effects())}")
     evidence = load_evidence(dataset, "fit")
-    model, _ = load_base(str(base), evidence)
+    model = written_base(base, evidence)
     write_json(out, try_one(evidence, model, read_json(before), effect))

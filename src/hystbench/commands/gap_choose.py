@@ -8,7 +8,7 @@ import click
 
 from hystbench import options
 from hystbench.files import read_json, write_json
-from hystbench.gap.bases import load_base
+from hystbench.gap.bases import written_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.stages import choose
 
@@ -26,7 +26,7 @@ def gap_choose(
 ) -> None:
     """Rank the CANDIDATES of a round and write the progress after it."""
     evidence = load_evidence(dataset, "fit")
-    model, _ = load_base(str(base), evidence)
+    model = written_base(base, evidence)
     tried = {content["effect"]: content for content in map(read_json, candidates)}
     write_json(
         out,

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases import load_base
+from hystbench.gap.bases import written_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import decide_in
 
@@ -27,7 +27,7 @@ def gap_decide(dataset: Path, base: Path, named: Path | None, out: Path) -> None
     Writes model.yaml, curves.json, stages/decision.json and stages/named.json to OUT.
     """
     evidence = load_evidence(dataset, "fit")
-    model, _ = load_base(str(base), evidence)
+    model = written_base(base, evidence)
     decide_in(
         out,
         evidence,

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases import load_base
+from hystbench.gap.bases import written_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import show_in
 
@@ -22,5 +22,5 @@ def gap_show(dataset: Path, base: Path, out: Path) -> None:
     Reads what hystbench gap-decide wrote to OUT; writes gap.json and holdout/ there.
     """
     evidence = load_evidence(dataset)
-    model, _ = load_base(str(base), evidence)
+    model = written_base(base, evidence)
     show_in(out, evidence, model)

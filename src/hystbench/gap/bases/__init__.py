@@ -23,6 +23,7 @@ __all__ = [
     "identified_linear",
     "load_base",
     "simulated_column",
+    "written_base",
 ]
 
 WORDS = ("gpi", "linear", "column")
@@ -64,16 +65,7 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
     if text == "column":
         return simulated_column(evidence)
     if Path(text).is_file() or text.endswith((".yaml", ".yml")):
-        model = load_model(text)
-        check_units(evidence, model, text)
-        try:
-            model = model.with_records(
-                (*evidence.fit, *evidence.hold_out), evidence.simulated_column
-            )
-        except InputError as error:
-            raise InputError(f"{text}: {error}") from None
-        _check_bounded(model.with_hold(evidence.hold), evidence, text)
-        model, more = split_given(model, evidence)
+        model, more = split_given(written_base(Path(text), evidence), evidence)
         return model, f"base {model.name} from {text}{more}"
     if FORM.fullmatch(text):
         return function_base(text, evidence)
@@ -82,6 +74,31 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
         f"--model: {text!r} is no model file, none of {', '.join(WORDS)}, and no "
         f"package.module:function; {nearest(text, [*WORDS, *files])}"
     )
+
+
+def written_base(path: Path, evidence: Evidence) -> Model:
+    """Give the base of a model file just as it is written.
+
+    Parameters
+    ----------
+    path : Path
+    evidence : Evidence
+
+    Raises
+    ------
+    InputError
+        If it is no model of these records, or does not stay bounded on them.
+    """
+    model = load_model(path)
+    check_units(evidence, model, str(path))
+    try:
+        model = model.with_records(
+            (*evidence.fit, *evidence.hold_out), evidence.simulated_column
+        )
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    _check_bounded(model.with_hold(evidence.hold), evidence, str(path))
+    return model
 
 
 def _check_bounded(model: Model, evidence: Evidence, place: str) -> None:
