@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import finding as finding_module
@@ -20,7 +21,7 @@ from hystbench.gap.start import start_state
 from hystbench.gap.verdict import Left
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
-from tests.gap.small import block, measured
+from tests.gap.small import block, hysteresis, measured
 
 
 def test_a_reason_tells_what_a_wrong_shape_could_leave_as_well():
@@ -143,3 +144,41 @@ def test_why_there_is_no_experiment_is_told(alike, monkeypatch):
     alone = decided(alike, "drive-lag").content
     assert alone["next_experiment"] is None
     assert "no_experiment" not in alone
+
+
+def test_what_the_simulation_misses_by_its_steps_is_measured():
+    """Far more steps of the loop than ours tell it independently."""
+    chain = (hysteresis(),)
+    base = Model("rig", CURRENT, DISPLACEMENT, chain)
+    start, floor = start_state(measured(chain, 0.02), base, "band-limited", 0.02)
+    found = decide("made", base, start, floor, Named(start)).content["fit"]
+    missed = []
+    for one in start.records:
+        fine = interpolate(one.u, 64)
+        exact = chain[0].simulate(fine, fine, one.dt / 64)[::64]
+        missed.append(chain[0].simulate(one.u, one.u, one.dt) - exact)
+    size = float(np.sqrt(np.mean(np.concatenate(missed) ** 2)))
+    assert found["step_error"] == pytest.approx(size, rel=0.2)
+    gain = (block("gain", value=12.0),)
+    base = Model("rig", CURRENT, DISPLACEMENT, gain)
+    start, floor = start_state(measured(gain, 0.02), base, "band-limited", 0.02)
+    found = decide("made", base, start, floor, Named(start)).content["fit"]
+    assert found["step_error"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_ranking_tells_of_every_place_and_form():
+    lag = block("sensor-lag", time_constant_s=4e-3)
+    chain = (hysteresis(), lag)
+    base = Model("rig", CURRENT, DISPLACEMENT, chain)
+    curve = block("sensor-nonlinearity", quadratic=0.03, cubic=0.0)
+    given = measured((hysteresis(), curve, lag), 0.02)
+    content = find("made", given, base, declared=0.02).content
+    rows = {row["name"]: row for row in content["ranking"] if row["round"] == 1}
+    tried = rows["sensor-nonlinearity"]["variants"]
+    # The square, the cube and both, behind the lag and before it.
+    ways = {(one["form"], one["position"]) for one in tried}
+    assert ways == {(f, k) for f in ("square", "cube", "both") for k in (1, 2)}
+    scores = [one["score"] for one in tried]
+    assert scores == sorted(scores)
+    beside = rows["mains-pickup"].get("variants", [])
+    assert all(one["position"] is None for one in beside)

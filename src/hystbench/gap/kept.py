@@ -16,7 +16,7 @@ from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
 from hystbench.gap.name import Progress
-from hystbench.gap.rank import Candidate, Round
+from hystbench.gap.rank import Candidate, Round, Tested
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Added, Free, State
@@ -146,6 +146,9 @@ class Restorer:
             | {
                 "score": limit(content["score"]),
                 "state": None if state is None else self.state(state),
+                "variants": tuple(
+                    Tested(*x[:3], limit(x[3])) for x in content["variants"]
+                ),
             }
         )
 
@@ -194,6 +197,7 @@ def _candidate_mapping(item: Candidate) -> Mapped:
         "state": None if item.state is None else state_mapping(item.state),
         "declined": item.declined,
         "held_back": item.held_back,
+        "variants": [[*x[:3], number(x.score)] for x in item.variants],
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,6 +30,16 @@ from hystbench.gap.thresholds import (
 from hystbench.gap.work import IN_PROCESS, Tried, Work
 
 
+class Tested(NamedTuple):
+    """A variant of an effect: where and how it was tried, and its score."""
+
+    place: str
+    form: str
+    position: int | None
+    """Of its first block in the chain; None for a signal beside it."""
+    score: float
+
+
 @dataclass(frozen=True)
 class Candidate:
     """An effect as it did in one round.
@@ -46,6 +57,8 @@ class Candidate:
     held_back : float, optional
         What it gains on records held back; of the best one, where that had to decide
         whether it is taken.
+    variants : tuple of Tested
+        Every place and form of it that could be scored, best first.
     """
 
     effect: str
@@ -56,6 +69,7 @@ class Candidate:
     state: State | None = None
     declined: str = ""
     held_back: float | None = None
+    variants: tuple[Tested, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -143,8 +157,10 @@ def rank(
     ]
     refined.sort(key=lambda trial: trial.score)
     of_effect: dict[str, Trial] = {}
+    tested: dict[str, list[Tested]] = {}
     for trial in refined:
         of_effect.setdefault(trial.variant.effect, trial)
+        tested.setdefault(trial.variant.effect, []).append(_tested(trial))
     likely = [
         trial
         for number, trial in enumerate(of_effect.values())
@@ -157,6 +173,7 @@ def rank(
         for trial in of_effect.values()
         if not any(trial is item for item in likely)
     ]
+    judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
     declined += [item for item in judged if item.declined]
     candidates = _in_order(item for item in judged if not item.declined)
     candidates = [
@@ -171,6 +188,12 @@ def rank(
 def _in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
     """Put finalists first, and what scores least first among them."""
     return sorted(candidates, key=lambda item: (item.state is None, item.score))
+
+
+def _tested(trial: Trial) -> Tested:
+    variant = trial.variant
+    position = variant.start + variant.positions[0] if variant.positions else None
+    return Tested(variant.place, variant.form, position, trial.score)
 
 
 def _candidate(trial: Trial, now: float) -> Candidate:

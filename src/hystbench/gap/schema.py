@@ -84,6 +84,9 @@ FIT = _object(
         # went to signals that are new in every record and predict no other.
         "explained": OPTIONAL,
         "new_in_every_record": NUMBER,
+        # RMS of what the simulation misses by its own steps, of the model with its
+        # effects; it does not count as a gap.
+        "step_error": NUMBER,
     }
 )
 
@@ -92,6 +95,16 @@ FIT = _object(
 SHORTFALL = _object({"fit": NUMBER, "hold_out": NUMBER, "sentence": {"type": "string"}})
 
 RUNG = _object({"name": {"type": "string"}, "rms": NUMBER})
+
+# A place and form of an effect; its block's place in the chain, none beside it.
+TESTED = _object(
+    {
+        "place": {"type": "string"},
+        "form": {"type": "string"},
+        "position": {"type": ["integer", "null"], "minimum": 0},
+        "score": NUMBER,
+    }
+)
 
 RANK = _object(
     {
@@ -106,6 +119,7 @@ RANK = _object(
     score=NUMBER,
     gain=NUMBER,
     declined={"type": "string"},
+    variants={"type": "array", "items": TESTED},
 )
 
 SCHEMA = _object(

@@ -183,6 +183,8 @@ def _ranking_row(number: int, item: Candidate) -> dict[str, Any]:
     }
     if item.form:
         row["form"] = item.form
+    if item.variants:
+        row["variants"] = [x._asdict() for x in item.variants if np.isfinite(x.score)]
     if item.declined:
         row["declined"] = item.declined
     elif np.isfinite(item.score):
