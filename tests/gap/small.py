@@ -42,7 +42,12 @@ def chains():
         exponent=0.5,
         form="excess-field",
     )
+    # Static gain 12, a lag and a mode at 60 Hz: descending powers of s.
+    w = 2 * np.pi * 60.0
+    down = np.polymul([5e-3, 1.0], [1 / w**2, 2 * 0.05 / w, 1.0]).tolist()
+    inside = block("transfer-function", numerator=[12.0], denominator=down)
     return {
+        "mode inside": (inside,),
         "gain": (gain,),
         "gain and mode": (gain, mode),
         "hysteresis": (hysteresis(),),

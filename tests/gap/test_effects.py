@@ -12,6 +12,7 @@ from hystbench.gap.change import removable, with_effect, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, logarithmic
 from hystbench.gap.fit import score_of
+from hystbench.gap.rank import rank
 from hystbench.gap.scene import Scene
 from hystbench.gap.search import Attempt
 from hystbench.gap.state import Free
@@ -21,6 +22,7 @@ from tests.gap.small import (
     block,
     chains,
     hysteresis,
+    measured,
     plain_score,
     records,
     state_of,
@@ -353,6 +355,33 @@ def test_an_effect_is_offered_wherever_it_does_another_thing(names, added, expec
         item.start + item.positions[0] for item in effects()[added].variants(scene)
     }
     assert found == expected
+
+
+def test_a_mode_is_taken_out_of_a_transfer_function_and_hardens_there():
+    chain = chains()["mode inside"]
+    scene = Scene(chain, records())
+    (variant,) = effects()["stiffness-hardening"].variants(scene)
+    before, mode = variant.build({"coefficient": 2e-3})
+    assert before.denominator == pytest.approx([5e-3, 1.0])
+    assert (mode.frequency_hz, mode.damping_ratio) == pytest.approx((60.0, 0.05))
+    assert mode.participation == 1.0
+    hard = measured((before, mode), 0.01)
+    ranking = rank(state_of(chain, hard), plain_score(state_of(chain, hard), 1e-4))
+    assert ranking[0].effect == "stiffness-hardening"
+    found = ranking[0].state.chain[-1]
+    assert found.coefficient == pytest.approx(2e-3, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [{"start": "settled"}, {"numerator": [1e-3, 1e-2, 12.0]}],
+    ids=["settled", "degree"],
+)
+def test_a_mode_that_cannot_be_taken_out_is_none(changed):
+    (block,) = chains()["mode inside"]
+    scene = Scene((replace(block, **changed),), records())
+    with pytest.raises(Declined, match="no mode"):
+        list(effects()["stiffness-hardening"].variants(scene))
 
 
 def test_beside_another_shape_a_gain_is_no_error_of_the_sensor():

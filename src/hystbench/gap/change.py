@@ -16,6 +16,8 @@ from hystbench.gap.state import Added, Free, State
 def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
     """Give the numbers that a variant leaves free, inside the range searched."""
     for name in variant.free:
+        if name not in block.parameters():
+            continue  # another block of the effect has it
         value = getattr(block, name)
         if isinstance(value, tuple):
             for element in range(len(value)):
@@ -83,7 +85,7 @@ def without_effect(state: State, number: int) -> State:
         if k not in gone.blocks:
             moved[k] = len(chain)
             chain.append(block)
-        elif gone.replaced is not None:
+        elif gone.replaced is not None and k == gone.blocks[0]:
             chain.append(gone.replaced)
     return replace(
         state,

@@ -51,7 +51,7 @@ def _blocks_of_base(state: State) -> list[Block | None]:
     # of the base.
     lost = any(not item.blocks and item.effect not in beside for item in state.added)
     own = {k for item in state.added for k in item.blocks}
-    instead = {k for item in state.added if item.replaced for k in item.blocks}
+    instead = {item.blocks[0] for item in state.added if item.replaced and item.blocks}
     return [
         None if k in own else block
         for k, block in enumerate(state.chain)
@@ -129,6 +129,8 @@ def _parameters(
         return found
     for place in item.blocks:
         block = state.chain[place]
+        if block.name != item.effect:
+            continue  # what the effect left of a block that it was taken out of
         for key, about in block.parameters().items():
             value = getattr(block, key)
             if key == "hold" or value == ():

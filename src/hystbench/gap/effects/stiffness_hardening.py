@@ -2,51 +2,117 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any, cast
+
+import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.gap.effects.base import Declined, Effect, Values, Variant
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.effects.base import LINEAR, Declined, Effect, Values, Variant
 from hystbench.gap.scene import Scene
+
+Before = tuple[Block, ...]
+"""What is left of a block when a mode is taken out of its end."""
 
 
 class StiffnessHardening(Effect):
-    """A cubic spring in the place of the chain's linear mode."""
+    """A cubic spring in the place of one of the chain's linear modes."""
 
     name = "stiffness-hardening"
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer the spring for each mode of the chain."""
-        modes = [k for k, item in enumerate(scene.chain) if item.name == "resonance"]
-        if not modes:
+        """Offer the spring for each mode, those inside transfer functions included.
+
+        Raises
+        ------
+        Declined
+            If there is no mode, or none that can be taken out.
+        """
+        found = False
+        for k, block in enumerate(scene.chain):
+            for before, mode in _modes(block):
+                found = True
+                yield self._hardened(scene, k, before, mode)
+        if not found:
             raise Declined("the chain has no mode whose spring could harden")
-        for k in modes:
-            mode, rest = scene.chain[k].to_mapping(), scene.chain[k + 1 :]
-            own = {key: mode[key] for key in MODE if key in mode}
 
-            def build(
-                given: Values,
-                own: dict[str, float] = own,
-                rest: tuple[Block, ...] = rest,
-            ) -> tuple[Block, ...]:
-                block = registry()[self.name]
-                return (block.from_mapping({**own, **given}), *rest)
+    def _hardened(
+        self, scene: Scene, k: int, before: Before, mode: Mapping[str, Any]
+    ) -> Variant:
+        rest = scene.chain[k + 1 :]
 
-            small = 1e-3 / scene.largest(k) ** 2
-            yield Variant(
-                self.name,
-                self.place,
-                "",
-                k,
-                build,
-                (0,),
-                unit={"coefficient": small},
-                free=("coefficient",),
-                replaces=True,
-                neutral=False,
-                zero={"coefficient": 0.0},
-            )
+        def build(given: Values) -> tuple[Block, ...]:
+            own = registry()[self.name].from_mapping({**mode, **given})
+            return (*before, own, *rest)
+
+        # What moves the spring: the mode's own input, or what it gives.
+        largest = scene.largest(k + 1 if before else k)
+        return Variant(
+            self.name,
+            self.place,
+            f"{mode['frequency_hz']:.3g} Hz" if before else "",
+            k,
+            build,
+            tuple(range(len(before) + 1)),
+            unit={"coefficient": 1e-3 / largest**2},
+            free=("coefficient",),
+            replaces=True,
+            neutral=False,
+            zero={"coefficient": 0.0},
+        )
 
 
 MODE = ("frequency_hz", "damping_ratio", "participation")
+DAMPED = 0.5
+"""Damping ratio up to which a pair of poles is a mode."""
+
+
+def _modes(block: Block) -> Iterator[tuple[Before, dict[str, Any]]]:
+    """Give the modes of a block, each with what stays of the block before it."""
+    if block.name == "resonance":
+        given = block.to_mapping()
+        yield (), {key: given[key] for key in MODE}
+    elif block.name == LINEAR:
+        yield from _modes_inside(cast("TransferFunction", block))
+
+
+def _modes_inside(
+    block: TransferFunction,
+) -> Iterator[tuple[Before, dict[str, Any]]]:
+    """Take underdamped pairs of poles out of a transfer function, as a mode behind it.
+
+    ``G(s) = (N(s) wn^2 / D'(s)) / (s^2 + 2 zeta wn s + wn^2)`` with the first factor
+    proper. The mode starts from rest, so the whole must too.
+    """
+    poles = np.roots(block.denominator)
+    if block.start != "rest" or len(block.numerator) > len(block.denominator) - 2:
+        return
+    for pole in poles[poles.imag > 0]:
+        wn = float(abs(pole))
+        zeta = float(-pole.real / wn)
+        if zeta > DAMPED:
+            continue
+        pair = np.array([1.0, 2 * zeta * wn, wn**2])
+        # Divided by the pair's own static value, so that the mode's is one.
+        down = np.polydiv(np.array(block.denominator), pair / wn**2)[0]
+        yield (
+            (_left(block, down),),
+            {
+                "frequency_hz": wn / (2 * np.pi),
+                "damping_ratio": zeta,
+                "participation": 1.0,
+                **({"hold": block.hold} if block.hold != "default" else {}),
+            },
+        )
+
+
+def _left(block: TransferFunction, down: np.ndarray) -> Block:
+    """Give a transfer function's numerator over what is left of its denominator."""
+    if len(down) == 1:
+        static = block.numerator[-1] / float(down[0])
+        return registry()["gain"].from_mapping({"value": static})
+    given = block.to_mapping() | {"denominator": down.tolist()}
+    return registry()[LINEAR].from_mapping(given)
