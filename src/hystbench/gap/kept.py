@@ -141,16 +141,15 @@ class Restorer:
 
     def _candidate(self, content: Mapped) -> Candidate:
         state = content["state"]
-        return Candidate(
-            **content
-            | {
-                "score": limit(content["score"]),
-                "state": None if state is None else self.state(state),
-                "variants": tuple(
-                    Tested(*x[:3], limit(x[3])) for x in content["variants"]
-                ),
-            }
-        )
+        own: Mapped = {
+            "score": limit(content["score"]),
+            "state": None if state is None else self.state(state),
+            "variants": tuple(
+                Tested(place, form, position, limit(score))
+                for place, form, position, score in content["variants"]
+            ),
+        }
+        return Candidate(**content | own)
 
 
 def progress_mapping(progress: Progress) -> Mapped:
