@@ -128,12 +128,14 @@ def write_blind(folder: Path) -> None:
     )
     interval = ["share", "low", "high", "cases"]
     shares = [
-        [effect, family, figure, 0.8 + 0.05 * n, 0.6, 1.0, 10]
+        [effect, family, ratio, figure, 0.8 + 0.05 * n, 0.6, 1.0, 10]
         for effect in BLIND_EFFECTS
         for n, family in enumerate(BLIND_FAMILIES)
+        for ratio in (10.0, 20.0)
         for figure in ("top1", "exact", "where_hit")
     ]
-    _write(folder / "effects.csv", ["effect", "family", "figure", *interval], shares)
+    columns = ["effect", "family", "ratio_db", "figure", *interval]
+    _write(folder / "effects.csv", columns, shares)
     curves = [
         [effect, family, ratio, ratio / (3 + ratio), 0.3, 1.0, 10]
         for effect in ("all", *BLIND_EFFECTS)

@@ -97,6 +97,7 @@ rule blind_summary:
                 "confusion",
                 "confused",
                 "effects",
+                "retuned",
                 "power",
                 "reliability",
                 "rivals",

@@ -13,7 +13,9 @@ from hystbench.compare.rows import read_rows
 from hystbench.errors import InputError
 from hystbench.figures import style
 
-COLUMNS = ("effect", "family", "figure", "share", "low", "high", "cases")
+COLUMNS = ("effect", "family", "ratio_db", "figure", "share", "low", "high", "cases")
+#: Ratio of gap to noise (dB) whose cases are drawn.
+RATIO_DB = 20.0
 #: Families of plants, each with a colour and a marker.
 FAMILIES = {
     "gpi": ("GPI plant", style.BLUE, "o"),
@@ -27,14 +29,20 @@ _SPREAD = 0.8
 def by_effect(table: Path, figures: Mapping[str, str]) -> Figure:
     """Draw a panel a figure, with a mark and an interval for each effect and family.
 
+    Of the cases at 20 dB.
+
     Parameters
     ----------
     table : Path
-        ``effect, family, figure, share, low, high, cases``.
+        ``effect, family, ratio_db, figure, share, low, high, cases``.
     figures : mapping of str to str
         Figures of the table and how they are called.
     """
-    rows = [row for row in read_rows(table, COLUMNS) if row["family"] in FAMILIES]
+    rows = [
+        row
+        for row in read_rows(table, COLUMNS)
+        if row["family"] in FAMILIES and float(row["ratio_db"]) == RATIO_DB
+    ]
     if not rows:
         raise InputError(f"{table}: no effect of the blind contest")
     effects = sorted({row["effect"] for row in rows})

@@ -169,8 +169,8 @@ def mark_above(axes: Axes, x: ArrayLike, color: str) -> None:
 
 
 def letter(axes: Sequence[Axes]) -> None:
-    """Letter panels (a), (b), ... before their titles."""
-    for index, panel in enumerate(axes):
+    """Letter panels (a), (b), ... before their titles; a single one has no letter."""
+    for index, panel in enumerate(axes if len(axes) > 1 else ()):
         title = panel.get_title(loc="left")
         panel.set_title(f"({chr(ord('a') + index)}) {title}".rstrip(), loc="left")
 

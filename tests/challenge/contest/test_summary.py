@@ -222,3 +222,21 @@ def test_what_carries_to_the_transfer_set(tmp_path):
     write_score(home, away, "s", ABOUT, {}, tmp_path)
     told = {line["figure"]: line for line in table(tmp_path / "transfer.csv")}
     assert told["top1 GPI 20 dB"]["within 5 points"] == "no"
+
+
+def test_the_shares_of_an_effect_stand_at_each_ratio():
+    hard, single = truth(effect(), family="preisach"), truth(effect())
+    rows = [row(single, RESONANCE), row(single, CREEP)]
+    rows.append(row(hard, RESONANCE, ratio_db=10.0))
+    found = {item[:4]: item[4:] for item in tables.by_effect(rows)}
+    assert found["resonance", "gpi", 20.0, "top1"] == tuple(wilson(1, 2))
+    assert found["resonance", "all", 20.0, "top1"] == tuple(wilson(1, 2))
+    assert found["resonance", "preisach", 10.0, "top1"] == tuple(wilson(1, 1))
+    assert ("resonance", "preisach", 20.0, "top1") not in found
+
+
+def test_how_hard_an_effect_is_once_the_base_is_tuned():
+    left = (18.0, 2.0, 11.0)
+    rows = [row(truth(effect()), RESONANCE, ratio_retuned_db=x) for x in left]
+    (found,) = tables.retuned(rows)
+    assert found == ("resonance", 20.0, 2.0, 11.0, 18.0, 3)

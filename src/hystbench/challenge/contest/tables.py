@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from statistics import median
 from typing import Any
 
 import numpy as np
@@ -79,24 +80,47 @@ def _first(row: Row) -> str:
     return names[0] if names else row.verdict
 
 
-def by_effect(rows: Iterable[Row], ratio_db: float = 20.0) -> list[tuple[Any, ...]]:
-    """Give for each single effect at one ratio the shares that matter.
+def by_effect(rows: Iterable[Row]) -> list[tuple[Any, ...]]:
+    """Give for each single effect, family and ratio the shares that matter.
 
     Returns
     -------
     list of tuple
-        ``effect, family, figure, share, low, high, cases``.
+        ``effect, family, ratio_db, figure, share, low, high, cases``.
     """
-    chosen = [row for row in rows if row.kind == "single" and row.ratio_db == ratio_db]
     out: list[tuple[Any, ...]] = []
-    for effect in sorted({row.truth for row in chosen}):
-        mine = [row for row in chosen if row.truth == effect]
+    for (effect, ratio), mine in _singles(rows).items():
         for family in ("all", *sorted({row.family for row in mine})):
             group = [row for row in mine if family in ("all", row.family)]
             for figure in ("top1", "in_set", "exact", "where_hit"):
-                found = shares(group, figure)
-                out.append((effect, family, figure, *found))
+                out.append((effect, family, ratio, figure, *shares(group, figure)))
     return out
+
+
+def retuned(rows: Iterable[Row]) -> list[tuple[Any, ...]]:
+    """Give how hard each single effect is once the base is re-tuned at its best.
+
+    Returns
+    -------
+    list of tuple
+        ``effect, ratio_db``, then the least, the median and the greatest ratio that is
+        left (dB), and ``cases``.
+    """
+    out: list[tuple[Any, ...]] = []
+    for (effect, ratio), mine in _singles(rows).items():
+        left = [x.ratio_retuned_db for x in mine if x.ratio_retuned_db is not None]
+        if left:
+            out.append((effect, ratio, min(left), median(left), max(left), len(left)))
+    return out
+
+
+def _singles(rows: Iterable[Row]) -> dict[tuple[str, float], list[Row]]:
+    """Sort cases of one hidden effect by the effect and the ratio."""
+    found: dict[tuple[str, float], list[Row]] = {}
+    for row in rows:
+        if row.kind == "single" and row.ratio_db is not None:
+            found.setdefault((row.truth, row.ratio_db), []).append(row)
+    return dict(sorted(found.items()))
 
 
 def power(rows: Iterable[Row]) -> list[tuple[Any, ...]]:

@@ -63,7 +63,7 @@ def write_score(
     out : Path
         Folder: ``summary.json``, ``contest.csv``, ``reach.csv``, ``transfer.csv``,
         ``cases.csv``, ``transfer-cases.csv``, ``confusion.csv``, ``confused.csv``,
-        ``effects.csv``, ``power.csv``, ``reliability.csv`` and ``rivals.csv``.
+        ``effects.csv``, ``retuned.csv``, ``power.csv``, ``reliability.csv`` and ``rivals.csv``.
     """
     own = [row for row in rows if row.solver == solver]
     asked = reach(own, transfer)
@@ -81,8 +81,13 @@ def write_score(
     )
     write_csv(
         out / "effects.csv",
-        ("effect", "family", "figure", *_SHARE),
+        ("effect", "family", "ratio_db", "figure", *_SHARE),
         map(_told, tables.by_effect(own)),
+    )
+    write_csv(
+        out / "retuned.csv",
+        ("effect", "ratio_db", "least", "median", "greatest", "cases"),
+        map(_told, tables.retuned(own)),
     )
     write_csv(
         out / "power.csv",
