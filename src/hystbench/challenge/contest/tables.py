@@ -92,8 +92,10 @@ def by_effect(rows: Iterable[Row]) -> list[tuple[Any, ...]]:
     for (effect, ratio), mine in _singles(rows).items():
         for family in ("all", *sorted({row.family for row in mine})):
             group = [row for row in mine if family in ("all", row.family)]
-            for figure in ("top1", "in_set", "exact", "where_hit"):
-                out.append((effect, family, ratio, figure, *shares(group, figure)))
+            out += [
+                (effect, family, ratio, figure, *shares(group, figure))
+                for figure in ("top1", "in_set", "exact", "where_hit")
+            ]
     return out
 
 

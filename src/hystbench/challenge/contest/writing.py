@@ -63,7 +63,8 @@ def write_score(
     out : Path
         Folder: ``summary.json``, ``contest.csv``, ``reach.csv``, ``transfer.csv``,
         ``cases.csv``, ``transfer-cases.csv``, ``confusion.csv``, ``confused.csv``,
-        ``effects.csv``, ``retuned.csv``, ``power.csv``, ``reliability.csv`` and ``rivals.csv``.
+        ``effects.csv``, ``retuned.csv``, ``power.csv``, ``reliability.csv`` and
+        ``rivals.csv``.
     """
     own = [row for row in rows if row.solver == solver]
     asked = reach(own, transfer)
