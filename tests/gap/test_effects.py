@@ -359,6 +359,58 @@ def test_an_effect_is_offered_wherever_it_does_another_thing(names, added, expec
     assert found == expected
 
 
+SLOWER, LARGER = 2.5, 40.0
+SCALES = {
+    "time_constant_s": SLOWER,
+    "delay_s": SLOWER,
+    "frequency_hz": 1 / SLOWER,
+    "damping_ratio": 1.0,
+    "half_width": LARGER,
+    "limit": LARGER,
+    "level": LARGER,
+    "sharpness": 1.0,
+    "rate": LARGER / SLOWER,
+    "velocity_scale": LARGER / SLOWER,
+}
+
+
+@pytest.mark.parametrize("name", sorted(set(effects()) - {"mains-pickup"}))
+def test_bounds_come_from_the_records_alone(name):
+    """Slower and larger records move every range by just that: none is built in.
+
+    The mains have the frequency that they have.
+    """
+    gain = (block("gain", value=12.0),)
+    moved = tuple(
+        replace(item, u=LARGER * item.u, y=LARGER * item.y, dt=SLOWER * item.dt)
+        for item in records()
+    )
+    try:
+        before = list(effects()[name].variants(Scene(gain, records())))
+    except Declined:
+        with pytest.raises(Declined):
+            list(effects()[name].variants(Scene(gain, moved)))
+        return
+    after = list(effects()[name].variants(Scene(gain, moved)))
+    assert [item.form for item in after] == [item.form for item in before]
+    for one, other in zip(before, after, strict=True):
+        for key, axis in one.grids.items():
+            assert other.grids[key] == pytest.approx(SCALES[key] * axis, rel=1e-9)
+            ends = np.array(one.ends(key))
+            assert other.ends(key) == pytest.approx(SCALES[key] * ends, rel=1e-9)
+
+
+def test_the_range_of_a_rate_is_that_of_the_records():
+    chain = (hysteresis(),)
+    effect = effects()["rate-dependent-hysteresis"]
+    slow = tuple(replace(item, dt=SLOWER * item.dt) for item in records())
+    before = list(effect.variants(Scene(chain, records())))
+    for one, other in zip(before, effect.variants(Scene(chain, slow)), strict=True):
+        exponent = float(one.form.rpartition(" ")[2])
+        axis = one.grids["coefficient"] * SLOWER**exponent
+        assert other.grids["coefficient"] == pytest.approx(axis, rel=1e-9)
+
+
 def test_a_mode_is_taken_out_of_a_transfer_function_and_hardens_there():
     chain = chains()["mode inside"]
     scene = Scene(chain, records())
