@@ -18,10 +18,12 @@ DEAREST = 3  # packages named in the last column
 
 
 def main() -> None:
-    """Write imports.csv: a row for each command, and the bare interpreter."""
+    """Write imports.csv: a row for each command, and what they are weighed against."""
     commands = {
         "(python alone)": "pass",
         "(numpy)": "import numpy",
+        "(numpy, our kernels)": "import hystbench.kernels",
+        "(numpy, numba)": "import numba",
         "--help": "import hystbench.cli",
         **{
             name: f"import hystbench.commands.{name.replace('-', '_')}"
