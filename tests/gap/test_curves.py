@@ -113,6 +113,20 @@ def test_even_distortion_lies_on_even_harmonics():
         assert sum(harmonics.values()) == pytest.approx(1)
 
 
+def test_distortion_of_records_weighs_by_their_samples():
+    long, short = (np.sin(2 * np.pi * np.arange(n) / 400) for n in (4000, 800))
+    compared = [
+        compare("even", long, 6 * long + 0.1 * long**2, 6 * long, 400),
+        compare("odd", short, 6 * short + 0.1 * short**3, 6 * short, 400),
+    ]
+    harmonics = curves(compared, noise_floor(compared))["harmonics"]
+    # Variances of sin^2 / 10, and of the third harmonic and all of sin^3 / 10.
+    even, third, cube = 0.01 / 8, 0.025**2 / 2, 0.025**2 / 2 + 0.075**2 / 2
+    whole = 4000 * even + 800 * cube
+    assert harmonics["even"] == pytest.approx(4000 * even / whole)
+    assert harmonics["odd"] == pytest.approx(800 * third / whole)
+
+
 def test_no_record_is_refused():
     compared, _ = gap_of("friction", straight)
     with pytest.raises(InputError, match="at least one record"):

@@ -58,6 +58,20 @@ def test_a_clipped_output_is_named_with_its_row(tmp_path, low, high):
     assert y[row - 2] in (low, high)
 
 
+@pytest.mark.parametrize(("low", "high"), [(-9.0, 3.6), (-3.6, 3.6)])
+def test_an_output_that_is_clipped_in_every_period_is_named(tmp_path, low, high):
+    """No single stretch is long, all of them together are."""
+    u = np.sin(2 * np.pi * np.arange(1000) / 40)
+    y = 4 * u
+    assert y.max() > high
+    said = message(
+        lambda: load_evidence(
+            write_folder(tmp_path / "d", pair(np.clip(y, low, high), u))
+        )
+    )
+    assert "not clipped" in said
+
+
 def test_a_stuck_output_is_named(tmp_path):
     y = Y.copy()
     y[400:500] = y[400]

@@ -130,8 +130,18 @@ def test_candidates_keep_within_the_limits(low, width, rate, bandwidth, duration
     for item in candidates(limits, "A"):
         assert item.u.min() >= low - 1e-5 * width
         assert item.u.max() <= low + width + 1e-5 * width
-        assert np.abs(np.diff(item.u)).max() <= rate * 0.001 * (1 + 1e-5)
-        assert len(item.u) * item.dt <= duration + 0.001
+        assert np.abs(np.diff(item.u)).max() <= rate * item.dt * (1 + 1e-5)
+        assert len(item.u) * item.dt <= duration + item.dt
+
+
+def test_what_is_slow_lasts_as_long_as_it_may():
+    limits = Limits(-1.0, 1.0, 100.0, 200.0, 1e-5, 60.0)
+    lasts = {}
+    for item in candidates(limits, "A"):
+        lasts[item.kind] = max(lasts.get(item.kind, 0.0), len(item.u) * item.dt)
+    assert lasts["steps-with-holds"] == pytest.approx(60.0, rel=0.01)
+    assert lasts["slow-ramp"] == pytest.approx(60.0, rel=0.01)
+    assert lasts["sine"] < 1.0
 
 
 def test_every_kind_is_offered():

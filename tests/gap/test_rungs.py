@@ -54,6 +54,13 @@ def test_an_effect_that_takes_the_place_of_another_is_named_with_what_was_added(
     assert [item.name for item in found] == [BASE, "lag", "delay + drift"]
 
 
+def test_effects_that_were_all_taken_back_have_no_rung():
+    start, one = with_names(), with_names("lag")
+    taken_back = named(one, start).taken_back()
+    (base,) = rungs(start, taken_back)
+    assert (base.name, base.state) == (BASE, start)
+
+
 @pytest.fixture(scope="module")
 def retuned():
     """A gain that is wrong by a tenth, in a base that may change it; nothing else."""

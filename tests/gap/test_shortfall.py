@@ -37,9 +37,10 @@ def test_a_shortfall_is_told_with_both_shares():
     assert "50 %" in found["sentence"]
 
 
-def test_a_range_counts_by_its_middle():
+def test_a_range_keeps_the_promise_where_it_may():
     found = shortfall(content(fit=0.9, held=[0.4, 0.6]))
-    assert found["hold_out"] == pytest.approx(0.5)
+    assert found["hold_out"] == pytest.approx(0.6)
+    assert shortfall(content(fit=0.9, held=[0.4, 0.9])) is None
 
 
 def test_reasons_are_told_where_they_are_known():

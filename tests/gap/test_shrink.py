@@ -79,6 +79,16 @@ def test_interval_covers_the_truth_as_often_as_it_says():
     assert covered >= 88
 
 
+def test_the_interval_holds_the_share_where_all_is_left_at_an_end():
+    """The start of a record is drawn as often as the rest."""
+    before = noise(1)
+    after = 0.01 * noise(2)
+    after[: len(after) // 100] = before[: len(after) // 100]
+    share = 1 - float(after @ after) / float(before @ before)
+    low, high = bootstrap_interval([(before, after)], 0.0)
+    assert low <= share <= high
+
+
 def test_interval_is_wider_where_neighbours_go_together():
     white = noise(1), 0.5 * noise(2)
     kernel = np.ones(100) / 10

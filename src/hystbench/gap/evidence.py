@@ -16,6 +16,8 @@ from hystbench.units import check_same_unit
 
 STUCK = 0.05
 """Share of a record, and of the input's range, over which no output stands still."""
+CLIPPED = 0.01
+"""The same share of the input's range at an end of the output, in many stretches."""
 COARSE = 3.0
 """Steps of a digitized output that it may be off by in a motion: it shows less."""
 
@@ -139,13 +141,24 @@ def _check_usable(dataset: Dataset, record: Record) -> None:
     y, u = record.y, record.u
     changes = np.flatnonzero(np.diff(y) != 0)
     edges = np.concatenate([[0], changes + 1, [len(y)]])
-    longest = int(np.argmax(np.diff(edges)))
-    first, last = int(edges[longest]), int(edges[longest + 1])
-    moved = float(np.ptp(u[first:last])) / max(float(np.ptp(u)), 1e-300)
-    seen = moved * float(np.ptp(y)) > COARSE * _quantum(y)
-    if last - first > STUCK * len(y) and moved > STUCK and seen:
+    ends = (y.min(), y.max())
+    # Stretches over which the input goes on, by far more than the output tells.
+    starts = edges[:-1]
+    went = np.maximum.reduceat(u, starts) - np.minimum.reduceat(u, starts)
+    went = went / max(float(np.ptp(u)), 1e-300)
+    told = COARSE * _quantum(y) / max(float(np.ptp(y)), 1e-300)
+    flat = {
+        (int(edges[k]), int(edges[k + 1])): float(went[k])
+        for k in np.flatnonzero(went > max(CLIPPED, told))
+    }
+    clipped = [part for part in flat if y[part[0]] in ends]
+    stuck = [[part] for part, far in flat.items() if far > STUCK]
+    for stretches in (*stuck, clipped):
+        if sum(last - first for first, last in stretches) <= STUCK * len(y):
+            continue
+        first, last = stretches[0]
         file = dataset.record_files[record.name]
-        at_end = y[first] in (y.min(), y.max())
+        at_end = y[first] in ends
         raise InputError(
             f"{file}: row {first + 2}: {record.output.name} is {y[first]:g} "
             f"{record.output.unit} for {last - first} samples while the input moves; "

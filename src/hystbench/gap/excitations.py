@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -75,7 +75,12 @@ def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:
         smaller.
     """
     made = [*_sines(limits, unit), *_wide_bands(limits, unit), *_slow(limits, unit)]
-    return tuple(item for item in made if _feasible(item, limits))
+    found = [item for item in made if _feasible(item, limits)]
+    if limits.duration_s > LONGEST * limits.dt:
+        # What is slow is sampled more coarsely, so that it lasts as long as it may.
+        coarse = replace(limits, dt=limits.duration_s / LONGEST)
+        found += [item for item in _slow(coarse, unit) if _feasible(item, coarse)]
+    return tuple(found)
 
 
 def write_experiment(
@@ -128,7 +133,9 @@ def _frequencies(limits: Limits) -> FloatArray:
     """From a few periods in a record to the bandwidth, equal ratios apart."""
     lowest = PERIODS / _common(limits)["duration_s"]
     highest = min(limits.bandwidth_hz, 0.2 / limits.dt)
-    return np.geomspace(lowest, max(highest, lowest), FREQUENCIES)
+    if highest <= lowest:
+        return np.array([lowest])
+    return np.geomspace(lowest, highest, FREQUENCIES)
 
 
 def _sines(limits: Limits, unit: str) -> Iterator[Excitation]:

@@ -62,8 +62,9 @@ def bootstrap_interval(
     """Interval of the share explained, by drawing records and blocks within them.
 
     Each draw takes as many records as there are, with replacement, and rebuilds each
-    from overlapping blocks drawn from it (moving blocks): neighbouring samples of a
-    residual are not independent, and neither are the samples of one record.
+    from overlapping blocks drawn from it, whose end is followed by its beginning
+    (circular blocks, so that no sample is drawn less than another): neighbouring
+    samples of a residual are not independent, nor are the samples of one record.
 
     Parameters
     ----------
@@ -83,22 +84,22 @@ def bootstrap_interval(
 
     References
     ----------
-    H. R. Kuensch, "The jackknife and the bootstrap for general stationary
-    observations", Annals of Statistics 17(3), 1989.
+    D. N. Politis, J. P. Romano, "A circular block-resampling procedure for stationary
+    data", in: Exploring the Limits of Bootstrap, Wiley, 1992.
     """
     random = np.random.default_rng(seed)
-    # Sums over a block are differences of cumulative sums: no sample is copied.
-    sums = [
-        np.stack([np.concatenate([[0], np.cumsum(np.square(each))]) for each in pair])
-        for pair in pairs
-    ]
-    lengths = np.array([total.shape[1] - 1 for total in sums])
+    lengths = np.array([len(before) for before, _ in pairs])
     blocks = np.maximum(1, lengths // BLOCKS)
+    # Sums over a block are differences of cumulative sums.
+    sums = [
+        np.stack([_sums(np.square(each), block) for each in pair])
+        for pair, block in zip(pairs, blocks.tolist(), strict=True)
+    ]
     counts = lengths // blocks
     powers = np.zeros((len(sums), draws, 2))
     for place, total in enumerate(sums):
         block, count = blocks[place], counts[place]
-        starts = random.integers(0, lengths[place] - block + 1, (draws, count))
+        starts = random.integers(0, lengths[place], (draws, count))
         powers[place] = (total[:, starts + block] - total[:, starts]).sum(axis=-1).T
         powers[place] *= lengths[place] / (block * count)
     drawn = random.integers(0, len(sums), (draws, len(sums)))
@@ -121,3 +122,8 @@ def bootstrap_interval(
         float(np.quantile(ends[:, 0], outside)),
         float(np.quantile(ends[:, 1], 1 - outside)),
     )
+
+
+def _sums(values: FloatArray, block: int) -> FloatArray:
+    """Give cumulative sums from zero on, the first block of values once more behind."""
+    return np.concatenate([[0.0], np.cumsum(np.concatenate([values, values[:block]]))])

@@ -22,9 +22,10 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
 
     The fit records are dealt out in folds; where there are fewer than three, blocks of
     them are, with a guard gap. On each fold the model with the effect is refitted to
-    the rest. A signal beside the chain has amplitudes of its own in every record, which
-    no other record knows: they are solved for in each, and the charge for them is all
-    that speaks against it.
+    the rest; what reshaping could do is fitted to all of it, with the effect and
+    without alike. A signal beside the chain has amplitudes of its own in every record,
+    which no other record knows: they are solved for in each, and the charge for them is
+    all that speaks against it.
 
     Parameters
     ----------

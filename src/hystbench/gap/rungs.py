@@ -22,7 +22,8 @@ def rungs(start: State, named: Named) -> tuple[Rung, ...]:
     """Give the base, the base re-tuned where it is free, then effect by effect.
 
     Each rung is the model as it was fitted with the effects that it has: the last one
-    without an effect would be no model that anybody fitted.
+    without an effect would be no model that anybody fitted. Effects that were all taken
+    back have no rung.
 
     Parameters
     ----------
@@ -35,7 +36,7 @@ def rungs(start: State, named: Named) -> tuple[Rung, ...]:
     if start.free:
         found.append(Rung(RETUNED, states[0] if states else named.state))
     last: list[str] = []
-    for state in (*states[1:], named.state):
+    for state in (*states[1:], named.state) if named.state.added else ():
         names = [item.effect for item in state.added]
         new = [name for name in names if name not in last]
         if new:

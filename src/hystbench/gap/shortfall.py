@@ -30,7 +30,7 @@ def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """
     promised, kept = content["fit"]["explained"], content["gap"]["explained"]
     if not isinstance(kept, int | float) and kept is not None:
-        kept = sum(kept) / len(kept)
+        kept = max(kept)  # a range keeps the promise if it may
     names = [item["name"] for item in content["effects"]]
     if not names or promised is None or kept is None or promised - kept < MATTERS:
         return None

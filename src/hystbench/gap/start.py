@@ -76,7 +76,7 @@ def free_numbers(base: Model) -> tuple[Free, ...]:
     """Give the numbers that a model leaves free, with the size of a likely change.
 
     A tolerance is a share of the value; of a zero it says nothing. It is the most that
-    a number may change by, and the size of the change that is charged.
+    a number may change by; a step of a refit is damped by its size.
     """
     places = {label: k for k, (label, _) in enumerate(base.labelled())}
     found = []

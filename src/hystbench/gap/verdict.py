@@ -30,6 +30,8 @@ BOX = 0.15
 """Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
 """Difference in score that makes one name e times likelier than another."""
+SURE = 100.0
+"""Odds beyond e to this are all the same."""
 DISTRUST = 0.7
 """Share of the gap that stays, at which no name is believed."""
 DOUBT = 0.02
@@ -137,6 +139,8 @@ def judge(
     bound : bool
         Whether the noise floor is only an upper bound: it may hold the whole gap, so
         that there is none cannot be claimed from it.
+    lone : float
+        Share of the power of what is left that stands in samples far off.
     """
     box = explained_by_box or 0.0
     if not named:
@@ -180,7 +184,7 @@ def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> fl
     against any name.
     """
     odds = sum(
-        float(np.exp(-(item.score - first.score) / SCALE))
+        float(np.exp(min((first.score - item.score) / SCALE, SURE)))
         for item in ranking
         if item.effect != first.effect and np.isfinite(item.score)
     )

@@ -20,8 +20,8 @@ class Creep(Effect):
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer creep behind the hysteresis.
 
-        Time constants go from a fiftieth to the whole of the longest record; a slower
-        element is a ramp that one record cannot tell from drift.
+        Time constants go from a two-hundredth to the whole of the longest record; a
+        slower element is a ramp that one record cannot tell from drift.
         """
         if scene.span < 500 * scene.step:
             raise Declined("records are too short for anything slow")

@@ -31,7 +31,7 @@ class MainsPickup(Effect):
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer the fundamental alone and with harmonics, within 1 % of the mains."""
+        """Offer the fundamental alone and with harmonics, near the mains."""
         usable = [f for f in MAINS_HZ if f < SHOWN / scene.step and f * scene.span > 3]
         if not usable:
             raise Declined("records too short, or sampled too slowly, for the mains")

@@ -62,7 +62,8 @@ def take_distortion(samples: Samples) -> Distortion | None:
         kind = np.where(between == 0, np.where(harmonic % 2 == 1, 1, 2), 3)
         kind[excited] = 0
         kind[0] = 3
-        powers += np.bincount(kind, power, 4)
+        # Over its length, so that a record weighs by its samples' power.
+        powers += np.bincount(kind, power, 4) / len(residual)
     total = float(np.sum(powers))
     if total <= 0:
         return None

@@ -92,10 +92,10 @@ def unexplained_view(samples: Samples) -> View:
     else:
         # A record tells a line from its neighbours by the inverse of its length.
         resolution = float(1 / np.min(samples.durations))
-        start = min(lines.frequencies[:1]) - resolution
-        end = max(lines.frequencies[:1]) + resolution
+        first = lines.frequencies[0]
+        start, end = max(first - resolution, 0.0), first + resolution
         axis, unit = "frequency", "Hz"
-        told = number(lines.frequencies[0])
+        told = number(first)
         where = f"at {told} Hz, between {number(start)} and {number(end)} Hz"
     return View(
         view="unexplained",
