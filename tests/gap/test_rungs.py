@@ -81,3 +81,8 @@ def test_the_ladder_of_a_re_tuned_base_on_records_it_has_not_seen(retuned):
     # What is left is the noise that was put in.
     assert ladder[1]["rms"] == pytest.approx(0.05, rel=0.05)
     assert ladder[0]["rms"] > 2 * ladder[1]["rms"]
+
+
+def test_what_the_base_leaves_free_stays_free(retuned):
+    _, found, _ = retuned
+    assert found.model.free == ("gain.value",)
