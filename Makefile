@@ -19,7 +19,7 @@ SOURCES := $(wildcard src/hystbench/kernels/*.c src/hystbench/kernels/*.h \
 help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
-	@echo "make docs       fill the tables of README.md and docs/ from results/"
+	@echo "make docs       fill the tables of README.md and docs/ from results/ (after test-slurm)"
 	@echo "make bench      measure kernels and pipeline beside their peers"
 	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"

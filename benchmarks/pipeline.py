@@ -22,6 +22,7 @@ from hystbench.schema import load_yaml
 
 ROOT = Path(__file__).parents[1]
 CORES = 2
+SEEN = 1.0  # seconds that a job lasts whose memory Snakemake has seen
 COLUMNS = ("what", "jobs", "seconds", "median_seconds", "needed_seconds", "repeats")
 JOB_COLUMNS = ("rule", "jobs", "seconds", "mean_seconds", "peak_mib")
 GROWTH_COLUMNS = ("signals", "filters", "orders", "jobs", "seconds", "seconds_per_job")
@@ -159,12 +160,14 @@ def configure(folder: Path, config: dict[str, object]) -> None:
 
 def jobs_of(folder: Path) -> Iterator[tuple[object, ...]]:
     """Sum Snakemake's benchmark files up by rule, the dearest first."""
-    rules: dict[str, list[tuple[float, float]]] = {}
+    rules: dict[str, list[tuple[float, float | None]]] = {}
     for file in (folder / "results" / "logs" / "benchmarks").rglob("*.tsv"):
         with file.open(encoding="utf-8") as stream:
             row = next(csv.DictReader(stream, delimiter="\t"))
         place = file.relative_to(folder / "results" / "logs" / "benchmarks")
-        memory = float(row["max_rss"]) if row["max_rss"] not in ("NA", "-") else 0.0
+        # Snakemake looks at a job now and then: a short one is over, or has not begun.
+        seen = float(row["s"]) >= SEEN and row["max_rss"] not in ("NA", "-")
+        memory = float(row["max_rss"]) if seen else None
         rules.setdefault(place.parts[0].removesuffix(".tsv"), []).append(
             (float(row["s"]), memory)
         )
@@ -172,7 +175,7 @@ def jobs_of(folder: Path) -> Iterator[tuple[object, ...]]:
         rules.items(), key=lambda item: -sum(s for s, _ in item[1])
     ):
         total = sum(seconds for seconds, _ in found)
-        peak = max(memory for _, memory in found)
+        peak = max((memory for _, memory in found if memory is not None), default=None)
         yield rule, len(found), total, total / len(found), peak
 
 

@@ -68,9 +68,10 @@ def test_the_rest(told):
         ),
         batch=("batch efficiency", ("orders", 0.95)),
         gap=(
-            "what cpu_seconds",
+            "what seconds",
             ("a case", 0.7),
             ("a case", 1.1),
+            ("a case", 3.0),
             ("a round", 5.0),
         ),
     )
@@ -85,5 +86,16 @@ def test_the_rest(told):
     assert found[f"{pipeline.NOTHING}: seconds"] == NOTHING
     orders = "many filters in one call, orders: of two busy loops"
     assert found[orders] == (0.95, "yes")
-    gap = "a case of the gap workflow: seconds of computing"
+    gap = "a case of the gap workflow: median seconds of computing"
     assert found[gap] == (1.1, "no")
+
+
+def test_a_rival_that_ends_below_our_error_is_not_slower(told):
+    found = told(
+        identification=(
+            "method seconds_over_ours error_over_ours",
+            ("differential evolution, 39 parameters", 101, 0.9),
+        ),
+    )
+    evolution = "identification: times faster than differential evolution"
+    assert found[evolution] == (0, "no")

@@ -26,7 +26,7 @@ def run_many(
     jobs : iterable of (AdaptiveFilter, array_like, array_like)
         Filter, input x and plant output d.
     workers : int, optional
-        Threads; by default one for each processor.
+        Threads; by default one for each processor that this process may use.
     limit : float, optional
         As for :meth:`AdaptiveFilter.run`.
 
@@ -44,7 +44,7 @@ def run_many(
             item, x, d = listed[k]
             done[k] = item.run(x, d, None, limit)
 
-    count = workers or os.cpu_count() or 1
+    count = workers or len(os.sched_getaffinity(0))
     with ThreadPoolExecutor(count) as pool:
         list(pool.map(work, range(count)))  # so that what one raises is raised here
     return [result for result in done if result is not None]

@@ -53,10 +53,23 @@ INLINE part load_part(const double *p)
 INLINE void store(double *p, lanes v) { __builtin_memcpy(p, &v, sizeof v); }
 INLINE void store_part(double *p, part v) { __builtin_memcpy(p, &v, sizeof v); }
 
+/* The halves of several numbers. GCC before 12 goes by way of memory. */
+#if defined(__clang__) || __GNUC__ >= 12
+#define LOW_2(v) __builtin_shufflevector(v, v, 0, 1)
+#define HIGH_2(v) __builtin_shufflevector(v, v, 2, 3)
+#define LOW_4(v) __builtin_shufflevector(v, v, 0, 1, 2, 3)
+#define HIGH_4(v) __builtin_shufflevector(v, v, 4, 5, 6, 7)
+#else
+#define LOW_2(v) ((union { part whole; pair half[2]; }){ v }).half[0]
+#define HIGH_2(v) ((union { part whole; pair half[2]; }){ v }).half[1]
+#define LOW_4(v) ((union { lanes whole; part half[2]; }){ v }).half[0]
+#define HIGH_4(v) ((union { lanes whole; part half[2]; }){ v }).half[1]
+#endif
+
 INLINE double sum_part(part v)
 {
 #if PART == 4
-    pair p = __builtin_shufflevector(v, v, 0, 1) + __builtin_shufflevector(v, v, 2, 3);
+    pair p = LOW_2(v) + HIGH_2(v);
     return p[0] + p[1];
 #else
     return v[0] + v[1];
@@ -65,8 +78,7 @@ INLINE double sum_part(part v)
 INLINE double sum(lanes v)
 {
 #if LANES == 8
-    return sum_part(__builtin_shufflevector(v, v, 0, 1, 2, 3)
-                    + __builtin_shufflevector(v, v, 4, 5, 6, 7));
+    return sum_part(LOW_4(v) + HIGH_4(v));
 #else
     return sum_part(v);
 #endif
