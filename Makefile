@@ -62,7 +62,7 @@ lint: $(READY)
 	$(BIN)/snakefmt --check Snakefile workflow
 
 test: lint
-	$(BIN)/pytest -n 2
+	$(BIN)/pytest -n 2 --dist worksteal
 
 docs: $(READY)
 	$(BIN)/snakemake --cores all all pressure structures held_out gap blind
