@@ -44,9 +44,8 @@ class Kept:
     def _forget(self, place: int) -> Callable[[object], None]:
         def forget(_: object) -> None:
             self._watched.pop(place, None)
-            for key in list(self._known):  # other threads may add to it meanwhile
-                if key[0] == place:
-                    self._known.pop(key, None)
+            for key in [key for key in self._known if key[0] == place]:
+                del self._known[key]
 
         return forget
 

@@ -97,8 +97,7 @@ def tuned(state: State, score: Score) -> State:
             beside, values = state.beside[number]
             slope = beside_slope(state, beside, values, key, _own(state, number))
             columns = np.column_stack([state.tangents, state.beside_columns, slope])
-            stiffness = np.zeros(columns.shape[1])
-            stiffness[: len(state.free)] = state.stiffness
+            stiffness = state.stiffness_of(columns.shape[1])
             step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]
             items = list(state.beside)
             items[number] = (beside, {**values, key: values[key] + float(step)})

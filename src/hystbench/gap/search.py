@@ -67,9 +67,7 @@ class Attempt:
         self.freedom = state.freedom + variant.freedom
         self.known: dict[Point, Trial] = {}
         self.more = np.hstack([state.tangents, state.beside_columns])
-        stiffness = np.zeros(self.more.shape[1])
-        stiffness[: len(state.free)] = state.stiffness
-        self.stiffness = stiffness
+        self.stiffness = state.stiffness_of(self.more.shape[1])
         self.zero: FloatArray | None = None
         self.last: tuple[Point, FloatArray, FloatArray, FloatArray] | None = None
 

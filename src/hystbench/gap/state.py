@@ -182,6 +182,10 @@ class State:
             [0.0 if f.tolerance is None else f.tolerance**-2.0 for f in self.free]
         )
 
+    def stiffness_of(self, columns: int) -> FloatArray:
+        """Give the charge of so many columns: the free numbers', then none."""
+        return np.pad(self.stiffness, (0, columns - len(self.free)))
+
     @cached_property
     def beside_columns(self) -> FloatArray:
         """Scored samples of the shapes beside, of every record on its own."""

@@ -14,7 +14,7 @@ from hystbench.gap.beside_errors import Errors
 from hystbench.gap.effects import effects
 from hystbench.gap.name import Named
 from hystbench.gap.rank import Candidate, near
-from hystbench.gap.state import Added, State
+from hystbench.gap.state import Added, State, beside_count
 from hystbench.gap.verdict import (
     Left,
     confidence,
@@ -69,10 +69,9 @@ def beside_blocks(state: State) -> list[Block]:
         return []
     blocks, first = [], 0
     for beside, values in state.beside:
-        shape = beside.columns(state.records[0], values, beside.order).shape[1]
-        count = shape * len(state.records)
+        count = beside_count(state, beside, values)
         own = state.beside_amplitudes[first : first + count]
-        rows = own.reshape(len(state.records), shape)
+        rows = own.reshape(len(state.records), -1)
         described = effects()[beside.effect].describe(values, rows)
         blocks.append(registry()[beside.effect].from_mapping(described))
         first += count

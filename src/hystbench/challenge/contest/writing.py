@@ -100,10 +100,10 @@ def write_score(
         ("from", "to", "stated", *_SHARE),
         map(_told, tables.reliability(own)),
     )
+    same = _shared(own, rows)
     rivals = []
     for name in dict.fromkeys(row.solver for row in rows):
         rivals.append(_rival(name, [row for row in rows if row.solver == name]))
-        same = _shared(own, rows)
         if name == solver and len(same) < len(own):
             rivals.append(_rival(f"{solver}, the rivals' cases", same))
     unheard = [(name, 0, *[None] * 10, why) for name, why in skipped.items()]
