@@ -12,6 +12,8 @@ from hystbench.gap.verdict import (
     LONE,
     LOOSE,
     SLIGHT,
+    SOME,
+    UNREPEATED,
     Left,
     confidence,
     judge,
@@ -48,6 +50,23 @@ def test_noise_that_stands_in_lone_samples_is_none(after, lone):
     word, reason = judge(left(after), False, 0.0, lone=lone)
     assert word == ("unnamed" if lone > LONE else "no-gap")
     assert ("lone samples" in reason) == (lone > LONE)
+
+
+@given(st.floats(0, 20), st.floats(-1, 10), st.booleans())
+def test_what_differs_between_periods_is_nothing_named_nor_a_wrong_shape(
+    after, differs, named
+):
+    # As slight as only a wrong shape of the hysteresis leaves it.
+    found = Left(0.0, 0.0, 100.0, after, 1e6)
+    word, reason = judge(found, named, 0.0, unrepeated=differs)
+    told = differs > max(UNREPEATED, SOME * after)
+    assert word == ("unnamed" if told else "named" if named else "no-gap")
+    assert ("one period" in reason) == told
+
+
+def test_a_name_does_not_stand_beside_lone_samples():
+    assert judge(left(0.1), True, 0.0, lone=2 * LONE)[0] == "unnamed"
+    assert judge(left(0.1), True, 0.0, lone=0.5 * LONE)[0] == "named"
 
 
 def test_a_slightly_wrong_shape_beside_a_named_effect_does_not_undo_the_name():

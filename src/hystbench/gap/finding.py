@@ -21,6 +21,7 @@ from hystbench.gap.locate import curves, locate
 from hystbench.gap.lone import lone_share
 from hystbench.gap.name import Named, name
 from hystbench.gap.rank import make_score
+from hystbench.gap.repeats import unrepeated
 from hystbench.gap.rungs import Rung, rungs
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
@@ -158,11 +159,12 @@ def decide(
         say(views[0].sentence)
     folds = make_folds(records, whole=False)
     box = black_box(start, floor)
+    after = compared if state is start else _compared(state.chain, state)
     explained = None
     if box_matters(left, bool(state.added)):
         rest = box
         if state is not start:
-            rest = BlackBox.fit(_compared(state.chain, state), folds, floor.rms)
+            rest = BlackBox.fit(after, folds, floor.rms)
         explained = rest.explained_on_folds
     verdict, reason = judge(
         left,
@@ -170,7 +172,8 @@ def decide(
         explained,
         bool(start.free),
         floor.method == "upper-bound",
-        0.0 if state.added else lone_share([item.residual for item in compared]),
+        lone_share([item.residual for item in after]),
+        unrepeated(after, floor.rms),
     )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")

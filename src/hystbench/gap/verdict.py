@@ -20,12 +20,16 @@ ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
 SLIGHT = 0.012
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
-INSIDE = 0.5
+INSIDE = 0.3
 """Share of the gap that then has to lie in what a wrong shape of it could do."""
 HALF = 0.5
 """The same, where what stays is no more than a slightly wrong shape leaves."""
-LONE = 0.3
+LONE = 0.1
 """Share of the power of what is left, in samples far off, that is not noise."""
+UNREPEATED = 0.5
+"""Power above the floor, in floors, that differs between periods and is not noise."""
+SOME = 0.03
+"""Share of what is left that has to differ so, to be told from settling."""
 BOX = 0.15
 """Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
@@ -123,6 +127,7 @@ def judge(
     retuned: bool = False,
     bound: bool = False,
     lone: float = 0.0,
+    unrepeated: float | None = None,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -141,8 +146,12 @@ def judge(
         that there is none cannot be claimed from it.
     lone : float
         Share of the power of what is left that stands in samples far off.
+    unrepeated : float or None
+        Power of what is left that differs between periods of the same input, above the
+        floor and in floors; none where no record repeats.
     """
     box = explained_by_box or 0.0
+    foreign = _foreign(left, lone, unrepeated)
     if not named:
         if retuned and left.all_before > ABOVE and left.loose < LOOSE:
             return "parameters", (
@@ -154,11 +163,8 @@ def judge(
                 "no effect pays; the floor is only an upper bound, so that there is "
                 "no gap cannot be claimed: give period_samples or noise_rms"
             )
-        if left.slight and lone > LONE:
-            return "unnamed", (
-                f"{100 * lone:.0f} % of what is left stands in lone samples, far off "
-                "from the others, which no effect of the vocabulary does"
-            )
+        if left.slight and foreign:
+            return "unnamed", foreign
         if left.slight:
             return "no-gap", (
                 "what is left is noise, or no more than a slightly wrong shape of the "
@@ -174,7 +180,26 @@ def judge(
             f"{100 * left.loose:.0f} % of the gap stays with the best named effects; "
             f"{_box_words(explained_by_box, 'that')}"
         )
+    if foreign:
+        return "unnamed", foreign
     return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
+
+
+def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
+    """Say what is left that no effect and no wrong hysteresis does, if any is."""
+    if lone > LONE:
+        return (
+            f"{100 * lone:.0f} % of what is left stands in lone samples, far off "
+            "from the others, which no effect of the vocabulary does"
+        )
+    least = max(UNREPEATED, SOME * left.all_after)
+    if unrepeated is not None and unrepeated > least:
+        return (
+            f"{unrepeated:.2g} times the noise power is left that differs from one "
+            "period of the same input to the next, which neither a named effect nor a "
+            "wrong hysteresis does"
+        )
+    return ""
 
 
 def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> float:

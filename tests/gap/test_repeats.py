@@ -1,0 +1,53 @@
+"""What of a residual differs between periods of the same input."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.gap.compared import Compared
+from hystbench.gap.repeats import unrepeated
+from hystbench.record import Channel, Record
+
+PERIOD, DT = 100, 1e-3
+
+
+def compared(residual, period=PERIOD):
+    """A record whose residual is this beside a model that says nothing."""
+    u = np.sin(2 * np.pi * np.arange(len(residual)) / PERIOD)
+    channels = (Channel("u", "V"), Channel("y", "um"))
+    record = Record("record", DT, u, residual, *channels, "twin", period_samples=period)
+    return Compared(record, np.zeros(len(residual)))
+
+
+@given(st.integers(0, 1000), st.integers(3, 20), st.floats(0, 1e3))
+def test_what_repeats_does_not_count(seed, periods, size):
+    rng = np.random.default_rng(seed)
+    shape = np.tile(size * rng.normal(size=PERIOD), periods)
+    noise = rng.normal(size=PERIOD * periods)
+    found = unrepeated([compared(shape + noise)], 1.0)
+    assert found == pytest.approx(unrepeated([compared(noise)], 1.0), abs=1e-6)
+
+
+@given(st.integers(0, 1000), st.floats(0.1, 10))
+def test_a_level_that_jumps_between_periods_counts_by_its_variance(seed, size):
+    rng = np.random.default_rng(seed)
+    levels = rng.normal(size=12)
+    residual = size * np.repeat(levels, PERIOD)
+    noise = rng.normal(size=len(residual))
+    found = unrepeated([compared(residual + noise)], 1.0)
+    expected = size**2 * np.var(levels[1:], ddof=1)
+    # The noise's own variance, and its product with the levels.
+    spread = 6 * (1 + size) / np.sqrt(len(noise)) * (1 + abs(levels).max())
+    assert found == pytest.approx(expected, abs=spread)
+
+
+def test_the_first_period_may_settle():
+    residual = np.zeros(5 * PERIOD)
+    residual[:PERIOD] = 1.0
+    assert unrepeated([compared(residual)], 0.1) == pytest.approx(-1.0)
+
+
+def test_records_without_three_whole_periods_say_nothing():
+    noise = np.random.default_rng(0).normal(size=3 * PERIOD - 1)
+    assert unrepeated([compared(noise), compared(noise, None)], 1.0) is None
