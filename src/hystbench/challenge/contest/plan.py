@@ -17,8 +17,8 @@ DEVELOPMENT_SEEDS = range(100_000, 200_000)
 FIRST_SEED = {
     "development": 100_000,
     "small": 195_000,
-    "published": 5_000_000,
-    "transfer": 6_000_000,
+    "published": 7_000_000,
+    "transfer": 8_000_000,
 }
 #: Seeds set aside for a stratum, so that a larger contest holds the smaller one.
 PER_STRATUM = {
