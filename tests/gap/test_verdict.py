@@ -11,6 +11,7 @@ from hystbench.gap.verdict import (
     ABOVE,
     LONE,
     LOOSE,
+    PATH,
     SLIGHT,
     SOME,
     UNREPEATED,
@@ -62,6 +63,13 @@ def test_what_differs_between_periods_is_nothing_named_nor_a_wrong_shape(
     told = differs > max(UNREPEATED, SOME * after)
     assert word == ("unnamed" if told else "named" if named else "no-gap")
     assert ("one period" in reason) == told
+
+
+@given(st.floats(0, 30))
+def test_a_drift_may_leave_bends_of_its_path(differs):
+    found = Left(0.0, 0.0, 200.0, 2.0, 1e6)
+    word, _ = judge(found, True, 0.0, unrepeated=differs, path=True)
+    assert word == ("unnamed" if differs > PATH * 200.0 else "named")
 
 
 def test_a_name_does_not_stand_beside_lone_samples():

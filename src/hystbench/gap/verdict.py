@@ -30,6 +30,8 @@ UNREPEATED = 0.5
 """Power above the floor, in floors, that differs between periods and is not noise."""
 SOME = 0.03
 """Share of what is left that has to differ so, to be told from settling."""
+PATH = 0.1
+"""Share of the gap that a drift's path may have beyond the bends that were fitted."""
 BOX = 0.15
 """Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
@@ -128,6 +130,7 @@ def judge(
     bound: bool = False,
     lone: float = 0.0,
     unrepeated: float | None = None,
+    path: bool = False,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -149,9 +152,11 @@ def judge(
     unrepeated : float or None
         Power of what is left that differs between periods of the same input, above the
         floor and in floors; none where no record repeats.
+    path : bool
+        Whether a drift is named, whose path is new in every record.
     """
     box = explained_by_box or 0.0
-    foreign = _foreign(left, lone, unrepeated)
+    foreign = _foreign(left, lone, unrepeated, path)
     if not named:
         if retuned and left.all_before > ABOVE and left.loose < LOOSE:
             return "parameters", (
@@ -185,7 +190,7 @@ def judge(
     return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
 
 
-def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
+def _foreign(left: Left, lone: float, unrepeated: float | None, path: bool) -> str:
     """Say what is left that no effect and no wrong hysteresis does, if any is."""
     if lone > LONE:
         return (
@@ -193,6 +198,8 @@ def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
             "from the others, which no effect of the vocabulary does"
         )
     least = max(UNREPEATED, SOME * left.all_after)
+    if path:
+        least = max(least, PATH * left.all_before)
     if unrepeated is not None and unrepeated > least:
         return (
             f"{unrepeated:.2g} times the noise power is left that differs from one "
