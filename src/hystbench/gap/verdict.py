@@ -18,13 +18,13 @@ LOOSE = 0.27
 """Share of the gap, beyond what reshaping could leave, that no effect takes away."""
 ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
-SLIGHT = 0.012
+SLIGHT = 0.015
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
 INSIDE = 0.3
 """Share of the gap that then has to lie in what a wrong shape of it could do."""
 HALF = 0.5
 """The same, where what stays is no more than a slightly wrong shape leaves."""
-LONE = 0.1
+LONE = 0.2
 """Share of the power of what is left, in samples far off, that is not noise."""
 UNREPEATED = 0.5
 """Power above the floor, in floors, that differs between periods and is not noise."""
