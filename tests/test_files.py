@@ -50,9 +50,14 @@ def test_only_what_is_ours_gives_way(tmp_path):
 def test_what_fails_leaves_all_as_it_was(tmp_path, there):
     out = tmp_path / "out"
     write(out, there)
-    with pytest.raises(KeyboardInterrupt), whole_folder(out, OURS) as folder:
-        write(folder, NEW)
-        raise KeyboardInterrupt
+
+    def interrupted():
+        with whole_folder(out, OURS) as folder:
+            write(folder, NEW)
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
     assert tree(tmp_path) == {f"out/{k}": v for k, v in there.items()}
     assert out.exists() is bool(there)
 

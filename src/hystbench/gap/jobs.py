@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hystbench.files import read_json, write_json
+from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import black_box, decide
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.name import name
-from hystbench.gap.run import show, write_shown
+from hystbench.gap.run import SHOWN, show, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
@@ -19,6 +19,8 @@ from hystbench.model import Model
 
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
+DECIDED = ("model.yaml", "curves.json", NAMED, DECISION)
+"""What the first of the two writes."""
 
 
 def decide_in(
@@ -47,8 +49,6 @@ def decide_in(
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
     finding = decide(evidence.name, base, start, floor, named, say)
-    finding.model.save(folder / "model.yaml")
-    write_json(folder / "curves.json", finding.curves)
     kept = {
         "floor": floor_mapping(floor),
         "state": state_mapping(finding.state),
@@ -57,8 +57,11 @@ def decide_in(
             for item in finding.rungs
         ],
     }
-    write_json(folder / NAMED, kept)
-    write_json(folder / DECISION, finding.content)
+    with whole_folder(folder, DECIDED) as fresh:
+        finding.model.save(fresh / "model.yaml")
+        write_json(fresh / "curves.json", finding.curves)
+        write_json(fresh / NAMED, kept)
+        write_json(fresh / DECISION, finding.content)
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
@@ -81,4 +84,6 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
     shown = show(base, state, floor, box, evidence.hold_out, steps)
-    write_shown(folder, read_json(folder / DECISION), evidence.hold_out, shown)
+    decided = read_json(folder / DECISION)
+    with whole_folder(folder, SHOWN) as fresh:
+        write_shown(fresh, decided, evidence.hold_out, shown)
