@@ -86,6 +86,15 @@ GAP = {
         "before_interval": [0.4417, 0.5821],
         "after_interval": [0.0967, 0.1108],
     },
+    "fit": {
+        "before": 0.6123,
+        "after": 0.0973,
+        "explained": 0.9761,
+        "new_in_every_record": 0.0312,
+        "noise": 0.0911,
+        "step_error": 0.0173,
+        "floor": 0.0927,
+    },
     "ranking": [
         {
             "round": 1,

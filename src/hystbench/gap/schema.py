@@ -95,9 +95,11 @@ FIT = _object(
         # went to signals that are new in every record and predict no other.
         "explained": OPTIONAL,
         "new_in_every_record": NUMBER,
-        # RMS of what the simulation misses by its own steps, of the model with its
-        # effects; it does not count as a gap.
+        # RMS of the noise, of what the simulation of the model with its effects misses
+        # by its own steps, and of both: where that is reached no effect is added.
+        "noise": NUMBER,
         "step_error": NUMBER,
+        "floor": NUMBER,
     }
 )
 

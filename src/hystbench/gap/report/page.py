@@ -20,6 +20,7 @@ OPTIONAL: dict[str, Any] = {
     "shortfall": None,
     "no_experiment": "",
     "runs_away": [],
+    "fit": None,
 }
 #: And its parts with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
