@@ -122,14 +122,14 @@ def test_a_number_that_is_zero_has_an_error_like_any_other():
     )
     sample = Sample((np.arange(COUNT),))
     found = []
-    for offset in (0.0, 0.01):
+    for offset in (0.0, 1e-6):
         chain = (block("gain", value=GAIN, offset=offset),)
         free = (Free(0, "value"), Free(0, "offset"))
         state = State(chain, made, sample, free=free).settled()
         found.append(standard_errors(state, plain_score(state, 1e-9)))
     # Twenty stretches tell it to a sixth of itself.
     assert found[0][1] == pytest.approx(level / np.sqrt(COUNT), rel=0.5)
-    assert found[0] == pytest.approx(found[1], rel=1e-3)
+    assert found[0] == pytest.approx(found[1], rel=1e-2)
 
 
 def test_a_zero_of_which_the_records_say_nothing_has_none():
