@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import black_box, decide
+from hystbench.gap.finding import Finding, black_box, decide
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
+from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
 from hystbench.gap.run import SHOWN, show, write_shown
 from hystbench.gap.rungs import Rung
@@ -28,8 +30,9 @@ def decide_in(
     evidence: Evidence,
     base: Model,
     progress: Path | None,
+    limits: Mapping[str, float] | None = None,
     say: Say = silent,
-) -> None:
+) -> Finding:
     """Give the verdict and write it, the model and the curves to a folder.
 
     Parameters
@@ -40,15 +43,18 @@ def decide_in(
     base : Model
     progress : Path or None
         After the last round; None names the effects here.
+    limits : mapping of str to float, optional
+        Of the next experiment; what is not given is taken from the fit records.
     say : callable
         Told a line of progress at a time.
     """
+    asked = Limits.within(evidence.fit, limits) if limits else None
     start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     if progress is None:
         named = name(start, floor.rms, say)
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
-    finding = decide(evidence.name, base, start, floor, named, say)
+    finding = decide(evidence.name, base, start, floor, named, say, asked)
     kept = {
         "floor": floor_mapping(floor),
         "state": state_mapping(finding.state),
@@ -62,6 +68,7 @@ def decide_in(
         write_json(fresh / "curves.json", finding.curves)
         write_json(fresh / NAMED, kept)
         write_json(fresh / DECISION, finding.content)
+    return finding
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
