@@ -6,7 +6,6 @@ reruns what a changed setting changes and nothing else.
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -419,8 +418,8 @@ def _check_limits(place: str, config: Mapping[str, Any]) -> None:
     given = {f"datasets: {item['dataset']}": item for item in about["datasets"]}
     for key, item in {"twin": about["twin"], **given}.items():
         limits = item.get("limits", {})
-        low, high = limits.get("low", -math.inf), limits.get("high", math.inf)
-        if not low < high:
+        low, high = limits.get("low"), limits.get("high")
+        if low is not None and high is not None and low >= high:
             raise InputError(
                 f"{place}: gap: {key}: limits: low {low:g} and high {high:g}; "
                 "expected low < high"

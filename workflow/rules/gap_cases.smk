@@ -15,7 +15,9 @@ def model_of_case(wildcards):
 def limits_of_case(wildcards):
     """What the next experiment of a case may ask of the actuator, as options."""
     limits = GAP_CASES[wildcards.case]["limits"]
-    return " ".join(f"--limit-{name}={value}" for name, value in limits.items())
+    return " ".join(
+        f"--limit-{name}={value}" for name, value in limits.items() if value is not None
+    )
 
 
 def last_round(wildcards):

@@ -98,7 +98,8 @@ def resampled_rms(
     power = powers[drawn, rebuilt].sum(axis=1)
     power /= lengths[drawn].sum(axis=1)[:, None]
     # Differences of sums may fall below zero by rounding.
-    return np.sqrt(np.maximum(power, 0.0)).T
+    drawn_rms: FloatArray = np.sqrt(np.maximum(power, 0.0)).T
+    return drawn_rms
 
 
 def rms_interval(drawn: FloatArray) -> tuple[float, float]:
