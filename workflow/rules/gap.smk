@@ -186,7 +186,7 @@ rule gap_decide:
         ),
         limits=limits_of_case,
         experiment=lambda wildcards, output: (
-            f"--write-experiment {shlex.quote(output.experiment[0] + '/signal.csv')}"
+            options("--write-experiment", [Path(output.experiment[0], "signal.csv")])
             if GAP_EXPERIMENT
             else ""
         ),
