@@ -71,6 +71,22 @@ def test_every_key_of_the_config_is_in_the_schema_and_the_other_way_round():
             "filters: order: '30'; expected a whole number",
         ),
         (changed("filters", "order", 0), "filters: order"),
+        (
+            changed("gap", "twin", CONFIG["gap"]["twin"] | {"limits": {"low": "1"}}),
+            "gap: twin: limits: low: '1'; expected a finite number or null",
+        ),
+        (
+            changed("gap", "twin", CONFIG["gap"]["twin"] | {"limits": {"rat": 1}}),
+            "gap: twin: limits: unknown key 'rat'; did you mean 'rate'?",
+        ),
+        (
+            changed(
+                "gap",
+                "datasets",
+                [{"dataset": "x", "model": "gpi", "limits": {"low": 2, "high": 1}}],
+            ),
+            "gap: datasets: x: limits: low 2 and high 1; expected low < high",
+        ),
         (changed("filters", "envelopes", "publishd"), "did you mean 'published'?"),
         (changed("signals", ["sine-040h"]), "did you mean 'sine-040hz'?"),
         (changed("models", ["gpo", "voltera"]), "did you mean 'volterra'?"),

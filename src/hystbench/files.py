@@ -6,10 +6,14 @@ import csv
 import hashlib
 import json
 import os
+import shutil
+import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+from hystbench.errors import InputError
 
 
 @contextmanager
@@ -26,6 +30,67 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         temporary.replace(final)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def whole_folder(folder: str | Path, ours: Sequence[str]) -> Iterator[Path]:
+    """Give a fresh folder whose files take their places in ``folder`` on success.
+
+    A failure inside the block, or while files take their places, leaves ``folder`` as
+    it was, or not there if it was not.
+
+    Parameters
+    ----------
+    folder : str or Path
+    ours : sequence of str
+        Patterns, relative to the folder, of files that an earlier result may have left:
+        those that the new one does not have go. Any other file stays.
+
+    Raises
+    ------
+    InputError
+        If something else than a file, or than a folder, stands where one has to go.
+    """
+    final = Path(folder).resolve()
+    parent = final if final.is_dir() else final.parent
+    parent.mkdir(parents=True, exist_ok=True)
+    # Where the files will stand, so that to put them there is to rename them.
+    temporary = Path(tempfile.mkdtemp(prefix=f".{final.name}.", dir=parent))
+    new = temporary / "new"
+    try:
+        new.mkdir()
+        yield new
+        if final.exists():
+            _take_places(new, final, temporary / "old", ours)
+        else:
+            new.rename(final)
+    finally:
+        shutil.rmtree(temporary)
+
+
+def _take_places(new: Path, final: Path, old: Path, ours: Sequence[str]) -> None:
+    """Move the files of a new folder into one that exists, all or none."""
+    coming = [item.relative_to(new) for item in new.rglob("*") if item.is_file()]
+    for name in coming:
+        if (final / name).is_dir():
+            raise InputError(f"{final / name}: a folder; expected a file or nothing")
+        if (final / name).parent.is_file():
+            raise InputError(f"{final / name.parent}: a file; expected a folder")
+    there = {item for pattern in ours for item in final.glob(pattern)}
+    there |= {final / name for name in coming}
+    going = sorted(item.relative_to(final) for item in there if item.is_file())
+    moves = [(final / name, old / name) for name in going]
+    moves += [(new / name, final / name) for name in coming]
+    done: list[tuple[Path, Path]] = []
+    try:
+        for source, target in moves:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            source.rename(target)
+            done.append((source, target))
+    except BaseException:
+        for source, target in reversed(done):
+            target.rename(source)
+        raise
 
 
 def write_text(path: str | Path, text: str) -> None:

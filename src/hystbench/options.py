@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
+
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 class SettingsType(click.ParamType[dict[str, Any]]):
@@ -26,6 +29,31 @@ class SettingsType(click.ParamType[dict[str, Any]]):
             self.fail("expected a JSON object of settings", param, ctx)
         return settings
 
+
+def limits(command: Command) -> Command:
+    """Add the limits of the next experiment: ``limit_low``, ``_high``, ``_rate``."""
+    for name, told in (
+        ("rate", "Largest rate of its input, per second; else that of the records."),
+        ("high", "Highest input of the next experiment."),
+        ("low", "Lowest input of the next experiment."),
+    ):
+        command = click.option(f"--limit-{name}", type=float, help=told)(command)
+    return command
+
+
+def asked_limits(
+    limit_low: float | None, limit_high: float | None, limit_rate: float | None
+) -> dict[str, float]:
+    """Give the limits that were asked for, by name."""
+    asked = {"low": limit_low, "high": limit_high, "rate": limit_rate}
+    return {name: value for name, value in asked.items() if value is not None}
+
+
+write_experiment = click.option(
+    "--write-experiment",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write the excitation that would tell likely effects apart, as CSV or .npz.",
+)
 
 FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
 NEW_FILE = click.Path(path_type=Path)

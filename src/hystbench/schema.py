@@ -85,7 +85,9 @@ def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) ->
         raise InputError(f"{where}: expected the key {missing!r}")
     expected = _EXPECTED.get(rule, error.message).format(error.validator_value)
     if rule == "type":
-        expected = _TYPES.get(error.validator_value, error.validator_value)
+        one = error.validator_value
+        types = [one] if isinstance(one, str) else one
+        expected = " or ".join(_TYPES.get(each, each) for each in types)
     raise InputError(f"{where}: {value!r}; expected {expected}{_hint(value)}")
 
 

@@ -369,6 +369,7 @@ def read_settings(
         ("order_sweep: signal", config["order_sweep"]["signal"]),
         *(("rdgpi: fit_signals", name) for name in config["rdgpi"]["fit_signals"]),
     ]
+    _check_limits(place, config)
     if config["source"] == "twin":
         _check_names(place, named, excitations)
         # The calibration and the trial of structures run all signals of the tables.
@@ -401,7 +402,7 @@ def read_settings(
 
 def _gap_signals(place: str, config: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Name the signals of the gap's worked example; none may be in both roles."""
-    roles = config["gap"]["twin"]
+    roles = {role: config["gap"]["twin"][role] for role in ("fit", "hold_out")}
     for name in roles["hold_out"]:
         if name in roles["fit"]:
             raise InputError(
@@ -409,6 +410,20 @@ def _gap_signals(place: str, config: Mapping[str, Any]) -> list[tuple[str, str]]
                 "expected it in one of them"
             )
     return [(f"gap: twin: {role}", name) for role in roles for name in roles[role]]
+
+
+def _check_limits(place: str, config: Mapping[str, Any]) -> None:
+    """Refuse limits of a next experiment between which nothing lies."""
+    about = config["gap"]
+    given = {f"datasets: {item['dataset']}": item for item in about["datasets"]}
+    for key, item in {"twin": about["twin"], **given}.items():
+        limits = item.get("limits", {})
+        low, high = limits.get("low"), limits.get("high")
+        if low is not None and high is not None and low >= high:
+            raise InputError(
+                f"{place}: gap: {key}: limits: low {low:g} and high {high:g}; "
+                "expected low < high"
+            )
 
 
 def packaged_models() -> dict[str, str]:

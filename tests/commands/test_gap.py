@@ -2,10 +2,18 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
 
 from hystbench.commands import gap as module
+from hystbench.commands.simulate import simulate
+from hystbench.dataset import load_dataset
+from hystbench.files import read_json
+from hystbench.signals import load_signal
+from tests.gap.made import CURRENT
+from tests.gap.small import write_lagging
 from tests.gap.tiny import write_tiny
 
 
@@ -44,3 +52,65 @@ def test_why_no_experiment_was_written_is_said(run, tmp_path):
     _, said = run("--write-experiment", str(tmp_path / "next.csv"))
     assert "not written: no way" in said
     assert not (tmp_path / "next.csv").exists()
+
+
+LIMITS = {"low": -0.15, "high": 0.35, "rate": 12.0}
+
+
+@pytest.fixture(scope="module")
+def lagging(tmp_path_factory):
+    """A gain whose output lags: a lag of the drive would do as well."""
+    folder = tmp_path_factory.mktemp("lagging")
+    write_lagging(folder)
+    return folder
+
+
+def invoked(folder, out, *more):
+    words = [str(folder / "rig"), "--model", str(folder / "base.yaml")]
+    words += ["--out", str(out), "--no-report", *more]
+    for name, value in LIMITS.items():
+        words.append(f"--limit-{name}={value}")
+    result = CliRunner().invoke(module.gap, words)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def kept(u, dt):
+    assert u.min() >= LIMITS["low"] - 1e-6
+    assert u.max() <= LIMITS["high"] + 1e-6
+    assert np.abs(np.diff(u)).max() <= LIMITS["rate"] * dt * (1 + 1e-4)
+    assert np.ptp(u) > 0.1 * (LIMITS["high"] - LIMITS["low"])
+
+
+def test_the_signal_file_is_a_record_once_its_output_is_measured(lagging, tmp_path):
+    """Read by the reader of datasets: the column is the input's of the dataset."""
+    file = tmp_path / "next.csv"
+    said = invoked(lagging, tmp_path / "out", "--write-experiment", str(file))
+    content = read_json(tmp_path / "out" / "gap.json")
+    assert content["effects"][0]["cannot_be_told_from"]
+    assert content["next_experiment"]["sentence"] in said
+    header, *rows = file.read_text().splitlines()
+    measured = [f"{row},{12.5 * float(row.split(',')[1])}" for row in rows]
+    (tmp_path / "rig").mkdir()
+    table = "\n".join([f"{header},displacement_um", *measured])
+    (tmp_path / "rig" / "next.csv").write_text(table + "\n")
+    about = yaml.safe_load((lagging / "rig" / "dataset.yaml").read_text())
+    about["records"] = [{"file": "next.csv", "use": "fit"}]
+    (tmp_path / "rig" / "dataset.yaml").write_text(yaml.safe_dump(about))
+    found = load_dataset(tmp_path / "rig").read("next")
+    assert found.input == CURRENT
+    assert found.dt == pytest.approx(content["next_experiment"]["sampling_interval_s"])
+    kept(found.u, found.dt)
+
+
+def test_the_signal_archive_runs_a_model(lagging, tmp_path):
+    file = tmp_path / "next.npz"
+    invoked(lagging, tmp_path / "out", "--write-experiment", str(file))
+    signal = load_signal(file)
+    assert signal.unit == CURRENT.unit
+    kept(signal.u, signal.dt)
+    words = [str(tmp_path / "out" / "model.yaml"), str(file)]
+    result = CliRunner().invoke(simulate, [*words, "--out", str(tmp_path / "y.csv")])
+    assert result.exit_code == 0, result.output
+    table = np.loadtxt(tmp_path / "y.csv", delimiter=",", skiprows=1)
+    assert table[:, 1] == pytest.approx(signal.u)

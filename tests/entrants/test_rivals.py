@@ -14,7 +14,7 @@ from hystbench.entrants import gaussian_process, naive, random_namer
 from hystbench.entrants.black_box import best, kept
 from hystbench.entrants.environment import begun_by, missing
 from hystbench.entrants.sindy import simulate
-from hystbench.entrants.task import Given
+from hystbench.entrants.task import Given, read, write
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
 from hystbench.record import Channel, Record
@@ -55,6 +55,19 @@ def test_the_random_namer_says_the_same_each_time(folder, tmp_path):
     first = solved(random_namer, folder, tmp_path / "a")
     assert solved(random_namer, folder, tmp_path / "b") == first
     assert first["gap"]["after"] == first["gap"]["before"]
+
+
+@pytest.mark.parametrize("beyond", [np.nan, np.inf, 1e200])
+def test_a_rival_that_runs_away_has_closed_nothing(folder, tmp_path, beyond):
+    given = read(folder / "dataset", folder / "model.yaml")
+
+    def predict(record):
+        return np.where(record.time > 0.1, beyond, 0.0)
+
+    write(given, [], "unnamed", "no reason", predict, tmp_path)
+    gap = read_json(tmp_path / "gap.json")
+    check_against_schema(gap, SCHEMA, "gap.json")
+    assert (gap["gap"]["after"], gap["gap"]["explained"]) == (None, 0.0)
 
 
 @pytest.mark.filterwarnings("ignore::sklearn.exceptions.ConvergenceWarning")

@@ -1,5 +1,6 @@
 """Small records and chains for the tests of the naming engine."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,7 +10,8 @@ from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
-from tests.gap.made import record
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
 
 ENVELOPE = {
     "a0": 12.0,
@@ -89,6 +91,15 @@ def measured(chain, noise=0.0, seed=0, given=None):
         )
         for one, y in zip(given, outputs, strict=True)
     )
+
+
+def write_lagging(folder):
+    """Write a plain gain whose output lags: a lag of the drive would do as well."""
+    chain = (block("gain", value=12.0),)
+    made = measured((*chain, block("sensor-lag", time_constant_s=0.004)), 0.02)
+    held = replace(made[0], name="held", use="hold-out")
+    write_folder(folder / "rig", [*made, held], noise_rms=0.02)
+    Model("rig", CURRENT, DISPLACEMENT, chain).save(folder / "base.yaml")
 
 
 def state_of(chain, given=None, count=300, **more):

@@ -10,15 +10,10 @@ import pytest
 import yaml
 
 from hystbench.errors import InputError
-from hystbench.gap.change import with_effect
-from hystbench.gap.effects import effects
 from hystbench.gap.evidence import load_evidence
-from hystbench.gap.finding import black_box
-from hystbench.gap.run import close_gap, show
-from hystbench.gap.start import start_state
-from hystbench.model import Model, load_model
-from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
-from tests.gap.small import block, measured
+from hystbench.gap.run import close_gap
+from hystbench.model import load_model
+from tests.gap.made import record, write_folder
 
 ABOUT = {
     "name": "rig",
@@ -46,7 +41,7 @@ def tables():
 def rig(tmp_path):
     """Write a dataset and a base, run the workflow on them."""
 
-    def run(records=None, about=None, uses=None, model=None):
+    def run(records=None, about=None, uses=None, model=None, report=False):
         folder = tmp_path / "rig"
         folder.mkdir()
         for name, table in (records or tables()).items():
@@ -76,7 +71,7 @@ def rig(tmp_path):
             load_model(place),
             tmp_path / "out",
             place=str(place),
-            report=False,
+            report=report,
         )
 
     run.out = tmp_path / "out"
@@ -175,6 +170,29 @@ def test_a_stuck_input(rig):
     refused(rig, "one.csv", "current", "row 301", records=changed("one", stick))
 
 
+@pytest.mark.parametrize(
+    ("name", "count"), [("one", 190), ("two", 190), ("three", 155)]
+)
+def test_an_input_that_is_stuck_from_the_first_sample_on(rig, name, count):
+    """Until it jumps into the middle of a motion, which the output was in all along."""
+
+    def stick(table):
+        table[:count, 1] = table[0, 1]
+
+    words = (f"{name}.csv", "current", "row 2", f"{count} samples", "stuck")
+    refused(rig, *words, records=changed(name, stick))
+
+
+@pytest.mark.parametrize("name", USES)
+@pytest.mark.parametrize("column", [1, 2])
+def test_a_channel_that_never_moves_in_one_record(rig, name, column):
+    def stick(table):
+        table[:, column] = table[7, column]
+
+    told = f"column {['time_s', 'current_A', 'displacement_um'][column]!r}: constant"
+    refused(rig, f"{name}.csv", told, records=changed(name, stick))
+
+
 def respond(u, frequency_hz, damping):
     """A mode, step by step as its differential equation says."""
     w, x, v, out = 2 * np.pi * frequency_hz, u[0], 0.0, []
@@ -202,13 +220,6 @@ def test_an_input_that_rests_is_no_fault(tmp_path, shape, frequency_hz, damping)
     y = respond(u, frequency_hz, damping)
     made = [record(u, y, name=k, use=use) for k, use in USES.items()]
     load_evidence(write_folder(tmp_path / "rests", made))
-
-
-def test_a_channel_that_never_moves(rig):
-    def still(table):
-        table[:, 2] = 1.5
-
-    refused(rig, "one.csv", "constant", records=changed("one", still))
 
 
 @pytest.mark.parametrize("column", [1, 2])
@@ -262,22 +273,41 @@ def test_a_base_that_is_not_finite_on_a_record(rig, name):
     )
 
 
-@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")
-def test_a_model_with_effects_that_is_not_finite_on_a_hold_out_record():
-    """Then the line names the effects: the base alone would run."""
-    chain = (block("gain", value=12.0),)
-    base = Model("simulator", CURRENT, DISPLACEMENT, chain)
-    state, floor = start_state(measured(chain, 0.02), base, declared=0.02)
-    (square, *_) = effects()["asymmetry"].variants(state.scene)
-    after = with_effect(state, square, {"coefficient": 0.01})
-    u = np.where(np.arange(600) < 300, 0.5, 1e160)
-    held = (record(u, name="far", use="hold-out"),)
-    with pytest.raises(InputError) as caught:
-        show(base, after, floor, black_box(state, floor), held, ())
-    assert str(caught.value) == (
-        "simulator with asymmetry: the output is not finite from 0.3 s of far on; "
-        "expected a model that stays bounded"
-    )
+PAGE = "hystbench.gap.report.write_report"
+
+
+@pytest.mark.parametrize("earlier", [False, True])
+def test_a_page_that_fails_leaves_no_half_of_a_result(rig, monkeypatch, earlier):
+    """What was there before stays as it was; where nothing was, nothing is."""
+
+    def fail(folder):
+        assert (folder / "gap.json").is_file()  # all else is there by then
+        raise RuntimeError("no ink")
+
+    if earlier:
+        rig.out.mkdir()
+        for name in ("gap.json", "report.html", "notes.txt"):
+            (rig.out / name).write_text("before")
+    before = {item: item.read_text() for item in rig.out.rglob("*")}
+    monkeypatch.setattr(PAGE, fail)
+    with pytest.raises(RuntimeError, match="no ink"):
+        rig(report=True)
+    assert rig.out.exists() is earlier
+    assert {item: item.read_text() for item in rig.out.rglob("*")} == before
+    assert not list(rig.out.parent.glob(".*"))
+
+
+def test_nothing_of_an_earlier_result_stays_and_what_is_foreign_does(rig):
+    old = ("holdout/gone.csv", "report.html", "gap.json")
+    mine = ("notes.txt", "holdout/notes.txt", "stages/decision.json")
+    for name in (*old, *mine):
+        (rig.out / name).parent.mkdir(parents=True, exist_ok=True)
+        (rig.out / name).write_text("before")
+    rig()
+    found = {str(item.relative_to(rig.out)) for item in rig.out.rglob("*.*")}
+    new = {"gap.json", "model.yaml", "curves.json", "holdout/three.csv"}
+    assert found == new | set(mine)
+    assert (rig.out / "gap.json").read_text() != "before"
 
 
 def test_a_base_that_cannot_be_made(rig):

@@ -83,6 +83,17 @@ GAP = {
         "floor_method": "repeats",
         "explained": 0.9871,
         "interval": [0.9765, 0.9912],
+        "before_interval": [0.4417, 0.5821],
+        "after_interval": [0.0967, 0.1108],
+    },
+    "fit": {
+        "before": 0.6123,
+        "after": 0.0973,
+        "explained": 0.9761,
+        "new_in_every_record": 0.0312,
+        "noise": 0.0911,
+        "step_error": 0.0173,
+        "floor": 0.0927,
     },
     "ranking": [
         {
@@ -132,6 +143,8 @@ GAP = {
         "explained_on_folds": 0.87,
         "after": 0.213,
         "explained": 0.853,
+        "after_interval": [0.1812, 0.2443],
+        "interval": [0.8013, 0.8931],
         "records": [
             {
                 "name": "held-1",
@@ -367,6 +380,33 @@ def test_an_experiment_that_was_not_computed_is_not_called_needless(tmp_path, wh
     said = read(write_report(write_folder(tmp_path, gap, False, False))).said
     assert "None is needed" not in said
     assert (f"None was computed: {why}." if why else "None was computed.") in said
+
+
+def test_a_model_that_runs_away_is_said_to_and_drawn_without_it(tmp_path):
+    """Its record has no rms after and no curve; the others keep theirs."""
+    told = "rig with creep runs away on held-2 from 0.3 s on."
+    gap = json.loads(json.dumps(GAP))
+    gap["gap"] |= {"after": None, "explained": 0.0}
+    del gap["gap"]["after_interval"], gap["gap"]["interval"]
+    gap["records"][1] |= {"after": None, "explained": 0.0}
+    gap["black_box"]["records"][1]["named"] = None
+    gap["ladder"][2]["rms"] = None
+    gap["runs_away"] = [{"record": "held-2", "from_s": 0.3, "sentence": told}]
+    write_folder(tmp_path, gap)
+    table = tmp_path / "holdout" / "held-2.csv"
+    rows = [line.split(",") for line in table.read_text().splitlines()]
+    kept = [row if row[0] == "time_s" else [*row[:3], "nan"] for row in rows]
+    table.write_text("\n".join(map(",".join, kept)) + "\n")
+    said = read(write_report(tmp_path)).said
+    assert said.index(told) < said.index("Effects")
+    assert "None of it counts as gone." in said
+    assert said.count("unbounded") == 6  # verdict, record, all, ladder, box twice
+    assert "0.0987" in said
+    # A few values that are no number are a broken table still.
+    kept[5][3] = "1.5"
+    table.write_text("\n".join(map(",".join, kept)) + "\n")
+    with pytest.raises(InputError, match=r"held-2\.csv: expected at least 2 rows"):
+        write_report(tmp_path)
 
 
 def test_a_range_is_printed_as_one(tmp_path):

@@ -4,12 +4,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.gap.explained import bootstrap_interval, share_explained
+from hystbench.gap.explained import (
+    resampled_rms,
+    rms_interval,
+    share_explained,
+    share_interval,
+)
 from hystbench.gap.nuisance import offset_and_mains, split_first, without_nuisance
 from hystbench.gap.shrink import ladder, shrink, spectra
 from tests.gap.made import record, sine
 
 LEVELS = st.floats(0.01, 10)
+
+
+def bootstrap_interval(pairs, floor):
+    return share_interval(*resampled_rms(pairs), floor)
 
 
 def noise(seed, count=4000, size=1.0):
@@ -87,6 +96,41 @@ def test_the_interval_holds_the_share_where_all_is_left_at_an_end():
     share = 1 - float(after @ after) / float(before @ before)
     low, high = bootstrap_interval([(before, after)], 0.0)
     assert low <= share <= high
+
+
+def test_intervals_of_rms_cover_the_truth_as_often_as_they_say():
+    """Of noise of known levels, for three models drawn together."""
+    levels = (1.0, 0.5, 2.0)
+    covered = np.zeros(3)
+    for seed in range(100):
+        residuals = [
+            tuple(noise((seed, place, k), size=s) for k, s in enumerate(levels))
+            for place in range(4)
+        ]
+        for k, drawn in enumerate(resampled_rms(residuals)):
+            low, high = rms_interval(drawn)
+            covered[k] += low <= levels[k] <= high
+    assert (covered >= 88).all()
+
+
+def test_one_drawing_serves_all_models():
+    """What is half of another is half of it in every draw, alone or together."""
+    before, other = noise(1), noise(2)
+    drawn = resampled_rms([(before, other, 0.5 * before)])
+    assert drawn[2] == pytest.approx(0.5 * drawn[0])
+    assert resampled_rms([(other,)])[0] == pytest.approx(drawn[1], rel=1e-12)
+
+
+def test_rms_and_share_come_with_the_intervals_of_one_drawing():
+    records = [
+        record(sine(2, count=n), noise(n, n), name=f"{n}") for n in (500, 1500, 900)
+    ]
+    zeros = [np.zeros(len(item)) for item in records]
+    found = shrink(records, zeros, [0.75 * x.y for x in records], 0.0, "declared")
+    assert found.before_interval[0] < found.before < found.before_interval[1]
+    quarter = tuple(0.25 * end for end in found.before_interval)
+    assert found.after_interval == pytest.approx(quarter)
+    assert found.interval == pytest.approx((1 - 0.25**2, 1 - 0.25**2))
 
 
 def test_interval_is_wider_where_neighbours_go_together():

@@ -111,3 +111,34 @@ def test_more_samples_change_the_sample_alone():
     more = on_more_samples(state)
     assert len(more.sample) == sum(min(SAMPLES, len(one)) for one in state.records)
     assert (more.chain, more.free) == (state.chain, state.free)
+
+
+def test_a_number_that_is_zero_has_an_error_like_any_other():
+    """An offset at zero: of white noise, its error is that of a mean."""
+    level = LEVELS[0]
+    u = inputs()[0]
+    made = (
+        record(u, GAIN * u + level * np.random.default_rng(8).standard_normal(COUNT)),
+    )
+    sample = Sample((np.arange(COUNT),))
+    found = []
+    for offset in (0.0, 1e-6):
+        chain = (block("gain", value=GAIN, offset=offset),)
+        free = (Free(0, "value"), Free(0, "offset"))
+        state = State(chain, made, sample, free=free).settled()
+        found.append(standard_errors(state, plain_score(state, 1e-9)))
+    # Twenty stretches tell it to a sixth of itself.
+    assert found[0][1] == pytest.approx(level / np.sqrt(COUNT), rel=0.5)
+    assert found[0] == pytest.approx(found[1], rel=1e-2)
+
+
+def test_a_zero_of_which_the_records_say_nothing_has_none():
+    """The second of two gains in series is zero, so the first does nothing."""
+    u = inputs()[0]
+    made = (record(u, 0.1 * u),)
+    chain = (block("gain", value=GAIN, offset=0.0), block("gain", value=0.0))
+    free = (Free(0, "offset"), Free(1, "value"))
+    state = State(chain, made, Sample((np.arange(COUNT),)), free=free).settled()
+    nothing, something = standard_errors(state, plain_score(state, 1e-9))
+    assert np.isnan(nothing)
+    assert np.isfinite(something)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
+from tests.gap.small import write_lagging
 from tests.gap.tiny import LAG_S, write_tiny
 
 from .conftest import Workflow, small_config
@@ -91,6 +92,37 @@ def test_a_job_an_effect_gives_the_same(whole, tmp_path_factory, config):
     }
     assert load(workflow) == load(whole)
     assert workflow.would_run(PAGE) == {}
+
+
+def test_the_next_experiment_is_written_within_the_limits_of_its_dataset(
+    tmp_path, config
+):
+    """Only where it is asked for; the folder is there though none may be needed."""
+    workflow = Workflow(tmp_path)
+    write_lagging(tmp_path)
+    rig = {"dataset": "rig/dataset.yaml", "model": "base.yaml"}
+    limits = {"low": -0.15, "high": 0.35, "rate": 12}
+    config["gap"] |= {"datasets": [rig | {"limits": limits}], "write_experiment": True}
+    workflow.configure(config)
+    workflow.run("results/gap/made/next-experiment")
+    file = tmp_path / "results/gap/made/next-experiment/signal.csv"
+    time, u = np.loadtxt(file, delimiter=",", skiprows=1).T
+    assert limits["low"] - 1e-6 <= u.min() < u.max() <= limits["high"] + 1e-6
+    rates = np.abs(np.diff(u)) / np.diff(time)
+    assert rates.max() <= limits["rate"] * (1 + 1e-4)
+    config["gap"] |= {"datasets": [rig], "write_experiment": False}
+    workflow.configure(config)
+    asked = workflow.snakemake("results/gap/made/next-experiment", "--dry-run")
+    assert asked.returncode != 0
+
+
+def test_limits_between_which_nothing_lies_are_one_line(workflow, config):
+    config["gap"]["twin"] |= {"limits": {"low": 0.4, "high": 0.1}}
+    workflow.configure(config)
+    refused = workflow.snakemake("gap")
+    assert refused.returncode != 0
+    told = "gap: twin: limits: low 0.4 and high 0.1; expected low < high"
+    assert told in refused.stdout + refused.stderr
 
 
 def test_hold_out_records_are_read_by_one_job(whole):

@@ -6,6 +6,10 @@ from hystbench.dataset import load_dataset
 GAP = f"{RESULTS}/gap"
 GAP_CASE = f"{GAP}/{{case}}"
 STAGES = f"{GAP_CASE}/stages"
+# The next experiment as a signal; an empty folder where none is needed.
+GAP_EXPERIMENT = (
+    f"{GAP_CASE}/next-experiment" if config["gap"].get("write_experiment") else ""
+)
 # Effects are found by name, so that no import tells of them.
 EFFECTS = {
     name.rpartition(".")[2].replace("_", "-"): name
@@ -25,6 +29,7 @@ if TWIN:
             f"{GAP_FOLDER}/{name}.csv" for name in config["gap"]["twin"]["hold_out"]
         ],
         "model": f"{GAP}/twin/base.yaml",
+        "limits": config["gap"]["twin"].get("limits", {}),
     }
 
     rule gap_twin:
@@ -72,6 +77,7 @@ for GIVEN in config["gap"]["datasets"]:
             if GAP_DATASET.use(name) == "hold-out"
         ],
         "model": GIVEN["model"],
+        "limits": GIVEN.get("limits", {}),
     }
 
 
@@ -169,6 +175,7 @@ rule gap_decide:
         curves=f"{GAP_CASE}/curves.json",
         named=f"{STAGES}/named.json",
         decision=f"{STAGES}/decision.json",
+        experiment=[directory(GAP_EXPERIMENT)] if GAP_EXPERIMENT else [],
     log:
         f"{RESULTS}/logs/gap/{{case}}/decide.log",
     benchmark:
@@ -177,12 +184,18 @@ rule gap_decide:
         named=lambda wildcards, input: (
             f"--named {shlex.quote(input.named)}" if input.named else ""
         ),
+        limits=limits_of_case,
+        experiment=lambda wildcards, output: (
+            options("--write-experiment", [Path(output.experiment[0], "signal.csv")])
+            if GAP_EXPERIMENT
+            else ""
+        ),
         folder=subpath(output.model, parent=True),
     message:
         "verdict on {wildcards.case}"
     shell:
         "hystbench gap-decide {input.dataset:q} --base {input.base:q} {params.named}"
-        " --out {params.folder:q} 2> {log:q}"
+        " {params.limits} {params.experiment} --out {params.folder:q} 2> {log:q}"
 
 
 # The one job that reads hold-out records: verdict, effects and model are written.

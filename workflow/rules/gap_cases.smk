@@ -12,6 +12,14 @@ def model_of_case(wildcards):
     return [model] if model.endswith((".yaml", ".yml")) else []
 
 
+def limits_of_case(wildcards):
+    """What the next experiment of a case may ask of the actuator, as options."""
+    limits = GAP_CASES[wildcards.case]["limits"]
+    return " ".join(
+        f"--limit-{name}={value}" for name, value in limits.items() if value is not None
+    )
+
+
 def last_round(wildcards):
     """The progress after the last round; nothing where one job names all effects."""
     if config["gap"]["jobs"] == "whole":

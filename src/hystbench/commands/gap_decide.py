@@ -10,6 +10,7 @@ from hystbench import options
 from hystbench.gap.bases import written_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import decide_in
+from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
@@ -20,18 +21,35 @@ from hystbench.gap.jobs import decide_in
     type=options.FILE,
     help="Progress after the last round; without it effects are named here.",
 )
+@options.write_experiment
+@options.limits
 @click.option("--out", type=click.Path(path_type=Path), required=True)
-def gap_decide(dataset: Path, base: Path, named: Path | None, out: Path) -> None:
+def gap_decide(
+    dataset: Path,
+    base: Path,
+    named: Path | None,
+    write_experiment: Path | None,
+    limit_low: float | None,
+    limit_high: float | None,
+    limit_rate: float | None,
+    out: Path,
+) -> None:
     """Decide what BASE lacks beside the fit records of DATASET; opens no other.
 
     Writes model.yaml, curves.json, stages/decision.json and stages/named.json to OUT.
     """
     evidence = load_evidence(dataset, "fit")
     model = written_base(base, evidence)
-    decide_in(
+    finding = decide_in(
         out,
         evidence,
         model,
         named,
+        limits=options.asked_limits(limit_low, limit_high, limit_rate),
         say=lambda line: click.echo(line, err=True),
     )
+    if write_experiment is not None:
+        # The folder is a job's output, with the signal or without.
+        write_experiment.parent.mkdir(parents=True, exist_ok=True)
+        told = write_wanted(finding, evidence.input, write_experiment)
+        click.echo(told, err=True)

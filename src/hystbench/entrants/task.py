@@ -115,10 +115,15 @@ def write(
         Folder.
     """
     before = _rms([record.y - given.base(record) for record in given.hold_out])
-    after = _rms([record.y - predict(record) for record in given.hold_out])
+    with np.errstate(over="ignore", invalid="ignore"):
+        left = _rms([record.y - predict(record) for record in given.hold_out])
     floor = noise_rms(given)
     above = before**2 - floor**2
-    explained = (before**2 - after**2) / above if above > 0 else None
+    # A model that runs away on a record closes nothing.
+    after = left if np.isfinite(left) else None
+    explained: float | None = 0.0
+    if after is not None:
+        explained = (before**2 - after**2) / above if above > 0 else None
     effects = [
         {
             "name": item.name,

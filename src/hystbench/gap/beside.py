@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
+from hystbench.gap.bounded import bounded, reach
 from hystbench.gap.nuisance import Nuisance
 from hystbench.gap.shrink import Shrink, plain, records_mapping, shrink
 from hystbench.gap.yardstick import BlackBox
@@ -35,24 +38,33 @@ def black_box_mapping(
     Returns
     -------
     dict
-        ``explained_on_folds``, and on hold-out records ``after`` (RMS), ``explained``
-        and ``records``; each of these has ``named`` (RMS after the named effects) and
-        ``outside`` (in what the record lies outside the training range).
+        ``explained_on_folds``, and on hold-out records ``after`` (RMS), ``explained``,
+        both with an interval, and ``records``; each of these has ``named`` (RMS after
+        the named effects) and ``outside`` (in what the record lies outside the training
+        range). ``after`` and ``named`` are None where a model runs away.
     """
-    corrected = [
-        output + box.predict(record, output)
-        for record, output in zip(records, simulated, strict=True)
-    ]
+    with np.errstate(over="ignore", invalid="ignore"):
+        corrected = [
+            output + box.predict(record, output)
+            for record, output in zip(records, simulated, strict=True)
+        ]
+    usual = reach(simulated, named.noise_floor)
+    kept, _ = bounded("the black box", records, corrected, usual)
     reached = shrink(
-        records, simulated, corrected, named.noise_floor, named.floor_method, nuisance
+        records, simulated, kept, named.noise_floor, named.floor_method, nuisance
     )
     rows = records_mapping(reached)
     for row, record, other in zip(rows, records, named.records, strict=True):
         row["named"] = other.after
         row["outside"] = list(box.outside(record))
-    return {
+    content: dict[str, Any] = {
         "explained_on_folds": box.explained_on_folds,
         "after": reached.after,
         "explained": plain(reached.explained),
         "records": rows,
     }
+    for key in ("after_interval", "interval"):
+        ends = getattr(reached, key)
+        if ends is not None:
+            content[key] = list(ends)
+    return content

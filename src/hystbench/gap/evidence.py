@@ -176,9 +176,9 @@ def _check_input(dataset: Dataset, record: Record) -> None:
     """Refuse an input that stands still while the output goes on.
 
     An input may rest, and the output then settles or rings. But an input that stops in
-    the middle of a motion and jumps to where the motion has come to meanwhile was
-    stuck; and one that stops at its end every time, while the output turns half way,
-    was clipped.
+    the middle of a motion, or stands from the first sample on, and jumps to where the
+    motion has come to meanwhile was stuck; and one that stops at its end every time,
+    while the output turns half way, was clipped.
     """
     u, y = record.u, record.y
     file, name = dataset.record_files[record.name], record.input.name
@@ -203,7 +203,7 @@ def _check_input(dataset: Dataset, record: Record) -> None:
 
 
 APPROACH = 5
-"""Samples of motion before the input stops."""
+"""Samples of motion before the input stops, or after it jumps."""
 JUMP = 10.0
 """Of the median step: a larger one is a jump."""
 PARTS = 12
@@ -219,8 +219,13 @@ def _flat(u: FloatArray) -> list[tuple[int, int]]:
     usual = JUMP * float(np.median(moves[moves != 0]))
     found = []
     for first, last in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
-        before = moves[max(first - APPROACH, 0) : first]
-        smooth = len(before) == APPROACH and before.min() > 0 and before.max() < usual
+        # The motion that stops; of a stretch from the start, the one that goes on.
+        beside = (
+            moves[last : last + APPROACH]
+            if not first
+            else (moves[max(first - APPROACH, 0) : first])
+        )
+        smooth = len(beside) == APPROACH and beside.min() > 0 and beside.max() < usual
         if smooth and last - first >= max(STUCK * len(u), 2 * PARTS):
             found.append((first, last))
     return found

@@ -86,7 +86,11 @@ def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:
 def write_experiment(
     excitation: Excitation, channel: Channel, path: str | Path
 ) -> None:
-    """Write an excitation as a signal file: time in seconds, the input with its unit.
+    """Write an excitation as a signal file.
+
+    A table of time in seconds and the input, its column named as those of datasets are;
+    or, by a path that ends in ``.npz``, an archive as the workflow's signals are, which
+    ``hystbench simulate`` runs a model on.
 
     Parameters
     ----------
@@ -94,8 +98,14 @@ def write_experiment(
     channel : Channel
         The input's.
     path : str or Path
-        A CSV file, written whole or not at all.
+        Written whole or not at all.
     """
+    if Path(path).suffix == ".npz":
+        made = signals.Signal(
+            "next-experiment", excitation.dt, excitation.u, channel.unit
+        )
+        made.save(path)
+        return
     unit = channel.unit.replace("/", "_per_")
     name = f"{channel.name.replace(' ', '_')}_{unit}"
     time = np.arange(len(excitation.u)) * excitation.dt

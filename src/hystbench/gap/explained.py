@@ -52,14 +52,10 @@ def share_explained(
     return gone / above if above > 0 else None
 
 
-def bootstrap_interval(
-    pairs: Sequence[tuple[FloatArray, FloatArray]],
-    floor: float,
-    upper_bound: bool = False,
-    draws: int = DRAWS,
-    seed: int = 0,
-) -> tuple[float, float] | None:
-    """Interval of the share explained, by drawing records and blocks within them.
+def resampled_rms(
+    residuals: Sequence[Sequence[FloatArray]], draws: int = DRAWS, seed: int = 0
+) -> FloatArray:
+    """RMS of residuals over all records, of draws of records and blocks within them.
 
     Each draw takes as many records as there are, with replacement, and rebuilds each
     from overlapping blocks drawn from it, whose end is followed by its beginning
@@ -68,19 +64,13 @@ def bootstrap_interval(
 
     Parameters
     ----------
-    pairs : sequence of (ndarray, ndarray), shape (n,) each
-        Residuals before and after, a pair a record.
-    floor : float
-        RMS of the noise.
-    upper_bound : bool
-        Whether it is one.
+    residuals : sequence of (ndarray, ...), shape (n,) each
+        Of each record, those of one or more models: the same draws serve them all.
     draws, seed : int
 
     Returns
     -------
-    pair of float or None
-        None where more draws than the interval leaves out have no power above the
-        floor.
+    ndarray, shape (models, draws)
 
     References
     ----------
@@ -88,15 +78,15 @@ def bootstrap_interval(
     data", in: Exploring the Limits of Bootstrap, Wiley, 1992.
     """
     random = np.random.default_rng(seed)
-    lengths = np.array([len(before) for before, _ in pairs])
+    lengths = np.array([len(models[0]) for models in residuals])
     blocks = np.maximum(1, lengths // BLOCKS)
     # Sums over a block are differences of cumulative sums.
     sums = [
-        np.stack([_sums(np.square(each), block) for each in pair])
-        for pair, block in zip(pairs, blocks.tolist(), strict=True)
+        np.stack([_sums(np.square(each), block) for each in models])
+        for models, block in zip(residuals, blocks.tolist(), strict=True)
     ]
     counts = lengths // blocks
-    powers = np.zeros((len(sums), draws, 2))
+    powers = np.zeros((len(sums), draws, len(residuals[0])))
     for place, total in enumerate(sums):
         block, count = blocks[place], counts[place]
         starts = random.integers(0, lengths[place], (draws, count))
@@ -107,20 +97,52 @@ def bootstrap_interval(
     rebuilt = random.integers(0, draws, drawn.shape)
     power = powers[drawn, rebuilt].sum(axis=1)
     power /= lengths[drawn].sum(axis=1)[:, None]
-    shares = [
-        share_explained(before, after, floor, upper_bound)
-        for before, after in np.sqrt(power).tolist()
-    ]
+    # Differences of sums may fall below zero by rounding.
+    drawn_rms: FloatArray = np.sqrt(np.maximum(power, 0.0)).T
+    return drawn_rms
+
+
+def rms_interval(drawn: FloatArray) -> tuple[float, float]:
+    """Interval that holds 95 % of the draws of an RMS, shape (draws,)."""
+    return _between(drawn, drawn)
+
+
+def share_interval(
+    before: FloatArray, after: FloatArray, floor: float, upper_bound: bool = False
+) -> tuple[float, float] | None:
+    """Interval of the share explained.
+
+    Parameters
+    ----------
+    before, after : ndarray, shape (draws,)
+        RMS residuals, of the same draws.
+    floor : float
+        RMS of the noise.
+    upper_bound : bool
+        Whether it is one.
+
+    Returns
+    -------
+    pair of float or None
+        None where more draws than the interval leaves out have no power above the
+        floor.
+    """
+    pairs = zip(before.tolist(), after.tolist(), strict=True)
+    shares = [share_explained(old, new, floor, upper_bound) for old, new in pairs]
     known = [each for each in shares if each is not None]
-    outside = (1 - LEVEL) / 2
-    if len(known) < LEVEL * draws:
+    if len(known) < LEVEL * len(shares):
         return None
     ends = np.array(
         [each if isinstance(each, tuple) else (each, each) for each in known]
     )
+    return _between(ends[:, 0], ends[:, 1])
+
+
+def _between(lowest: FloatArray, highest: FloatArray) -> tuple[float, float]:
+    outside = (1 - LEVEL) / 2
     return (
-        float(np.quantile(ends[:, 0], outside)),
-        float(np.quantile(ends[:, 1], 1 - outside)),
+        float(np.quantile(lowest, outside)),
+        float(np.quantile(highest, 1 - outside)),
     )
 
 

@@ -12,7 +12,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.gap.augmented import augmented
 from hystbench.gap.beside_errors import beside_errors
-from hystbench.gap.compared import Compared, rms
+from hystbench.gap.compared import Compared
 from hystbench.gap.experiment import Experiment
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
@@ -27,6 +27,7 @@ from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
+from hystbench.gap.steps import floor_with_steps, step_error
 from hystbench.gap.tell_apart import tell_apart
 from hystbench.gap.told import (
     base_parameters,
@@ -239,22 +240,16 @@ def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:
     before, after = (each.power(square) for each in (start, state))
     alone = replace(state, beside=()).power(square)
     there = before > 0
+    error = step_error(state)
     return {
         "before": float(np.sqrt(before + square)),
         "after": float(np.sqrt(after + square)),
         "explained": (before - after) / before if there else None,
         "new_in_every_record": (alone - after) / before if there else 0.0,
-        "step_error": _step_error(state),
+        "noise": floor.rms,
+        "step_error": error,
+        "floor": floor_with_steps(floor.rms, error),
     }
-
-
-def _step_error(state: State) -> float:
-    """Measure what the plain simulation misses by its steps, RMS over scored samples.
-
-    The state's own residual is that of a simulation in short steps.
-    """
-    plain = state.sample.take(Scene(state.chain, state.records, state.hold).output)
-    return rms(plain - (state.measured - state.residual))
 
 
 def black_box(start: State, floor: Floor) -> BlackBox:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
-from hystbench.files import read_json, write_json
+from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import black_box, decide
+from hystbench.gap.finding import Finding, black_box, decide
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
+from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
-from hystbench.gap.run import show, write_shown
+from hystbench.gap.run import SHOWN, show, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
@@ -19,6 +21,8 @@ from hystbench.model import Model
 
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
+DECIDED = ("model.yaml", "curves.json", NAMED, DECISION)
+"""What the first of the two writes."""
 
 
 def decide_in(
@@ -26,8 +30,9 @@ def decide_in(
     evidence: Evidence,
     base: Model,
     progress: Path | None,
+    limits: Mapping[str, float] | None = None,
     say: Say = silent,
-) -> None:
+) -> Finding:
     """Give the verdict and write it, the model and the curves to a folder.
 
     Parameters
@@ -38,17 +43,18 @@ def decide_in(
     base : Model
     progress : Path or None
         After the last round; None names the effects here.
+    limits : mapping of str to float, optional
+        Of the next experiment; what is not given is taken from the fit records.
     say : callable
         Told a line of progress at a time.
     """
+    asked = Limits.within(evidence.fit, limits) if limits else None
     start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     if progress is None:
         named = name(start, floor.rms, say)
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
-    finding = decide(evidence.name, base, start, floor, named, say)
-    finding.model.save(folder / "model.yaml")
-    write_json(folder / "curves.json", finding.curves)
+    finding = decide(evidence.name, base, start, floor, named, say, asked)
     kept = {
         "floor": floor_mapping(floor),
         "state": state_mapping(finding.state),
@@ -57,8 +63,12 @@ def decide_in(
             for item in finding.rungs
         ],
     }
-    write_json(folder / NAMED, kept)
-    write_json(folder / DECISION, finding.content)
+    with whole_folder(folder, DECIDED) as fresh:
+        finding.model.save(fresh / "model.yaml")
+        write_json(fresh / "curves.json", finding.curves)
+        write_json(fresh / NAMED, kept)
+        write_json(fresh / DECISION, finding.content)
+    return finding
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
@@ -81,4 +91,6 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
     shown = show(base, state, floor, box, evidence.hold_out, steps)
-    write_shown(folder, read_json(folder / DECISION), evidence.hold_out, shown)
+    decided = read_json(folder / DECISION)
+    with whole_folder(folder, SHOWN) as fresh:
+        write_shown(fresh, decided, evidence.hold_out, shown)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from hystbench.gap.fit import finished, score_of
+from hystbench.gap.fit import finished
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.rank import Candidate, Round, make_score, rank
 from hystbench.gap.reconsider import reconsidered, without_needless
 from hystbench.gap.say import Say, silent
 from hystbench.gap.state import State
+from hystbench.gap.steps import above_floor
 from hystbench.gap.thresholds import (
     BESIDE_SHAPE,
     CERTAIN,
@@ -139,7 +140,7 @@ def advance(
     """Try every effect beside the model and add the one that pays, if any does."""
     floor, state = floor_rms**2, progress.state
     score = make_score(state, floor_rms)
-    if state.added and score_of(state, score) - score.least(state.freedom) < FURTHER:
+    if state.added and above_floor(state, score) < FURTHER:
         say("nothing is left that an effect could gain")
         return replace(progress, closed=True)
     ranking = rank(state, score, work=work)

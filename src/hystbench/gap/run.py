@@ -9,24 +9,37 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.base import Block
+from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
-from hystbench.files import write_csv, write_json
+from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
+from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
-from hystbench.gap.nuisance import Nuisance, left_over, offset_and_mains
+from hystbench.gap.nuisance import Nuisance, offset_and_mains
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.shortfall import shortfall
-from hystbench.gap.shrink import Shrink, ladder, mapping, records_mapping, shrink
+from hystbench.gap.shrink import (
+    RecordShrink,
+    Shrink,
+    ladder,
+    mapping,
+    records_mapping,
+    shrink,
+)
 from hystbench.gap.start import check_finite
 from hystbench.gap.state import State
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
+
+SHOWN = ("gap.json", "holdout/*.csv")
+"""What the hold-out records show."""
+RESULT = (*SHOWN, "model.yaml", "curves.json", "report.html")
+"""Files of a folder that a later result replaces; any other stays."""
 
 
 def close_gap(
@@ -46,7 +59,8 @@ def close_gap(
     evidence : Evidence
     base : Model
     folder : Path
-        Gets gap.json, model.yaml, curves.json, holdout/ and report.html.
+        Gets gap.json, model.yaml, curves.json, holdout/ and report.html, all together
+        when the last is done. Those of an earlier result go; any other file stays.
     place : str
         Where the base came from, for messages.
     limits : mapping of str to float, optional
@@ -65,6 +79,8 @@ def close_gap(
     check_units(evidence, base, place)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: a file; expected a folder to write into")
+    # Whether the base runs on the inputs held out is known before the search is paid.
+    _run_base(base.with_hold(evidence.hold), evidence.hold_out, evidence.hold)
     finding = find(
         evidence.name,
         evidence.fit,
@@ -83,14 +99,14 @@ def close_gap(
         evidence.hold_out,
         finding.rungs,
     )
-    folder.mkdir(parents=True, exist_ok=True)
-    finding.model.save(folder / "model.yaml")
-    write_json(folder / "curves.json", finding.curves)
-    write_shown(folder, finding.content, evidence.hold_out, shown)
-    if report:
-        from hystbench.gap.report import write_report  # late: it draws
+    with whole_folder(folder, RESULT) as fresh:
+        finding.model.save(fresh / "model.yaml")
+        write_json(fresh / "curves.json", finding.curves)
+        write_shown(fresh, finding.content, evidence.hold_out, shown)
+        if report:
+            from hystbench.gap.report import write_report  # late: it draws
 
-        write_report(folder)
+            write_report(fresh)
     return finding
 
 
@@ -127,9 +143,9 @@ class Shown:
     Parameters
     ----------
     content : dict
-        ``gap``, ``records``, ``ladder`` and ``black_box`` of gap.json.
+        ``gap``, ``records``, ``ladder``, ``runs_away`` and ``black_box`` of gap.json.
     outputs : list of (ndarray, ndarray)
-        Outputs before and after, of each record.
+        Outputs before and after, of each record; NaN where the model runs away on it.
     """
 
     content: dict[str, Any]
@@ -161,23 +177,20 @@ def show(
     Returns
     -------
     Shown
-        ``gap``, ``records``, ``ladder`` and ``black_box`` of gap.json, and the outputs
-        before and after of each record, with what is new in it as estimated.
 
     Raises
     ------
     InputError
-        If a model's output is not finite on a record.
+        If the base's output is not finite on a record. Where a model's is not, the
+        finding stays: the record is told, and counts as nothing closed.
     """
     nuisance = what_is_new(state)
-    before = _run(base.with_hold(state.hold).chain, records, state, base.name)
-    after = _run(state.chain, records, state, _name(base, state))
+    before = _run_base(base.with_hold(state.hold), records, state.hold)
+    usual = reach(before, floor.rms)
+    after, lost = _run(_name(base, state), state, records, usual)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
     stages = [
-        (
-            rung.name,
-            _run(rung.state.chain, records, state, _name(base, rung.state)),
-        )
+        (rung.name, _run(_name(base, rung.state), rung.state, records, usual)[0])
         for rung in steps
     ]
     content = {
@@ -187,16 +200,20 @@ def show(
             {"name": name, "rms": value}
             for name, value in ladder(records, stages, nuisance)
         ],
+        "runs_away": [item.mapping() for item in lost],
         "black_box": black_box_mapping(box, records, before, found, nuisance),
     }
     outputs = [
-        (
-            record.y - left_over(record, old, nuisance)[0],
-            record.y - left_over(record, new, nuisance)[0],
-        )
-        for record, old, new in zip(records, before, after, strict=True)
+        (record.y - item.residual_before, _after(record, item))
+        for record, item in zip(records, found.records, strict=True)
     ]
     return Shown(content, outputs)
+
+
+def _after(record: Record, item: RecordShrink) -> FloatArray:
+    if item.residual_after is None:
+        return np.full(len(record), np.nan)
+    return record.y - item.residual_after
 
 
 def what_is_new(state: State) -> Nuisance | None:
@@ -213,12 +230,20 @@ def what_is_new(state: State) -> Nuisance | None:
     return offset_and_mains(tones, offset=path)
 
 
-def _run(
-    chain: Sequence[Block], records: tuple[Record, ...], state: State, name: str
+def _run_base(
+    base: Model, records: tuple[Record, ...], hold: Hold
 ) -> tuple[FloatArray, ...]:
-    outputs = Scene(tuple(chain), records, state.hold).output
-    check_finite(name, records, outputs)
+    outputs = Scene(base.chain, records, hold).output
+    check_finite(base.name, records, outputs)
     return outputs
+
+
+def _run(
+    name: str, state: State, records: tuple[Record, ...], usual: float
+) -> tuple[list[FloatArray | None], list[RunsAway]]:
+    with np.errstate(over="ignore", invalid="ignore"):
+        outputs = Scene(state.chain, records, state.hold).output
+    return bounded(name, records, outputs, usual)
 
 
 def _name(base: Model, state: State) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 
 NUMBER = {"type": "number"}
 OPTIONAL = {"type": ["number", "null"]}
+WORDS = {"type": "string"}
 NAMES = {"type": "array", "items": {"type": "string"}}
 
 
@@ -60,20 +61,30 @@ VIEW = _object(
     }
 )
 
+INTERVAL = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
+
 GAP = _object(
     {
         "before": NUMBER,
-        "after": NUMBER,
+        # Null where the model runs away on a hold-out record: it has no bound there.
+        "after": OPTIONAL,
         "noise_floor": NUMBER,
         "floor_method": {"enum": ["repeats", "declared", "upper-bound"]},
         # The share of the power above the floor that is gone; a range where the floor
-        # is only an upper bound; null where there is no power above it.
+        # is only an upper bound; null where there is no power above it; zero where the
+        # model runs away on a hold-out record.
         "explained": {
             "oneOf": [OPTIONAL, {"type": "array", "items": NUMBER, "minItems": 2}]
         },
     },
-    interval={"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2},
+    # 95 % of the draws of one bootstrap: of both rms, and of what is explained.
+    before_interval=INTERVAL,
+    after_interval=INTERVAL,
+    interval=INTERVAL,
 )
+
+# A hold-out record on which the model with its effects has no bounded output.
+AWAY = _object({"record": {"type": "string"}, "from_s": NUMBER, "sentence": WORDS})
 
 FIT = _object(
     {
@@ -84,9 +95,11 @@ FIT = _object(
         # went to signals that are new in every record and predict no other.
         "explained": OPTIONAL,
         "new_in_every_record": NUMBER,
-        # RMS of what the simulation misses by its own steps, of the model with its
-        # effects; it does not count as a gap.
+        # RMS of the noise, of what the simulation of the model with its effects misses
+        # by its own steps, and of both: where that is reached no effect is added.
+        "noise": NUMBER,
         "step_error": NUMBER,
+        "floor": NUMBER,
     }
 )
 
@@ -94,7 +107,8 @@ FIT = _object(
 # of the power above the floor that are gone, and what the reader is told.
 SHORTFALL = _object({"fit": NUMBER, "hold_out": NUMBER, "sentence": {"type": "string"}})
 
-RUNG = _object({"name": {"type": "string"}, "rms": NUMBER})
+# Null where the model of a rung runs away on a hold-out record.
+RUNG = _object({"name": {"type": "string"}, "rms": OPTIONAL})
 
 # A place and form of an effect; its block's place in the chain, none beside it.
 TESTED = _object(
@@ -139,6 +153,7 @@ SCHEMA = _object(
     # The base, the base re-tuned within what it leaves free, then effect by effect.
     ladder={"type": "array", "items": RUNG},
     fit=FIT,
+    runs_away={"type": "array", "items": AWAY},
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},

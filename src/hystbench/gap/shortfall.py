@@ -38,10 +38,19 @@ def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
         f"On the fit records {100 * promised:.0f} % of the gap's power is gone, on "
         f"the hold-out records {100 * kept:.0f} %"
     )
-    reasons = [*_new_in_every_record(content, names), *_outside(content)]
+    reasons = [
+        *_runs_away(content),
+        *_new_in_every_record(content, names),
+        *_outside(content),
+    ]
     if reasons:
         sentence += f": {'; '.join(reasons)}"
     return {"fit": promised, "hold_out": kept, "sentence": f"{sentence}."}
+
+
+def _runs_away(content: Mapping[str, Any]) -> list[str]:
+    names = [item["record"] for item in content.get("runs_away", [])]
+    return [f"the model runs away on {' and '.join(names)}"] if names else []
 
 
 def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:

@@ -1,7 +1,8 @@
 """How far the gap has closed on hold-out records: before, after, and how sure.
 
 What is new in every record (a path of drift, the phase of the mains) is estimated on
-its first 30 % and scored on the rest, before and after alike.
+its first 30 % and scored on the rest, before and after alike. Where the model runs away
+there is no residual after, and nothing of the gap counts as gone.
 """
 
 from __future__ import annotations
@@ -16,8 +17,10 @@ from hystbench.errors import InputError
 from hystbench.gap.compared import rms
 from hystbench.gap.explained import (
     Explained,
-    bootstrap_interval,
+    resampled_rms,
+    rms_interval,
     share_explained,
+    share_interval,
 )
 from hystbench.gap.folds import Mask
 from hystbench.gap.nuisance import Nuisance, left_over
@@ -45,8 +48,9 @@ class RecordShrink:
     ----------
     name : str
     before, after : float
-        RMS residual in output units.
+        RMS residual in output units; no ``after`` where the model runs away.
     explained : float, pair of float or None
+        Zero where the model runs away: nothing of the gap counts as gone.
     scored : ndarray of bool, shape (n,)
     residual_before, residual_after : ndarray, shape (n,)
         What is new in the record is taken off.
@@ -54,11 +58,11 @@ class RecordShrink:
 
     name: str
     before: float
-    after: float
+    after: float | None
     explained: Explained
     scored: Mask
     residual_before: FloatArray
-    residual_after: FloatArray
+    residual_after: FloatArray | None
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,20 +72,25 @@ class Shrink:
     Parameters
     ----------
     before, after, noise_floor : float
-        RMS in output units.
+        RMS in output units; no ``after`` where the model runs away on a record.
     explained : float, pair of float or None
-        Share of the power above the floor that is gone.
+        Share of the power above the floor that is gone; zero where the model runs away
+        on a record.
+    before_interval, after_interval : pair of float
+        95 % of the bootstrap's draws.
     interval : pair of float or None
-        Of ``explained``: 95 % of the bootstrap's draws; where the floor is an upper
-        bound, of the whole range.
+        Of ``explained``, of the same draws; where the floor is an upper bound, of the
+        whole range.
     records : tuple of RecordShrink
     """
 
     before: float
-    after: float
+    after: float | None
     noise_floor: float
     floor_method: str
     explained: Explained
+    before_interval: tuple[float, float]
+    after_interval: tuple[float, float] | None
     interval: tuple[float, float] | None
     records: tuple[RecordShrink, ...]
 
@@ -89,7 +98,7 @@ class Shrink:
 def shrink(
     records: Sequence[Record],
     before: Sequence[FloatArray],
-    after: Sequence[FloatArray],
+    after: Sequence[FloatArray | None],
     noise_floor: float,
     floor_method: str,
     nuisance: Nuisance | None = None,
@@ -99,8 +108,10 @@ def shrink(
     Parameters
     ----------
     records : sequence of Record
-    before, after : sequence of ndarray, shape (n,) each
+    before : sequence of ndarray, shape (n,) each
         Simulated outputs, in free run over the whole record.
+    after : sequence of ndarray or None
+        The same; None where the augmented model runs away.
     noise_floor : float
         RMS in output units.
     floor_method : {"repeats", "declared", "upper-bound"}
@@ -118,33 +129,37 @@ def shrink(
         raise InputError("no hold-out records; expected at least one")
     upper = floor_method == "upper-bound"
     shrunk = []
-    for record, *simulated in zip(records, before, after, strict=True):
-        (old, scored), (new, _) = (
-            left_over(record, output, nuisance) for output in simulated
-        )
-        size = rms(old[scored]), rms(new[scored])
-        shrunk.append(
-            RecordShrink(
-                record.name,
-                *size,
-                share_explained(*size, noise_floor, upper),
-                scored,
-                old,
-                new,
-            )
-        )
-    pairs = [
-        (item.residual_before[item.scored], item.residual_after[item.scored])
+    for record, old_output, new_output in zip(records, before, after, strict=True):
+        old, scored = left_over(record, old_output, nuisance)
+        size, new, left = rms(old[scored]), None, None
+        share: Explained = 0.0
+        if new_output is not None:
+            new, _ = left_over(record, new_output, nuisance)
+            left = rms(new[scored])
+            share = share_explained(size, left, noise_floor, upper)
+        shrunk.append(RecordShrink(record.name, size, left, share, scored, old, new))
+    olds = [item.residual_before[item.scored] for item in shrunk]
+    news = [
+        item.residual_after[item.scored]
         for item in shrunk
+        if item.residual_after is not None
     ]
-    olds, news = zip(*pairs, strict=True)
-    size = rms(np.concatenate(olds)), rms(np.concatenate(news))
+    size = rms(np.concatenate(olds))
+    if len(news) < len(olds):
+        (drawn,) = resampled_rms([(old,) for old in olds])
+        whole = (size, None, noise_floor, floor_method, 0.0)
+        return Shrink(*whole, rms_interval(drawn), None, None, tuple(shrunk))
+    drawn, left_drawn = resampled_rms(list(zip(olds, news, strict=True)))
+    left = rms(np.concatenate(news))
     return Shrink(
-        *size,
+        size,
+        left,
         noise_floor,
         floor_method,
-        share_explained(*size, noise_floor, upper),
-        bootstrap_interval(pairs, noise_floor, upper),
+        share_explained(size, left, noise_floor, upper),
+        rms_interval(drawn),
+        rms_interval(left_drawn),
+        share_interval(drawn, left_drawn, noise_floor, upper),
         tuple(shrunk),
     )
 
@@ -172,31 +187,34 @@ def spectra(
 
 def ladder(
     records: Sequence[Record],
-    stages: Sequence[tuple[str, Sequence[FloatArray]]],
+    stages: Sequence[tuple[str, Sequence[FloatArray | None]]],
     nuisance: Nuisance | None = None,
-) -> tuple[tuple[str, float], ...]:
+) -> tuple[tuple[str, float | None], ...]:
     """RMS residual after each effect that was added, over all records together.
 
     Parameters
     ----------
     records : sequence of Record
-    stages : sequence of (str, sequence of ndarray)
+    stages : sequence of (str, sequence of ndarray or None)
         Name of a stage (the base first, then the effect added) and its simulated
-        output of each record.
+        output of each record; None where it runs away.
     nuisance : callable, optional
         As for :func:`shrink`.
 
     Returns
     -------
-    tuple of (str, float)
+    tuple of (str, float or None)
+        None where a stage runs away on a record.
     """
-    steps = []
+    steps: list[tuple[str, float | None]] = []
     for name, simulated in stages:
         left = []
         for record, output in zip(records, simulated, strict=True):
-            residual, scored = left_over(record, output, nuisance)
-            left.append(residual[scored])
-        steps.append((name, rms(np.concatenate(left))))
+            if output is not None:
+                residual, scored = left_over(record, output, nuisance)
+                left.append(residual[scored])
+        whole = len(left) == len(records)
+        steps.append((name, rms(np.concatenate(left)) if whole else None))
     return tuple(steps)
 
 
@@ -208,9 +226,12 @@ def mapping(shrunk: Shrink) -> dict[str, Any]:
         "noise_floor": shrunk.noise_floor,
         "floor_method": shrunk.floor_method,
         "explained": plain(shrunk.explained),
+        "before_interval": list(shrunk.before_interval),
     }
-    if shrunk.interval is not None:
-        content["interval"] = list(shrunk.interval)
+    for key in ("after_interval", "interval"):
+        ends = getattr(shrunk, key)
+        if ends is not None:
+            content[key] = list(ends)
     return content
 
 

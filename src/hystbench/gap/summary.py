@@ -83,8 +83,8 @@ def _row(content: Content) -> list[str]:
         content["verdict"],
         " + ".join(item["name"] for item in content["effects"]) or "none",
         content["unit"],
-        *(_number(gap[key]) for key in ("before", "after")),
-        _number(content["black_box"]["after"]),
+        *(_rms(gap[key]) for key in ("before", "after")),
+        _rms(content["black_box"]["after"]),
         _number(gap["noise_floor"]),
         gap["floor_method"],
         _share(gap["explained"]),
@@ -123,6 +123,11 @@ def _any(value: object) -> str:
     if isinstance(value, Sequence):
         return " ".join(_any(each) for each in value)
     return "" if value is None else _number(float(str(value)))
+
+
+def _rms(value: float | None) -> str:
+    """Give an RMS; a model that runs away on a record has none."""
+    return "unbounded" if value is None else _number(value)
 
 
 def _number(value: float) -> str:

@@ -19,6 +19,8 @@ RANK = 1e-9
 """Directions that weigh less than this share are not told apart: they are left out."""
 SHOWN = 1e-6
 """Of the noise: what a change of a whole number must do to be known at all."""
+ROUNDING = 1e-12
+"""Of the output: what moves it by less is lost among its last digits."""
 STRETCHES = 20
 """Of a record, within which residuals may be correlated in any way."""
 
@@ -68,9 +70,13 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     scale = np.sqrt(np.mean(columns**2, axis=0))
     # What the output shows of a number must be more than rounding.
     values = np.array([abs(state.value(free)) for free in state.free])
-    shown = scale.copy()
-    shown[: len(values)] *= np.maximum(values, 1e-12)
-    usable = shown > SHOWN * np.sqrt(score.floor)
+    own = scale[: len(values)]
+    usable = scale > SHOWN * np.sqrt(score.floor)
+    usable[: len(values)] = own * values > SHOWN * np.sqrt(score.floor)
+    # One that is zero has no size: the step by which its slope was taken tells.
+    output = np.sqrt(np.mean((state.measured - state.residual) ** 2))
+    moved = own * np.abs(state.steps) > ROUNDING * output
+    usable[: len(values)] |= (values == 0) & moved
     columns = columns[:, usable] / scale[usable]
     pieces = by_record(columns, residual, state, score.floor)
     variance = np.maximum(np.diag(between_stretches(pieces)), between_records(pieces))

@@ -49,6 +49,11 @@ def test_half_a_gap_closed():
     assert row.shrink == pytest.approx(0.5)
 
 
+def test_a_model_that_runs_away_closes_nothing():
+    row = judged(truth(effect()), gap(named("resonance"), after=None))
+    assert (row.shrink, row.top1, row.lost) == (0.0, True, "")
+
+
 def test_a_spurious_effect_beside_the_right_one():
     row = judged(truth(effect()), gap(named("resonance"), named("creep")))
     assert (row.top1, row.exact, row.all_named) == (True, False, True)

@@ -292,4 +292,6 @@ def _shrink(truth: Mapping[str, Any], gap: Mapping[str, Any] | None) -> float | 
     explainable = gap["before"] ** 2 - below
     if explainable <= 0.1 * hold_out["explainable_rms_um"] ** 2:
         return None
+    if gap["after"] is None:  # the model runs away on a record: nothing is closed
+        return 0.0
     return float((gap["before"] ** 2 - gap["after"] ** 2) / explainable)

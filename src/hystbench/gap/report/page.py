@@ -19,7 +19,11 @@ OPTIONAL: dict[str, Any] = {
     "base_parameters": {},
     "shortfall": None,
     "no_experiment": "",
+    "runs_away": [],
+    "fit": None,
 }
+#: And its parts with figures, where a bootstrap tells nothing.
+INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
 
 
 def page(content: Content) -> str:
@@ -33,11 +37,22 @@ def page(content: Content) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    for name in ("number", "with_error", "percent", "explained", "p_value", "bound"):
+    for name in (
+        "number",
+        "size",
+        "with_error",
+        "percent",
+        "explained",
+        "p_value",
+        "bound",
+    ):
         environment.filters[name] = getattr(words, name)
     environment.filters["unit"] = words.unit
     environment.filters["listed"] = words.listed
     gap = OPTIONAL | content.gap
+    gap["gap"] = INTERVALS | gap["gap"]
+    if gap["black_box"]:
+        gap["black_box"] = INTERVALS | gap["black_box"]
     where, missing = _where(content)
     return environment.get_template(TEMPLATE).render(
         gap=gap,

@@ -88,17 +88,23 @@ def bars(
 
 
 def steps(
-    axes: Sequence[Axes], rungs: Sequence[tuple[str, float]], floor: float, unit: str
+    axes: Sequence[Axes],
+    rungs: Sequence[tuple[str, float | None]],
+    floor: float,
+    unit: str,
 ) -> None:
     """Draw the RMS after each effect that was added, against the floor."""
     (panel,) = axes
-    names, sizes = [name for name, _ in rungs], [size for _, size in rungs]
+    names = [name for name, _ in rungs]
+    # A model that runs away has no size: a word stands where its bar would.
+    sizes = [0.0 if size is None else size for _, size in rungs]
+    shown = ["unbounded" if size is None else f"{size:.3g}" for _, size in rungs]
     places = np.arange(len(rungs))
     colors = [BEFORE, *[AFTER] * (len(rungs) - 1)]
     panel.bar(places, sizes, color=colors, width=0.6)
-    for place, size in zip(places, sizes, strict=True):
+    for place, size, text in zip(places, sizes, shown, strict=True):
         panel.annotate(
-            f"{size:.3g}",
+            text,
             (place, size),
             (0, 2),
             textcoords="offset points",

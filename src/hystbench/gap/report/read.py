@@ -26,15 +26,19 @@ WORD = {"type": "string"}
 #: What the page needs of the parts that the contract leaves open.
 OPEN_PARTS: dict[str, Any] = {
     "properties": {
-        "records": _items(name=WORD, before=NUMBER, after=NUMBER),
-        "ladder": _items(name=WORD, rms=NUMBER),
+        "records": _items(name=WORD, before=NUMBER, after=OPTIONAL),
+        "ladder": _items(name=WORD, rms=OPTIONAL),
         "base_parameters": {"type": "object"},
         "black_box": {
             "properties": {
                 "explained_on_folds": OPTIONAL,
-                "after": NUMBER,
+                "after": OPTIONAL,
                 "records": _items(
-                    name=WORD, before=NUMBER, after=NUMBER, named=NUMBER, outside=NAMES
+                    name=WORD,
+                    before=NUMBER,
+                    after=OPTIONAL,
+                    named=OPTIONAL,
+                    outside=NAMES,
                 ),
             }
         },
@@ -63,7 +67,10 @@ OPEN_PARTS: dict[str, Any] = {
 
 @dataclass(frozen=True, repr=False)
 class HoldOut:
-    """A hold-out record before and after, shape (n,) each, in output units."""
+    """A hold-out record before and after, shape (n,) each, in output units.
+
+    ``after`` is NaN throughout where the model runs away on the record.
+    """
 
     name: str
     time_s: FloatArray
@@ -140,6 +147,8 @@ def _hold_out(path: Path) -> HoldOut:
         table = np.loadtxt(lines[1:], delimiter=",", usecols=places, ndmin=2)
     except ValueError as error:
         raise InputError(f"{path}: {error}; expected numbers") from None
-    if len(table) < 2 or not np.isfinite(table).all():
+    finite = np.isfinite(table)
+    runs_away = finite[:, :-1].all() and np.isnan(table[:, -1]).all()
+    if len(table) < 2 or not (finite.all() or runs_away):
         raise InputError(f"{path}: expected at least 2 rows of finite numbers")
     return HoldOut(path.stem, *(np.ascontiguousarray(column) for column in table.T))

@@ -60,6 +60,15 @@ def number(value: float | None, digits: int = 3) -> Markup:
     return Markup('<data value="{}">{}</data>').format(repr(float(value)), shown)
 
 
+def size(value: float | None, ends: list[float] | None = None) -> Markup:
+    """Print an RMS, with its interval; a model that runs away has none."""
+    if value is None:
+        return Markup("unbounded")
+    if not ends:
+        return number(value)
+    return Markup("{} ({} to {})").format(number(value), *map(number, ends))
+
+
 def with_error(value: Any, error: Any) -> Markup:
     """Print a value and its standard error, rounded to two digits of the error."""
     if isinstance(value, str):

@@ -1,0 +1,41 @@
+"""The floor that adding effects ends at: noise, and what the simulator's steps miss."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.gap.compared import rms
+from hystbench.gap.fit import score_of
+from hystbench.gap.scene import Scene
+from hystbench.gap.score import Score
+from hystbench.gap.state import State
+
+
+def step_error(state: State) -> float:
+    """Measure what the plain simulation misses by its steps, RMS over scored samples.
+
+    The state's own residual is that of a simulation in short steps.
+    """
+    plain = state.sample.take(Scene(state.chain, state.records, state.hold).output)
+    return rms(plain - (state.measured - state.residual))
+
+
+def floor_with_steps(noise_rms: float, error: float) -> float:
+    """Give the RMS of noise and step error together: neither knows of the other."""
+    return float(np.hypot(noise_rms, error))
+
+
+def above_floor(state: State, score: Score) -> float:
+    """Tell how much could be gained in the score if all went that is no noise or step.
+
+    Parameters
+    ----------
+    state : State
+    score : Score
+        Its floor is that of the noise.
+    """
+    floor = floor_with_steps(float(np.sqrt(score.floor)), step_error(state)) ** 2
+    whole = replace(score, floor=floor)
+    return score_of(state, whole) - whole.least(state.freedom)

@@ -1,0 +1,32 @@
+"""The next experiment as a signal file, if one is wanted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hystbench.gap.excitations import write_experiment
+from hystbench.gap.finding import Finding
+from hystbench.record import Channel
+
+
+def write_wanted(finding: Finding, channel: Channel, path: Path) -> str:
+    """Write the excitation that tells likely effects apart, or tell why there is none.
+
+    Parameters
+    ----------
+    finding : Finding
+    channel : Channel
+        The input's.
+    path : Path
+        A CSV file, or an archive by its suffix ``.npz``.
+
+    Returns
+    -------
+    str
+        A line that tells what was done.
+    """
+    if finding.experiment is None:
+        why = finding.content.get("no_experiment", "no effects need to be told apart")
+        return f"{path}: not written: {why}"
+    write_experiment(finding.experiment.excitation, channel, path)
+    return f"{path}: {finding.experiment.sentence}"

@@ -1,0 +1,201 @@
+"""A model that runs away on a hold-out record: the verdict stays, the record is named.
+
+The spring of a mode softens. Within the amplitudes of the fit records its potential is
+a well; the record that is held out drives it over the brim, where no motion is bounded.
+"""
+
+import json
+
+import numpy as np
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.gap.bounded import FAR, bounded, reach
+from hystbench.gap.change import with_effect
+from hystbench.gap.effects import effects
+from hystbench.gap.evidence import Evidence
+from hystbench.gap.finding import black_box
+from hystbench.gap.run import close_gap, show
+from hystbench.gap.rungs import Rung
+from hystbench.gap.start import start_state
+from hystbench.gap.summary import write_summary
+from hystbench.model import Model, load_model
+from tests.gap.made import CURRENT, DISPLACEMENT, record
+from tests.gap.small import block, measured
+
+DT, COUNT = 5e-4, 2000
+FREQUENCY, DAMPING, SHARE, SOFT = 40.0, 0.05, 0.4, -5e-4
+"""The brim of its potential is where 1 + SOFT x^2 = 0: at 45 um."""
+FORCE = 12.0
+
+
+def spring(u, soft):
+    """Step the mode's equation by symplectic Euler, far finer than any sample."""
+    x, v, w, fine = 0.0, 0.0, 2 * np.pi * FREQUENCY, 40
+    out = np.empty(len(u))
+    h = DT / fine
+    for k, now in enumerate(u):
+        out[k] = (1 - SHARE) * now + SHARE * x
+        then = u[min(k + 1, len(u) - 1)]
+        for j in range(fine):
+            z = now + (then - now) * j / fine
+            v += h * (w * w * (z - x - soft * x**3) - 2 * DAMPING * w * v)
+            x += h * v
+    return out
+
+
+def base():
+    mode = {
+        "frequency_hz": FREQUENCY,
+        "damping_ratio": DAMPING,
+        "participation": SHARE,
+    }
+    chain = (block("gain", value=FORCE), block("resonance", **mode))
+    return Model("rig", CURRENT, DISPLACEMENT, chain)
+
+
+def evidence(loud=6.0):
+    """Three sweeps to fit; a fourth, held out, is so many times louder."""
+    rng = np.random.default_rng(3)
+    t = np.arange(COUNT) * DT
+    made = []
+    for name, size, low, high in (
+        ("one", 0.07, 5, 60),
+        ("two", 0.09, 60, 20),
+        ("three", 0.08, 25, 45),
+        ("near", 0.075, 10, 50),
+        ("far", 0.16 * loud, 20, 50),
+    ):
+        held = name in ("near", "far")
+        u = size * np.sin(2 * np.pi * (low + (high - low) * t / (2 * t[-1])) * t)
+        # Nobody measured what runs away: a louder rig hits a stop, here a stiff spring.
+        y = spring(FORCE * u, 0.0 if name == "far" else SOFT)
+        y = y + 0.01 * rng.standard_normal(COUNT)
+        use = "hold-out" if held else "fit"
+        made.append(record(u, y, name=name, dt=DT, use=use))
+    fit, held = tuple(made[:3]), tuple(made[3:])
+    return Evidence("springs", fit, held, "band-limited", 0.01)
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    out = tmp_path_factory.mktemp("springs") / "out"
+    close_gap(evidence(), base(), out)
+    return out, json.loads((out / "gap.json").read_text())
+
+
+def test_the_verdict_survives(written):
+    out, content = written
+    assert content["verdict"] == "named"
+    assert [item["name"] for item in content["effects"]] == ["stiffness-hardening"]
+    value = content["effects"][0]["parameters"]["coefficient"]["value"]
+    assert value == pytest.approx(SOFT, rel=0.1)
+    # The model that was written does run away: nothing was made up.
+    far = evidence().hold_out[1]
+    output = load_model(out / "model.yaml").with_hold("band-limited")
+    assert not np.isfinite(output.simulate(far.u, far.dt)).all()
+
+
+def test_the_record_is_named_and_counts_as_nothing_closed(written):
+    _, content = written
+    (away,) = content["runs_away"]
+    assert away["record"] == "far"
+    assert 0 < away["from_s"] < COUNT * DT
+    told = "rig with stiffness-hardening runs away on far from"
+    assert away["sentence"].startswith(told)
+    near, far = content["records"]
+    assert (far["after"], far["explained"]) == (None, 0.0)
+    assert near["explained"] > 0.9
+    gap = content["gap"]
+    assert (gap["after"], gap["explained"]) == (None, 0.0)
+    assert gap["before_interval"][0] <= gap["before"] <= gap["before_interval"][1]
+    assert not {"after_interval", "interval"} & set(gap)
+    assert content["ladder"][0]["rms"] == pytest.approx(gap["before"])
+    assert content["ladder"][-1]["rms"] is None
+    # The black box is bounded, and has its own figures.
+    assert content["black_box"]["after"] > 0
+    assert [item["named"] is None for item in content["black_box"]["records"]] == [
+        False,
+        True,
+    ]
+    assert "runs away on far" in content["shortfall"]["sentence"]
+
+
+def test_tables_and_page_tell_it(written, tmp_path):
+    out, content = written
+    lines = (out / "holdout" / "far.csv").read_text().splitlines()
+    assert {line.split(",")[3] for line in lines[1:]} == {"nan"}
+    near = np.loadtxt(out / "holdout" / "near.csv", delimiter=",", skiprows=1)
+    assert np.isfinite(near).all()
+    page = (out / "report.html").read_text()
+    assert content["runs_away"][0]["sentence"] in page
+    assert "None of it counts as gone." in page
+    assert page.index("None of it counts") < page.index("<h2>Effects")
+    write_summary([content], tmp_path / "summary.csv")
+    assert ",unbounded," in (tmp_path / "summary.csv").read_text()
+
+
+def test_a_base_that_runs_away_on_a_hold_out_record_is_refused_before_the_search(
+    tmp_path, monkeypatch
+):
+    """Its inputs are known: no search is paid for what cannot be shown."""
+    from hystbench.gap import run
+
+    def find(*given):
+        pytest.fail("a search")
+
+    monkeypatch.setattr(run, "find", find)
+    chain = (
+        block("gain", value=FORCE),
+        block(
+            "stiffness-hardening",
+            coefficient=SOFT,
+            frequency_hz=FREQUENCY,
+            damping_ratio=DAMPING,
+            participation=SHARE,
+        ),
+    )
+    soft = Model("soft", CURRENT, DISPLACEMENT, chain)
+    with pytest.raises(
+        InputError, match=r"^soft: the output is not finite from .* far"
+    ):
+        close_gap(evidence(), soft, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def squared(value):
+    """A gain that an asymmetry was added to, and the base on its own."""
+    chain = (block("gain", value=12.0),)
+    start, floor = start_state(
+        measured(chain, 0.02),
+        Model("simulator", CURRENT, DISPLACEMENT, chain),
+        declared=0.02,
+    )
+    (asymmetry, *_) = effects()["asymmetry"].variants(start.scene)
+    after = with_effect(start, asymmetry, {"coefficient": value})
+    return Model("simulator", CURRENT, DISPLACEMENT, chain), start, after, floor
+
+
+@pytest.mark.parametrize("size", [1e80, 1e12])
+def test_what_is_beyond_any_use_runs_away_though_it_is_a_number(size):
+    """An output of 1e160 or of 1e24 for an input of 1e80 or 1e12: no motion."""
+    base, start, after, floor = squared(0.01)
+    u = np.where(np.arange(600) < 300, 0.5, size)
+    held = (record(u, 12 * u, name="far", use="hold-out"),)
+    rungs = (Rung("base", start), Rung("asymmetry", after))
+    shown = show(base, after, floor, black_box(start, floor), held, rungs)
+    assert [item["record"] for item in shown.content["runs_away"]] == ["far"]
+    assert shown.content["runs_away"][0]["from_s"] == pytest.approx(0.3)
+    assert np.isnan(shown.outputs[0][1]).all()
+    assert shown.content["gap"]["after"] is None
+
+
+def test_the_bound_is_some_times_as_far_as_the_base_goes():
+    one = record(np.zeros(3), name="rests")
+    usual = reach([np.array([0.0, -2.0, 1.0]), np.zeros(3)], 0.5)
+    assert usual == 2.5
+    inside = np.array([0.0, -FAR * usual, FAR * usual])
+    assert bounded("m", [one], [inside], usual) == ([inside], [])
+    kept, found = bounded("m", [one], [inside * (1 + 1e-9)], usual)
+    assert kept == [None]
+    assert found == [("m", "rests", pytest.approx(one.dt))]
