@@ -11,7 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
-from hystbench.gap.locate.distortion import take_distortion
+from hystbench.gap.locate.coherence import Coherence, take_coherence
+from hystbench.gap.locate.distortion import KINDS, Distortion, Lines, take_distortion
+from hystbench.gap.locate.loops import Loops, take_loops
 from hystbench.gap.locate.record import record_shares
 from hystbench.gap.locate.samples import Samples, take_samples
 from hystbench.gap.locate.slow_time import block_means
@@ -24,6 +26,8 @@ BoolArray = NDArray[np.bool_]
 # Points of a curve over frequency or time, and of a map over an axis.
 POINTS = 200
 CELLS = 40
+# Lines of a kind in the picture of one record.
+STRONGEST = 100
 
 
 def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
@@ -59,8 +63,20 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
           (Y), ``floor`` (Y), ``loop_area`` (U Y a cycle of the residual over the
           input, positive where the measurement lags more), ``frequency`` (Hz, the
           main one).
-        - ``harmonics``: ``excited``, ``odd``, ``even``, ``other``: shares of the
-          residual's power in periodic records, or null where there are none.
+        - ``harmonics``: ``excited``, ``odd``, ``even``, ``either``, ``other``: shares
+          of the gap above the noise in periodic records, or null where there are none.
+        - ``distortion``: where these shares lie, or null: ``record``, and the same five
+          lists, all of them together adding to one; and of the record that holds most
+          beside the input's lines ``lines``: ``record``, ``noise`` (Y, amplitude that
+          the floor gives a line) and for ``excited``, ``odd``, ``even`` and ``either``
+          ``frequency`` (Hz) and ``amplitude`` (Y) of the 100 strongest.
+        - ``loops``: ``frequency`` (Hz) of third-octave bands; ``measured``,
+          ``simulated`` (U Y a cycle, positive where the output lags) and ``error`` of
+          their difference; or null where the input never moves.
+        - ``coherence``: of the residual with the input: ``frequency`` (Hz),
+          ``coherence`` (0 to 1), ``chance`` (what an unrelated residual exceeds in one
+          of twenty) and ``share`` (of the gap, one number); or null where records are
+          short.
 
     Raises
     ------
@@ -81,7 +97,10 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
         "over_rate": _over_rate(samples),
         "slow": [_slow(item, f) for item, f in _with_frequency(samples)],
         "records": _records(samples, floor),
-        "harmonics": None if distortion is None else dict(vars(distortion)),
+        "harmonics": None if distortion is None else distortion.shares(),
+        "distortion": None if distortion is None else _distortion(samples, distortion),
+        "loops": _loops(take_loops(samples)),
+        "coherence": _coherence(take_coherence(samples)),
     }
 
 
@@ -219,6 +238,58 @@ def _loop_area(item: Compared, frequency: float) -> float:
     record = item.record
     area = float(np.sum(item.residual * np.gradient(record.u)))
     return -area / max(len(record) * record.dt * float(frequency), 1e-300)
+
+
+def _distortion(samples: Samples, distortion: Distortion) -> dict[str, Any]:
+    """Give the shares record by record, and the lines of the one that tells most."""
+    above = np.array([one.above(samples.noise) for one in distortion.records])
+    beside = above[:, 1:4].sum(axis=1)
+    # Where nothing lies beside the input's lines, the record with the largest gap.
+    most = int(np.argmax(beside if np.any(beside > 0) else above.sum(axis=1)))
+    shares = above / max(float(np.sum(above)), 1e-300)
+    return {
+        "record": [one.record for one in distortion.records],
+        **{
+            name: _listed(column)
+            for name, column in zip((*KINDS, "other"), shares.T, strict=True)
+        },
+        "lines": _lines(distortion.records[most]),
+    }
+
+
+def _lines(lines: Lines) -> dict[str, Any]:
+    """Give the strongest lines of each kind, in the order of frequency."""
+    found: dict[str, Any] = {"record": lines.record, "noise": lines.noise_amplitude}
+    for number, name in enumerate(KINDS):
+        own = np.flatnonzero(lines.kind == number)
+        strongest = own[np.argsort(-lines.amplitude[own])[:STRONGEST]]
+        chosen = np.sort(strongest)
+        found[name] = {
+            "frequency": _listed(lines.frequency[chosen]),
+            "amplitude": _listed(lines.amplitude[chosen]),
+        }
+    return found
+
+
+def _loops(loops: Loops) -> dict[str, list[float]] | None:
+    if not len(loops.frequency):
+        return None
+    return {
+        name: _listed(getattr(loops, name))
+        for name in ("frequency", "measured", "simulated", "error")
+    }
+
+
+def _coherence(coherence: Coherence | None) -> dict[str, Any] | None:
+    if coherence is None:
+        return None
+    groups = _groups(np.arange(len(coherence.frequency)), len(coherence.frequency))
+    count = np.bincount(groups)
+    curve: dict[str, Any] = {
+        name: _listed(np.bincount(groups, getattr(coherence, name)) / count)
+        for name in ("frequency", "coherence", "chance")
+    }
+    return curve | {"share": coherence.share}
 
 
 def _groups(place: IntArray, count: int) -> IntArray:

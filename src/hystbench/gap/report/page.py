@@ -135,6 +135,11 @@ def _series(content: Content) -> Picture | None:
     )
 
 
+def _rows(names: list[str]) -> float:
+    """Give the height in inches that as many bars need, that of a curve at least."""
+    return max(2.4, 0.8 + 0.16 * min(len(names), pictures.BARS))
+
+
 def _where(content: Content) -> tuple[list[Picture], list[str]]:
     """Draw the curves that are there, and name those that are not."""
     curves = content.curves
@@ -171,6 +176,30 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 units,
                 words="Residual over the input, by branch, and over the input's rate; "
                 "noise floor grey",
+                panels=(1, 2),
+            ),
+        ),
+        (
+            ("loops", "coherence"),
+            lambda: draw(
+                pictures.loops,
+                curves.get("loops"),
+                curves.get("coherence"),
+                units,
+                words="Area of the loop, output over input, at each frequency (bars: "
+                "two standard errors), and coherence of the gap with the input",
+                panels=(1, 2),
+            ),
+        ),
+        (
+            ("distortion",),
+            lambda: draw(
+                pictures.distortion,
+                curves["distortion"],
+                units["output"],
+                words="Distortion: lines of the residual of one periodic record, and "
+                "what lies on them in each; above the noise floor",
+                height=_rows(curves["distortion"]["record"]),
                 panels=(1, 2),
             ),
         ),

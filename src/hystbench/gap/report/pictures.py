@@ -187,6 +187,106 @@ def spectrum(axes: Sequence[Axes], curve: dict[str, Any], unit: str) -> None:
     panel.legend()
 
 
+#: Lines of the residual: what they are, their colour, their mark.
+LINES = {
+    "excited": ("input's lines", BLUE, "o"),
+    "odd": ("odd lines", ORANGE, "^"),
+    "even": ("even lines", VERMILION, "s"),
+    "either": ("odd or even", GREEN, "D"),
+    "other": ("not repeating", GREY, ""),
+}
+
+
+def distortion(axes: Sequence[Axes], found: dict[str, Any], unit: str) -> None:
+    """Draw the lines of one record's residual, and what lies where in each record."""
+    lines, shares = axes
+    own = found["lines"]
+    for name, (label, color, mark) in LINES.items():
+        if name in own and own[name]["frequency"]:
+            lines.plot(
+                own[name]["frequency"],
+                own[name]["amplitude"],
+                mark,
+                color=color,
+                markersize=3,
+                label=label,
+            )
+    lines.axhline(own["noise"], color=FLOOR, linestyle=":", label="noise floor")
+    # What is far below the noise is rounding, not a line.
+    lines.set_ylim(bottom=0.1 * own["noise"])
+    _logarithmic(lines, "xy")
+    lines.set_title(own["record"])
+    lines.set_xlabel("frequency (Hz)")
+    lines.set_ylabel(f"residual's amplitude ({unit_text(unit)})")
+    lines.legend()
+    order = np.argsort(
+        [-sum(found[name][i] for name in LINES) for i in range(len(found["record"]))]
+    )[:BARS]
+    places, left = np.arange(len(order)), np.zeros(len(order))
+    for name, (label, color, _) in LINES.items():
+        width = 100 * np.array(found[name])[order]
+        shares.barh(places, width, left=left, color=color, height=0.7, label=label)
+        left = left + width
+    shares.set_yticks(places, [found["record"][i] for i in order])
+    shares.invert_yaxis()
+    shares.set_xlabel("share of the periodic records' gap (%)")
+    shares.grid(visible=False, axis="y")
+    shares.legend()
+
+
+def loops(
+    axes: Sequence[Axes], areas: Any, coherence: Any, units: dict[str, str]
+) -> None:
+    """Draw the loop's area over frequency, and the gap's coherence with the input."""
+    given, made = unit_text(units["input"]), unit_text(units["output"])
+    if areas:
+        panel = axes[0]
+        frequency, error = areas["frequency"], 2 * np.array(areas["error"])
+        panel.plot(
+            frequency,
+            areas["simulated"],
+            "s--",
+            color=GREY,
+            markersize=3,
+            label="simulation",
+        )
+        panel.errorbar(
+            frequency,
+            areas["measured"],
+            error,
+            fmt="o-",
+            color=BLUE,
+            markersize=3,
+            capsize=2,
+            label="measurement",
+        )
+        _logarithmic(panel, "x")
+        panel.set_xlabel("frequency (Hz)")
+        panel.set_ylabel(f"loop area a cycle ({given} {made})")
+        panel.legend()
+    if coherence:
+        panel = axes[1]
+        frequency = coherence["frequency"]
+        panel.plot(
+            frequency,
+            coherence["coherence"],
+            "o-",
+            color=BLUE,
+            markersize=3,
+            label="gap with input",
+        )
+        panel.plot(
+            frequency, coherence["chance"], ":", color=BLACK, label="chance, 1 of 20"
+        )
+        _logarithmic(panel, "x")
+        panel.set_ylim(0, 1.05)
+        panel.set_xlabel("frequency (Hz)")
+        panel.set_ylabel("coherence (-)")
+        panel.legend()
+    for panel, there in zip(axes, (areas, coherence), strict=True):
+        panel.set_visible(bool(there))
+
+
 def maps(
     axes: Sequence[Axes], over_input: Any, over_rate: Any, units: dict[str, str]
 ) -> None:
