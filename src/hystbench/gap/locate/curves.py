@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,8 +27,10 @@ BoolArray = NDArray[np.bool_]
 # Points of a curve over frequency or time, and of a map over an axis.
 POINTS = 200
 CELLS = 40
+# The input excites bins with this share of its strongest one's power.
+EXCITED = 1e-4
 # Lines of a kind in the picture of one record.
-STRONGEST = 100
+LINES = 100
 
 
 def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
@@ -69,7 +72,7 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
           lists, all of them together adding to one; and of the record that holds most
           beside the input's lines ``lines``: ``record``, ``noise`` (Y, amplitude that
           the floor gives a line) and for ``excited``, ``odd``, ``even`` and ``either``
-          ``frequency`` (Hz) and ``amplitude`` (Y) of the 100 strongest.
+          ``frequency`` (Hz) and ``amplitude`` (Y) of the first 100.
         - ``loops``: ``frequency`` (Hz) of third-octave bands; ``measured``,
           ``simulated`` (U Y a cycle, positive where the output lags) and ``error`` of
           their difference; or null where the input never moves.
@@ -91,7 +94,7 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
     distortion = take_distortion(samples)
     return {
         "units": {"input": channels.input.unit, "output": channels.output.unit},
-        "response": _response(spectra),
+        "response": _response(spectra, _driven(samples)),
         "spectrum": _spectrum(samples, spectra),
         "over_input": _over_input(samples, floor),
         "over_rate": _over_rate(samples),
@@ -104,9 +107,18 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
     }
 
 
-def _response(spectra: Spectra) -> dict[str, list[float]]:
-    """Give measurement over simulation where the simulation has power."""
-    excited = spectra.simulated >= 1e-5 * float(np.max(spectra.simulated))
+def _driven(samples: Samples) -> FloatArray:
+    """Give the input's power in the bins of the spectra."""
+    driven = tuple(Compared(one.record, one.record.u) for one in samples.compared)
+    return take_spectra(replace(samples, compared=driven)).simulated
+
+
+def _response(spectra: Spectra, driven: FloatArray) -> dict[str, list[float]]:
+    """Give measurement over simulation where the input has power.
+
+    A harmonic that the simulation makes by itself has no response.
+    """
+    excited = driven >= EXCITED * float(np.max(driven))
     groups = _groups(np.cumsum(excited) - 1, int(np.sum(excited)))
     cross = _gather(groups, spectra.cross.real, excited) + 1j * _gather(
         groups, spectra.cross.imag, excited
@@ -258,12 +270,10 @@ def _distortion(samples: Samples, distortion: Distortion) -> dict[str, Any]:
 
 
 def _lines(lines: Lines) -> dict[str, Any]:
-    """Give the strongest lines of each kind, in the order of frequency."""
+    """Give the first lines of each kind."""
     found: dict[str, Any] = {"record": lines.record, "noise": lines.noise_amplitude}
     for number, name in enumerate(KINDS):
-        own = np.flatnonzero(lines.kind == number)
-        strongest = own[np.argsort(-lines.amplitude[own])[:STRONGEST]]
-        chosen = np.sort(strongest)
+        chosen = np.flatnonzero(lines.kind == number)[:LINES]
         found[name] = {
             "frequency": _listed(lines.frequency[chosen]),
             "amplitude": _listed(lines.amplitude[chosen]),

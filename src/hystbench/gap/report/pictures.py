@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from hystbench.figures.style import (
@@ -162,7 +163,7 @@ def response(axes: Sequence[Axes], curve: dict[str, Any]) -> None:
     names = (("magnitude", 1.0), ("phase", 0.0), ("coherence", 1.0))
     units = {"magnitude": "(-)", "phase": "(degrees)", "coherence": "(-)"}
     for panel, (name, right) in zip(axes, names, strict=True):
-        panel.plot(curve["frequency"], curve[name], ".-", color=BLUE)
+        panel.plot(curve["frequency"], curve[name], ".", color=BLUE)
         panel.axhline(right, color=BLACK, linestyle="--", linewidth=0.8)
         _logarithmic(panel, "x")
         panel.set_xlabel("frequency (Hz)")
@@ -184,7 +185,7 @@ def spectrum(axes: Sequence[Axes], curve: dict[str, Any], unit: str) -> None:
     _logarithmic(panel, "xy")
     panel.set_xlabel("frequency (Hz)")
     panel.set_ylabel(f"amplitude density ({unit_text(unit)}/√Hz)")
-    panel.legend()
+    legend_above(panel.figure, panel.get_legend_handles_labels()[0])
 
 
 #: Lines of the residual: what they are, their colour, their mark.
@@ -193,7 +194,7 @@ LINES = {
     "odd": ("odd lines", ORANGE, "^"),
     "even": ("even lines", VERMILION, "s"),
     "either": ("odd or even", GREEN, "D"),
-    "other": ("not repeating", GREY, ""),
+    "other": ("not repeating", GREY, "P"),
 }
 
 
@@ -201,37 +202,33 @@ def distortion(axes: Sequence[Axes], found: dict[str, Any], unit: str) -> None:
     """Draw the lines of one record's residual, and what lies where in each record."""
     lines, shares = axes
     own = found["lines"]
-    for name, (label, color, mark) in LINES.items():
-        if name in own and own[name]["frequency"]:
-            lines.plot(
-                own[name]["frequency"],
-                own[name]["amplitude"],
-                mark,
-                color=color,
-                markersize=3,
-                label=label,
-            )
-    lines.axhline(own["noise"], color=FLOOR, linestyle=":", label="noise floor")
+    for name, (_, color, mark) in LINES.items():
+        if name in own:
+            line, sizes = own[name]["frequency"], own[name]["amplitude"]
+            lines.plot(line, sizes, mark, color=color, markersize=3)
+    noise = lines.axhline(own["noise"], color=FLOOR, linestyle=":", label="noise floor")
+    _logarithmic(lines, "xy")
     # What is far below the noise is rounding, not a line.
     lines.set_ylim(bottom=0.1 * own["noise"])
-    _logarithmic(lines, "xy")
     lines.set_title(own["record"])
     lines.set_xlabel("frequency (Hz)")
     lines.set_ylabel(f"residual's amplitude ({unit_text(unit)})")
-    lines.legend()
-    order = np.argsort(
-        [-sum(found[name][i] for name in LINES) for i in range(len(found["record"]))]
-    )[:BARS]
-    places, left = np.arange(len(order)), np.zeros(len(order))
-    for name, (label, color, _) in LINES.items():
-        width = 100 * np.array(found[name])[order]
-        shares.barh(places, width, left=left, color=color, height=0.7, label=label)
-        left = left + width
-    shares.set_yticks(places, [found["record"][i] for i in order])
+    table = 100 * np.array([found[name] for name in LINES])
+    order = np.argsort(-table.sum(axis=0), kind="stable")[:BARS]
+    left, marks = np.zeros(len(order)), []
+    for row, (label, color, mark) in zip(table, LINES.values(), strict=True):
+        places = np.arange(len(order))
+        shares.barh(places, row[order], left=left, color=color, height=0.7)
+        left = left + row[order]
+        if np.any(row > 0):
+            look = {"color": color, "marker": mark, "linestyle": "none"}
+            marks.append(Line2D([], [], label=label, **look))
+    shares.set_yticks(np.arange(len(order)), [found["record"][i] for i in order])
     shares.invert_yaxis()
-    shares.set_xlabel("share of the periodic records' gap (%)")
+    shares.set_title("all periodic records")
+    shares.set_xlabel("share of their gap (%)")
     shares.grid(visible=False, axis="y")
-    shares.legend()
+    legend_above(lines.figure, [*marks, noise])
 
 
 def loops(
@@ -242,24 +239,12 @@ def loops(
     if areas:
         panel = axes[0]
         frequency, error = areas["frequency"], 2 * np.array(areas["error"])
-        panel.plot(
-            frequency,
-            areas["simulated"],
-            "s--",
-            color=GREY,
-            markersize=3,
-            label="simulation",
-        )
-        panel.errorbar(
-            frequency,
-            areas["measured"],
-            error,
-            fmt="o-",
-            color=BLUE,
-            markersize=3,
-            capsize=2,
-            label="measurement",
-        )
+        # Behind, and larger: it is seen where the measurement lies on it.
+        large = {"color": GREY, "markersize": 6, "label": "simulation"}
+        panel.plot(frequency, areas["simulated"], "s", **large)
+        small = {"color": BLUE, "markersize": 3, "capsize": 2, "label": "measurement"}
+        panel.errorbar(frequency, areas["measured"], error, fmt="o", **small)
+        panel.axhline(0, color=BLACK, linewidth=0.6)
         _logarithmic(panel, "x")
         panel.set_xlabel("frequency (Hz)")
         panel.set_ylabel(f"loop area a cycle ({given} {made})")
@@ -308,6 +293,7 @@ def maps(
         panel.plot(over_rate["rate"], over_rate["mean"], color=GREEN, label="mean")
         panel.plot(over_rate["rate"], over_rate["rms"], ":", color=BLACK, label="rms")
         panel.set_xlabel(f"rate of the input ({given}/s)")
+        panel.set_ylabel(f"residual ({made})")
         panel.set_title("by rate")
         panel.legend()
 
@@ -322,13 +308,13 @@ def slow(axes: Sequence[Axes], paths: Sequence[dict[str, Any]], unit: str) -> No
         panel.plot(time, _numbers(path["residual"]), mark + "-", color=color)
         panel.annotate(
             path["record"],
-            (time[0], 1),
-            (2, -2),
+            (start, 1),
+            (2, 2),
             ("data", "axes fraction"),
             textcoords="offset points",
-            va="top",
+            va="bottom",
             fontsize=6,
-            rotation=90,
+            rotation=30,
         )
         start = float(time[-1]) + (float(time[0]) - start)
         panel.axvline(start, color=GREY, linewidth=0.6)
