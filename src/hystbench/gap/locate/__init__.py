@@ -20,7 +20,7 @@ from hystbench.gap.locate.spectra import take_spectra
 from hystbench.gap.locate.unexplained import unexplained_view
 from hystbench.gap.locate.view import View
 
-__all__ = ["View", "curves", "locate"]
+__all__ = ["View", "curves", "locate", "ranked"]
 
 # Of the p-value of a view, after the correction for the number of views.
 LEVEL = 0.05
@@ -79,6 +79,11 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
         rate_view(samples),
         record_view(samples),
     )
+    return ranked(views)
+
+
+def ranked(views: Sequence[View]) -> tuple[View, ...]:
+    """Put the views that save most first, behind them those that chance may give."""
 
     def order(view: View) -> tuple[bool, float]:
         return view.p_value * len(views) >= LEVEL, -view.saved

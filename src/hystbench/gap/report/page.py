@@ -20,6 +20,12 @@ OPTIONAL: dict[str, Any] = {
     "shortfall": None,
     "no_experiment": "",
 }
+#: Why a curve is null.
+WHY = {
+    "distortion": "distortion, as no record repeats with a gap above the noise",
+    "loops": "areas of loops, as the input never moves",
+    "coherence": "coherence, as records are too short or the input never moves",
+}
 
 
 def page(content: Content) -> str:
@@ -227,7 +233,11 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
     ]
     drawn, missing = [], []
     for keys, make in plans:
-        missing += [f"curves.json: no {key}" for key in keys if not curves.get(key)]
+        missing += [
+            WHY[key] if key in WHY and key in curves else f"curves.json: no {key}"
+            for key in keys
+            if not curves.get(key)
+        ]
         if any(curves.get(key) for key in keys):
             drawn.append(make())
     return drawn, missing
