@@ -63,6 +63,12 @@ class Loops:
         return float(special.chdtrc(max(len(self.error), 1), squares))
 
     @property
+    def turned(self) -> FloatArray:
+        """Minus one where the loop turns the other way, as where the output leads."""
+        there = np.abs(self.simulated) > NONE * np.abs(self.measured)
+        return np.sign(np.where(there, self.simulated, self.measured))
+
+    @property
     def difference(self) -> FloatArray:
         """Measured less simulated area."""
         return self.measured - self.simulated
@@ -178,7 +184,8 @@ def told(loops: Loops) -> str:
         return ""
     parts = []
     for sense, word in ((1, "more"), (-1, "less")):
-        here = np.where(sense * loops.difference > 3 * loops.error, loops.share, 0.0)
+        differs = sense * loops.turned * loops.difference > 3 * loops.error
+        here = np.where(differs, loops.share, 0.0)
         if float(np.sum(here)) >= MATTERS:
             parts.append((float(np.sum(here)), _band(loops, here, word)))
     if not parts or loops.p_value >= SIGNIFICANT:
@@ -193,8 +200,10 @@ def _band(loops: Loops, here: FloatArray, word: str) -> str:
     first, last = narrowest_bins(here)
     inside = (np.arange(len(here)) >= first) & (np.arange(len(here)) <= last)
     inside &= here > 0
-    measured = float(np.sum(loops.measured[inside]))
-    simulated = float(np.sum(loops.simulated[inside]))
+    measured, simulated = (
+        float(np.sum((loops.turned * areas)[inside]))
+        for areas in (loops.measured, loops.simulated)
+    )
     against, by = f"{number(simulated)} {loops.unit} a cycle", ""
     if abs(simulated) <= NONE * abs(measured):
         against = f"next to none ({loops.unit} a cycle)"

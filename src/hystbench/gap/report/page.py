@@ -216,7 +216,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 curves["slow"],
                 units["output"],
                 words="Mean of the residual over slow time, record behind record",
-                height=2.0,
+                height=2.6,
             ),
         ),
         (

@@ -248,7 +248,7 @@ def loops(
         _logarithmic(panel, "x")
         panel.set_xlabel("frequency (Hz)")
         panel.set_ylabel(f"loop area a cycle ({given} {made})")
-        panel.legend()
+        panel.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2)
     if coherence:
         panel = axes[1]
         frequency = coherence["frequency"]
@@ -267,7 +267,7 @@ def loops(
         panel.set_ylim(0, 1.05)
         panel.set_xlabel("frequency (Hz)")
         panel.set_ylabel("coherence (-)")
-        panel.legend()
+        panel.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2)
     for panel, there in zip(axes, (areas, coherence), strict=True):
         panel.set_visible(bool(there))
 
@@ -314,10 +314,11 @@ def slow(axes: Sequence[Axes], paths: Sequence[dict[str, Any]], unit: str) -> No
             textcoords="offset points",
             va="bottom",
             fontsize=6,
-            rotation=30,
+            rotation=90,
         )
         start = float(time[-1]) + (float(time[0]) - start)
         panel.axvline(start, color=GREY, linewidth=0.6)
+    panel.set_xlim(0, start)
     panel.set_xlabel("time, record behind record (s)")
     panel.set_ylabel(f"mean residual ({unit_text(unit)})")
 
