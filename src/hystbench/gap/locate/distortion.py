@@ -122,9 +122,19 @@ def take_distortion(samples: Samples) -> Distortion | None:
     total = float(np.sum(energy))
     if total <= 0:
         return None
-    shares = [float(value) for value in energy / total]
-    chances = [_p_value(records, kind, samples.noise) for kind in (1, 2, 3)]
-    return Distortion(*shares, *chances, _p_other(records, samples.noise), records)
+    excited, odd, even, either, other = (float(value) for value in energy / total)
+    return Distortion(
+        excited=excited,
+        odd=odd,
+        even=even,
+        either=either,
+        other=other,
+        p_odd=_p_value(records, KINDS.index("odd"), samples.noise),
+        p_even=_p_value(records, KINDS.index("even"), samples.noise),
+        p_either=_p_value(records, KINDS.index("either"), samples.noise),
+        p_other=_p_other(records, samples.noise),
+        records=records,
+    )
 
 
 def told_repeating(distortion: Distortion | None) -> str:

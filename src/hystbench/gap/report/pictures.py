@@ -171,7 +171,7 @@ def response(axes: Sequence[Axes], curve: dict[str, Any]) -> None:
     axes[2].set_ylim(0, 1.05)
 
 
-def spectrum(axes: Sequence[Axes], curve: dict[str, Any], unit: str) -> None:
+def spectrum(axes: Any, curve: dict[str, Any], unit: str) -> None:
     """Draw amplitude densities of simulation, residual, its linear part and floor."""
     (panel,) = axes
     looks = {
@@ -198,7 +198,7 @@ LINES = {
 }
 
 
-def distortion(axes: Sequence[Axes], found: dict[str, Any], unit: str) -> None:
+def distortion(axes: Any, found: dict[str, Any], unit: str) -> None:
     """Draw the lines of one record's residual, and what lies where in each record."""
     lines, shares = axes
     own = found["lines"]
@@ -216,12 +216,12 @@ def distortion(axes: Sequence[Axes], found: dict[str, Any], unit: str) -> None:
     table = 100 * np.array([found[name] for name in LINES])
     order = np.argsort(-table.sum(axis=0), kind="stable")[:BARS]
     left, marks = np.zeros(len(order)), []
-    for row, (label, color, mark) in zip(table, LINES.values(), strict=True):
+    for row, (name, (label, color, mark)) in zip(table, LINES.items(), strict=True):
         places = np.arange(len(order))
         shares.barh(places, row[order], left=left, color=color, height=0.7)
         left = left + row[order]
-        if np.any(row > 0):
-            look = {"color": color, "marker": mark, "linestyle": "none"}
+        if np.any(row > 0) or own.get(name, {}).get("frequency"):
+            look: dict[str, Any] = {"color": color, "marker": mark, "linestyle": "none"}
             marks.append(Line2D([], [], label=label, **look))
     shares.set_yticks(np.arange(len(order)), [found["record"][i] for i in order])
     shares.invert_yaxis()
@@ -240,9 +240,14 @@ def loops(
         panel = axes[0]
         frequency, error = areas["frequency"], 2 * np.array(areas["error"])
         # Behind, and larger: it is seen where the measurement lies on it.
-        large = {"color": GREY, "markersize": 6, "label": "simulation"}
+        large: dict[str, Any] = {"color": GREY, "markersize": 6, "label": "simulation"}
         panel.plot(frequency, areas["simulated"], "s", **large)
-        small = {"color": BLUE, "markersize": 3, "capsize": 2, "label": "measurement"}
+        small: dict[str, Any] = {
+            "color": BLUE,
+            "markersize": 3,
+            "capsize": 2,
+            "label": "measurement",
+        }
         panel.errorbar(frequency, areas["measured"], error, fmt="o", **small)
         panel.axhline(0, color=BLACK, linewidth=0.6)
         _logarithmic(panel, "x")
