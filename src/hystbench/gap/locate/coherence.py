@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft, special
 
 from hystbench.gap.compared import Compared
+from hystbench.gap.locate.listed import IntArray, in_groups, listed
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.spectra import HANN_INFLATION, ComplexArray
 from hystbench.gap.locate.view import chance, percent
 from hystbench.record import FloatArray
-
-IntArray = NDArray[np.int64]
 
 # Segments of a record, that overlap by half, and what the overlap takes from them:
 # neighbours under a Hann window share a sixth (Welch 1967).
@@ -127,6 +126,19 @@ def _starts(held: FloatArray, square: FloatArray) -> IntArray:
             power = squares = 0.0
         power, squares = power + one, squares + its_square
     return np.array(starts)
+
+
+def coherence_curve(coherence: Coherence | None) -> dict[str, Any] | None:
+    """Give what the picture draws."""
+    if coherence is None:
+        return None
+    groups = in_groups(np.arange(len(coherence.frequency)), len(coherence.frequency))
+    count = np.bincount(groups)
+    curve: dict[str, Any] = {
+        name: listed(np.bincount(groups, getattr(coherence, name)) / count)
+        for name in ("frequency", "coherence", "chance")
+    }
+    return curve | {"share": coherence.share}
 
 
 def told(coherence: Coherence | None) -> str:

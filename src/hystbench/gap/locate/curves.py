@@ -7,25 +7,24 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
-from hystbench.gap.locate.coherence import Coherence, take_coherence
+from hystbench.gap.locate.coherence import coherence_curve, take_coherence
 from hystbench.gap.locate.distortion import KINDS, Distortion, Lines, take_distortion
-from hystbench.gap.locate.loops import Loops, take_loops
+from hystbench.gap.locate.listed import IntArray, in_groups, listed
+from hystbench.gap.locate.loops import loop_curve, take_loops
 from hystbench.gap.locate.record import record_shares
 from hystbench.gap.locate.samples import Samples, take_samples
 from hystbench.gap.locate.slow_time import block_means
 from hystbench.gap.locate.spectra import Spectra, take_spectra
 from hystbench.record import FloatArray
 
-IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Points of a curve over frequency or time, and of a map over an axis.
-POINTS = 200
+# Points of a map over an axis.
 CELLS = 40
 # The input excites bins with this share of its strongest one's power.
 EXCITED = 1e-4
@@ -102,8 +101,8 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
         "records": _records(samples, floor),
         "harmonics": None if distortion is None else distortion.shares(),
         "distortion": None if distortion is None else _distortion(samples, distortion),
-        "loops": _loops(take_loops(samples)),
-        "coherence": _coherence(take_coherence(samples)),
+        "loops": loop_curve(take_loops(samples)),
+        "coherence": coherence_curve(take_coherence(samples)),
     }
 
 
@@ -119,7 +118,7 @@ def _response(spectra: Spectra, driven: FloatArray) -> dict[str, list[float]]:
     A harmonic that the simulation makes by itself has no response.
     """
     excited = driven >= EXCITED * float(np.max(driven))
-    groups = _groups(np.cumsum(excited) - 1, int(np.sum(excited)))
+    groups = in_groups(np.cumsum(excited) - 1, int(np.sum(excited)))
     cross = _gather(groups, spectra.cross.real, excited) + 1j * _gather(
         groups, spectra.cross.imag, excited
     )
@@ -134,17 +133,17 @@ def _response(spectra: Spectra, driven: FloatArray) -> dict[str, list[float]]:
         simulated * measured, 1e-300
     )
     return {
-        "frequency": _listed(energy / simulated),
-        "magnitude": _listed(np.abs(ratio)),
-        "phase": _listed(np.degrees(np.angle(ratio))),
-        "coherence": _listed(np.clip(coherence, 0.0, 1.0)),
+        "frequency": listed(energy / simulated),
+        "magnitude": listed(np.abs(ratio)),
+        "phase": listed(np.degrees(np.angle(ratio))),
+        "coherence": listed(np.clip(coherence, 0.0, 1.0)),
     }
 
 
 def _spectrum(samples: Samples, spectra: Spectra) -> dict[str, list[float]]:
     """Give amplitude densities of the residual, its linear part and the floor."""
     count = len(spectra.frequency)
-    groups = _groups(np.arange(count), count)
+    groups = in_groups(np.arange(count), count)
     everywhere = np.ones(count, dtype=np.bool_)
     noise = _gather(groups, spectra.noise, everywhere)
     centre = _gather(groups, spectra.noise * spectra.frequency, everywhere) / noise
@@ -155,10 +154,10 @@ def _spectrum(samples: Samples, spectra: Spectra) -> dict[str, list[float]]:
     linear = np.minimum(spectra.linear, spectra.residual)
 
     def density(power: FloatArray) -> list[float]:
-        return _listed(np.sqrt(scale * _gather(groups, power, everywhere)))
+        return listed(np.sqrt(scale * _gather(groups, power, everywhere)))
 
     return {
-        "frequency": _listed(centre),
+        "frequency": listed(centre),
         "residual": density(spectra.residual),
         "linear": density(linear),
         "simulated": density(spectra.simulated),
@@ -184,9 +183,9 @@ def _over_input(samples: Samples, floor: Floor) -> dict[str, Any]:
     count = np.maximum(np.bincount(cell, minlength=CELLS), 1)
     power = np.bincount(cell, samples.residual**2, CELLS) / count
     return {
-        "input": _listed(0.5 * (edges[1:] + edges[:-1])),
+        "input": listed(0.5 * (edges[1:] + edges[:-1])),
         **branches,
-        "rms": _listed(np.sqrt(power)),
+        "rms": listed(np.sqrt(power)),
         "floor": floor.rms,
     }
 
@@ -201,9 +200,9 @@ def _over_rate(samples: Samples) -> dict[str, list[float]]:
         return np.asarray(np.add.reduceat(values[order], starts) / count)
 
     return {
-        "rate": _listed(mean(samples.speed)),
-        "mean": _listed(mean(samples.residual)),
-        "rms": _listed(np.sqrt(mean(samples.residual**2))),
+        "rate": listed(mean(samples.speed)),
+        "mean": listed(mean(samples.residual)),
+        "rms": listed(np.sqrt(mean(samples.residual**2))),
     }
 
 
@@ -222,8 +221,8 @@ def _slow(item: Compared, frequency: float) -> dict[str, Any]:
     time = (np.arange(len(means)) + 0.5) * size * dt
     return {
         "record": item.record.name,
-        "time": _listed(time),
-        "residual": _listed(means),
+        "time": listed(time),
+        "residual": listed(means),
     }
 
 
@@ -237,11 +236,11 @@ def _records(samples: Samples, floor: Floor) -> dict[str, list[Any]]:
     ]
     return {
         "name": [item.record.name for item in items],
-        "share": _listed(record_shares(samples)),
+        "share": listed(record_shares(samples)),
         "rms": [float(np.sqrt(np.mean(item.residual**2))) for item in items],
         "floor": [floor.per_record[item.record.name] for item in items],
         "loop_area": areas,
-        "frequency": _listed(frequencies),
+        "frequency": listed(frequencies),
     }
 
 
@@ -262,7 +261,7 @@ def _distortion(samples: Samples, distortion: Distortion) -> dict[str, Any]:
     return {
         "record": [one.record for one in distortion.records],
         **{
-            name: _listed(column)
+            name: listed(column)
             for name, column in zip((*KINDS, "other"), shares.T, strict=True)
         },
         "lines": _lines(distortion.records[most]),
@@ -275,43 +274,11 @@ def _lines(lines: Lines) -> dict[str, Any]:
     for number, name in enumerate(KINDS):
         chosen = np.flatnonzero(lines.kind == number)[:LINES]
         found[name] = {
-            "frequency": _listed(lines.frequency[chosen]),
-            "amplitude": _listed(lines.amplitude[chosen]),
+            "frequency": listed(lines.frequency[chosen]),
+            "amplitude": listed(lines.amplitude[chosen]),
         }
     return found
 
 
-def _loops(loops: Loops) -> dict[str, list[float]] | None:
-    if not len(loops.frequency):
-        return None
-    return {
-        name: _listed(getattr(loops, name))
-        for name in ("frequency", "measured", "simulated", "error")
-    }
-
-
-def _coherence(coherence: Coherence | None) -> dict[str, Any] | None:
-    if coherence is None:
-        return None
-    groups = _groups(np.arange(len(coherence.frequency)), len(coherence.frequency))
-    count = np.bincount(groups)
-    curve: dict[str, Any] = {
-        name: _listed(np.bincount(groups, getattr(coherence, name)) / count)
-        for name in ("frequency", "coherence", "chance")
-    }
-    return curve | {"share": coherence.share}
-
-
-def _groups(place: IntArray, count: int) -> IntArray:
-    """Number the group of each bin, so that there are at most ``POINTS``."""
-    size = max(1, -(-count // POINTS))
-    return place // size
-
-
 def _gather(groups: IntArray, values: FloatArray, chosen: BoolArray) -> FloatArray:
     return np.bincount(groups[chosen], values[chosen]).astype(np.float64)
-
-
-def _listed(values: ArrayLike) -> list[float]:
-    """Give plain floats, with as many digits as a picture can show."""
-    return [float(f"{value:.6g}") for value in np.asarray(values)]

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import fft, special
 
 from hystbench.gap.compared import Compared
+from hystbench.gap.locate.listed import listed
 from hystbench.gap.locate.regression import narrowest_bins
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.spectra import HANN_INFLATION
@@ -176,6 +177,16 @@ def _banded(
         residual**2 / held,
     ]
     return np.where(here, n * np.array(rows), 0.0)
+
+
+def loop_curve(loops: Loops) -> dict[str, list[float]] | None:
+    """Give what the picture draws; none where the input never moves."""
+    if not len(loops.frequency):
+        return None
+    return {
+        name: listed(getattr(loops, name))
+        for name in ("frequency", "measured", "simulated", "error")
+    }
 
 
 def told(loops: Loops) -> str:

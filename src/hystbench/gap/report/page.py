@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hystbench.figures.style import unit_text
-from hystbench.gap.report import pictures, words
+from hystbench.gap.report import pictures, where, words
 from hystbench.gap.report.pictures import Picture, draw
 from hystbench.gap.report.read import Content
 
@@ -44,14 +44,14 @@ def page(content: Content) -> str:
     environment.filters["unit"] = words.unit
     environment.filters["listed"] = words.listed
     gap = OPTIONAL | content.gap
-    where, missing = _where(content)
+    drawn, missing = _where(content)
     return environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(gap),
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
         y=unit_text(gap["unit"]),
         named=[effect["name"] for effect in gap["effects"]],
-        where_pictures=where,
+        where_pictures=drawn,
         missing=missing,
         shares=_shares(gap),
         ladder=_ladder(gap),
@@ -156,7 +156,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("spectrum",),
             lambda: draw(
-                pictures.spectrum,
+                where.spectrum,
                 curves["spectrum"],
                 units["output"],
                 words="Spectrum of the residual beside the simulation and the floor",
@@ -165,7 +165,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("response",),
             lambda: draw(
-                pictures.response,
+                where.response,
                 curves["response"],
                 words="Best linear approximation of measurement over simulation; "
                 "dashed where the simulation is right",
@@ -176,7 +176,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("over_input", "over_rate"),
             lambda: draw(
-                pictures.maps,
+                where.maps,
                 curves.get("over_input"),
                 curves.get("over_rate"),
                 units,
@@ -188,7 +188,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("loops", "coherence"),
             lambda: draw(
-                pictures.loops,
+                where.loops,
                 curves.get("loops"),
                 curves.get("coherence"),
                 units,
@@ -200,7 +200,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("distortion",),
             lambda: draw(
-                pictures.distortion,
+                where.distortion,
                 curves["distortion"],
                 units["output"],
                 words="Distortion: lines of the residual of one periodic record, and "
@@ -212,7 +212,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("slow",),
             lambda: draw(
-                pictures.slow,
+                where.slow,
                 curves["slow"],
                 units["output"],
                 words="Mean of the residual over slow time, record behind record",
