@@ -20,10 +20,10 @@ from hystbench.gap.locate.spectra import take_spectra
 from hystbench.gap.locate.unexplained import unexplained_view
 from hystbench.gap.locate.view import View
 
-__all__ = ["View", "curves", "locate", "ranked"]
+__all__ = ["LEVEL", "View", "curves", "locate", "ranked"]
 
-# Of the p-value of a view, after the correction for the number of views.
 LEVEL = 0.05
+"""Of a view's p-value times the number of views, for more than chance."""
 
 
 def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:

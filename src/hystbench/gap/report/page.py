@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hystbench.figures.style import unit_text
+from hystbench.gap.locate import LEVEL
 from hystbench.gap.report import pictures, where, words
 from hystbench.gap.report.pictures import Picture, draw
 from hystbench.gap.report.read import Content
@@ -72,9 +73,16 @@ def _shares(gap: dict[str, Any]) -> Picture | None:
         return None
     names = [item["view"].replace("-", " ") for item in gap["where"]]
     shares = [100 * item["share_of_gap_power"] for item in gap["where"]]
-    told = "Share of the gap's power in each view, in per cent"
+    sure = [item["p_value"] * len(names) < LEVEL for item in gap["where"]]
     return draw(
-        pictures.bars, names, shares, told, words=told, height=0.5 + 0.22 * len(names)
+        pictures.bars,
+        names,
+        shares,
+        "share of the gap's power (%)",
+        sure,
+        words="Share of the gap's power in each view; grey where it may be chance, "
+        f"as the p-value times the number of views is not below {LEVEL}",
+        height=0.5 + 0.22 * len(names),
     )
 
 
@@ -225,7 +233,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 pictures.bars,
                 curves["records"]["name"],
                 [100 * share for share in curves["records"]["share"]],
-                "share of the gap's power, in per cent",
+                "share of the gap's power (%)",
                 words="Share of the gap's power in each fit record",
                 height=0.6 + 0.2 * len(curves["records"]["name"]),
             ),
