@@ -412,6 +412,16 @@ def test_what_does_not_repeat_and_what_is_not_coherent_is_told():
     assert "50 % does not repeat with the input (p < 0.001)" in sentence
 
 
+def test_what_the_input_makes_without_coherence_is_told_to_repeat():
+    """A square of a sine lies where the input has no line, and comes every period."""
+    u = np.sin(2 * np.pi * 10 * np.arange(4000) * DT)
+    noise = 0.001 * np.random.default_rng(0).standard_normal(4000)
+    one = compare("sine", u, 6 * u + 0.2 * u**2 + noise, 6 * u, 200)
+    sentence = told_by([one], "unexplained")
+    assert "Next to none of the gap is coherent with the input" in sentence
+    assert "Next to all of the gap of periodic records repeats" in sentence
+
+
 def test_evidence_of_lines_loops_and_coherence_is_that_of_chance_in_noise():
     chances = {name: [] for name in ("odd", "even", "other", "loops", "coherence")}
     for seed in range(60):

@@ -12,7 +12,7 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.locate.listed import IntArray, in_groups, listed
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.spectra import HANN_INFLATION, ComplexArray
-from hystbench.gap.locate.view import chance, percent
+from hystbench.gap.locate.view import MATTERS, chance, percent
 from hystbench.record import FloatArray
 
 # Segments of a record, that overlap by half, and what the overlap takes from them:
@@ -145,6 +145,11 @@ def told(coherence: Coherence | None) -> str:
     """Tell how much of the gap is linear in the input, and how much is not."""
     if coherence is None:
         return ""
+    if coherence.share < MATTERS:
+        return (
+            " Next to none of the gap is coherent with the input: it is distortion or "
+            "no doing of the input."
+        )
     return (
         f" At least {percent(coherence.share)} of the gap is coherent with the input "
         f"({chance(coherence.p_value)}), as what a linear path from it leaves; the "

@@ -141,6 +141,8 @@ def told_repeating(distortion: Distortion | None) -> str:
     """Tell what does not repeat with the input, and so is none of its doing."""
     if distortion is None:
         return ""
+    if distortion.other < MATTERS:
+        return " Next to all of the gap of periodic records repeats with the input."
     return (
         f" Of the gap of periodic records {percent(distortion.other)} does not repeat "
         f"with the input ({chance(distortion.p_other)})."
