@@ -11,7 +11,7 @@ from scipy import fft, special
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.listed import IntArray, in_groups, listed
 from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.spectra import HANN_INFLATION, ComplexArray
+from hystbench.gap.locate.spectra import HANN_INFLATION
 from hystbench.gap.locate.view import MATTERS, chance, percent
 from hystbench.record import FloatArray
 
@@ -67,37 +67,33 @@ def take_coherence(samples: Samples) -> Coherence | None:
     long = [item for item in samples.compared if len(item.record) >= SHORTEST]
     if not long:
         return None
-    parts = [_segments(item) for item in long]
-    frequency, weight, u, r = (
-        np.concatenate(each) for each in zip(*parts, strict=True)
-    )
-    power, cross = weight * np.abs(u) ** 2, weight * r * np.conj(u)
+    columns = np.concatenate([_segments(item) for item in long], axis=1)
+    frequency, power, square, real, imaginary, left = columns
     edges = np.geomspace(frequency.min() * 0.999, frequency.max() * 1.001, BINS + 1)
     place = np.digitize(frequency, edges) - 1
 
     def gather(values: FloatArray) -> FloatArray:
         return np.bincount(place, values, BINS).astype(np.float64)
 
-    held, square = gather(power), gather(power**2)
-    excited = held > EXCITED * float(np.max(held))
+    everywhere = gather(power)
+    excited = everywhere > EXCITED * float(np.max(everywhere))
     if not np.any(excited):
         return None
-    starts = _starts(held[excited], square[excited])
+    starts = _starts(everywhere[excited], gather(square)[excited])
 
     def merged(values: FloatArray) -> FloatArray:
         return np.add.reduceat(gather(values)[excited], starts)
 
-    held, count = merged(power), _count(merged(power), merged(power**2))
-    residual = merged(weight * np.abs(r) ** 2)
-    across = merged(cross.real) ** 2 + merged(cross.imag) ** 2
+    held, count = merged(power), _count(merged(power), merged(square))
+    if np.any(count < FACTS):
+        return None
+    residual, across = merged(left), merged(real) ** 2 + merged(imaginary) ** 2
     found = np.clip(across / np.maximum(held * residual, 1e-300), 0.0, 1.0)
     coherent = float(np.sum((count * found - 1) / (count - 1) * residual))
     n = sum(len(item.record) for item in long)
     # As the gap's power everywhere: at least what chance may leave of the noise.
     least = 3 * samples.noise * np.sqrt(2 * n)
-    above = max(
-        float(np.sum(weight * np.abs(r) ** 2)) - samples.noise * n, least, 1e-300
-    )
+    above = max(float(np.sum(left)) - samples.noise * n, least, 1e-300)
     squares = -2 * np.sum((count - 1) * np.log(np.maximum(1 - found, 1e-300)))
     return Coherence(
         frequency=merged(power * frequency) / held,
@@ -113,18 +109,22 @@ def _count(held: FloatArray, square: FloatArray) -> FloatArray:
 
     Neighbouring lines are not independent under a window, nor segments that overlap.
     """
-    count = held**2 / np.maximum(square, 1e-300) / HANN_INFLATION / OVERLAP
-    return np.maximum(count, 1.0 + 1e-9)
+    return held**2 / np.maximum(square, 1e-300) / HANN_INFLATION / OVERLAP
 
 
 def _starts(held: FloatArray, square: FloatArray) -> IntArray:
     """Put neighbours together until each group holds enough facts."""
     starts, power, squares = [0], 0.0, 0.0
-    for place, (one, its_square) in enumerate(zip(held, square, strict=True)):
-        if _count(np.array([power]), np.array([squares]))[0] >= FACTS:
+    enough = FACTS * HANN_INFLATION * OVERLAP
+    for place, (one, its_square) in enumerate(
+        zip(held.tolist(), square.tolist(), strict=True)
+    ):
+        if squares > 0 and power**2 >= enough * squares:
             starts.append(place)
             power = squares = 0.0
         power, squares = power + one, squares + its_square
+    if len(starts) > 1 and power**2 < enough * squares:
+        starts.pop()
     return np.array(starts)
 
 
@@ -157,13 +157,17 @@ def told(coherence: Coherence | None) -> str:
     )
 
 
-def _segments(
-    item: Compared,
-) -> tuple[FloatArray, FloatArray, ComplexArray, ComplexArray]:
-    """Transform a record's segments: frequencies, weights, input and residual.
+def _segments(item: Compared) -> FloatArray:
+    """Sum a record's segments, line by line.
 
-    Weights make the residual's weighted squares sum to its energy. Segments are of
-    whole periods where a record has enough of them.
+    Segments are of whole periods where a record has enough of them.
+
+    Returns
+    -------
+    ndarray, shape (6, lines)
+        Frequencies; the input's power, and its square summed over segments; the cross
+        power of residual and input, real and imaginary; the residual's power, which
+        sums to its energy.
     """
     n, period = len(item.record), item.record.period_samples
     size = n // QUARTERS
@@ -178,5 +182,15 @@ def _segments(
         for x in (item.record.u, item.residual)
     )
     weight = 2 * n / len(starts) / size / float(np.sum(window**2))
-    frequency = np.tile(fft.rfftfreq(size, item.record.dt)[1:], len(starts))
-    return frequency, np.full(u.size, weight), u.ravel(), r.ravel()
+    power = weight * np.abs(u) ** 2
+    cross = weight * np.sum(r * np.conj(u), axis=0)
+    return np.array(
+        [
+            fft.rfftfreq(size, item.record.dt)[1:],
+            power.sum(axis=0),
+            np.sum(power**2, axis=0),
+            cross.real,
+            cross.imag,
+            weight * np.sum(np.abs(r) ** 2, axis=0),
+        ]
+    )
