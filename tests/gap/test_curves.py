@@ -10,7 +10,15 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.floor import noise_floor
 from hystbench.gap.locate import curves
-from tests.gap.examples import DT, compare, gap_of, hysteretic, inputs, straight
+from tests.gap.examples import (
+    DT,
+    compare,
+    gap_of,
+    hysteretic,
+    inputs,
+    plain_play,
+    straight,
+)
 
 
 def lists_of(value):
@@ -38,6 +46,9 @@ def test_curves_are_small_and_are_json():
         "slow",
         "records",
         "harmonics",
+        "distortion",
+        "loops",
+        "coherence",
     }
     assert found["units"] == {"input": "A", "output": "um"}
 
@@ -122,9 +133,94 @@ def test_distortion_of_records_weighs_by_their_samples():
     harmonics = curves(compared, noise_floor(compared))["harmonics"]
     # Variances of sin^2 / 10, and of the third harmonic and all of sin^3 / 10.
     even, third, cube = 0.01 / 8, 0.025**2 / 2, 0.025**2 / 2 + 0.075**2 / 2
-    whole = 4000 * even + 800 * cube
-    assert harmonics["even"] == pytest.approx(4000 * even / whole)
+    # Of ten periods the first is the way from rest; of two both count.
+    whole = 3600 * even + 800 * cube
+    assert harmonics["even"] == pytest.approx(3600 * even / whole)
     assert harmonics["odd"] == pytest.approx(800 * third / whole)
+
+
+def test_lines_of_an_input_of_odd_and_even_lines_are_not_told_apart():
+    """u^2 of lines 1 and 2 lies on 1, 2, 3 and 4: an odd line is no odd distortion."""
+    angle = 2 * np.pi * np.arange(4000) / 400
+    u = np.sin(angle) + np.sin(2 * angle)
+    compared = [compare("two", u, 6 * u + 0.1 * u**2, 6 * u, 400)]
+    found = curves(compared, noise_floor(compared))
+    # u^2 = 1 + cos 1 - cos 2 / 2 - cos 3 - cos 4 / 2, the mean left out.
+    assert found["harmonics"]["either"] == pytest.approx(1.25 / 2.5)
+    assert found["harmonics"]["odd"] == found["harmonics"]["even"] == 0
+    lines = found["distortion"]["lines"]
+    assert lines["excited"]["frequency"] == pytest.approx([5, 10])
+    assert lines["either"]["amplitude"][:2] == pytest.approx([0.1, 0.05], rel=1e-4)
+
+
+def test_noise_on_a_measured_input_is_no_line_of_it():
+    rng = np.random.default_rng(0)
+    u = np.sin(2 * np.pi * np.arange(4000) / 400)
+    y = 6 * u + 0.1 * u**2
+    noisy = u + 0.02 * rng.standard_normal(4000)
+    compared = [compare("sine", noisy, y, 6 * u, 400)]
+    found = curves(compared, noise_floor(compared))
+    assert found["distortion"]["lines"]["excited"]["frequency"] == [5]
+    assert found["harmonics"]["even"] == pytest.approx(1)
+
+
+def test_the_way_from_rest_is_no_distortion():
+    """A play from rest starts in the middle of its loop; after that it is odd."""
+    u = np.sin(2 * np.pi * np.arange(4000) / 400)
+    compared = [compare("sine", u, 6 * plain_play(u, 0.4), 6 * u, 400)]
+    harmonics = curves(compared, noise_floor(compared))["harmonics"]
+    assert harmonics["even"] < 1e-9
+    assert harmonics["odd"] > 0.01
+
+
+def test_loop_areas_are_those_of_ellipses():
+    """Pi a b sin(phase), at each sine's frequency, whatever the noise on top."""
+    t = np.arange(4000) * DT
+    rng = np.random.default_rng(0)
+    compared, areas = [], []
+    for hertz, size, measured, simulated in (
+        (1, 1.0, 0.3, 0.2),
+        (10, 0.5, 0.1, 0.4),
+        (100, 0.8, 0.5, 0.0),
+    ):
+        angle = 2 * np.pi * hertz * t
+        y, s = (4 * size * np.sin(angle - phase) for phase in (measured, simulated))
+        y += 0.01 * rng.standard_normal(len(t))
+        period = round(1 / hertz / DT)
+        u = size * np.sin(angle)
+        compared.append(compare(f"sine-{hertz}", u, y, s, period))
+        areas.append(4 * np.pi * size**2 * np.sin([measured, simulated]))
+    loops = curves(compared, noise_floor(compared))["loops"]
+    assert loops["frequency"] == pytest.approx([1, 10, 100])
+    assert loops["simulated"] == pytest.approx([s for _, s in areas], abs=1e-4)
+    off = np.array(loops["measured"]) - [m for m, _ in areas]
+    assert np.all(np.abs(off) < 4 * np.array(loops["error"]))
+    # The noise of an area: 2 pi a / sqrt(2) times that of a Fourier coefficient.
+    least = 2 * np.pi * np.array([1, 0.5, 0.8]) * 0.01 / np.sqrt(2 * 4000)
+    assert np.all(np.array(loops["error"]) > 0.9 * least)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.7, 1.0])
+def test_the_coherent_share_is_that_of_the_part_made_by_the_input(share):
+    rng = np.random.default_rng(1)
+    u, other = rng.standard_normal((2, 40_000))
+    residual = np.sqrt(share) * u + np.sqrt(1 - share) * other
+    compared = [compare("noise", u, 6 * u + residual, 6 * u)]
+    found = curves(compared, noise_floor(compared, 1e-3))["coherence"]
+    # 40,000 facts in groups of a few: their mean is sure to about a hundredth.
+    assert found["share"] == pytest.approx(share, abs=0.03)
+    above = np.mean(np.array(found["coherence"]) > np.array(found["chance"]))
+    assert above < 0.12 if share == 0 else above > 0.2
+
+
+def test_a_tone_beside_the_input_takes_its_own_share_of_coherence():
+    """Two incoherent parts: a gain error and a tone where the input is silent."""
+    t = np.arange(8000) * DT
+    u = np.sin(2 * np.pi * 20 * t)
+    tone = 0.2 * np.sin(2 * np.pi * 333.3 * t)
+    compared = [compare("sine", u, 6.1 * u + tone, 6 * u)]
+    found = curves(compared, noise_floor(compared, 1e-3))["coherence"]
+    assert found["share"] == pytest.approx(0.1**2 / (0.1**2 + 0.2**2), abs=0.01)
 
 
 def test_no_record_is_refused():

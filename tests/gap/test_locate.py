@@ -13,8 +13,12 @@ from jsonschema import validate
 
 from hystbench.errors import InputError
 from hystbench.gap.floor import noise_floor
-from hystbench.gap.locate import locate
+from hystbench.gap.locate import View, locate, ranked
+from hystbench.gap.locate.coherence import take_coherence
+from hystbench.gap.locate.distortion import take_distortion
+from hystbench.gap.locate.loops import take_loops
 from hystbench.gap.locate.regression import narrowest_bins
+from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.schema import VIEW
 from tests.gap import made
 from tests.gap.examples import (
@@ -87,8 +91,7 @@ def test_views_are_of_the_contract_and_say_their_own_numbers(name, plant):
     views = views_of(name, plant)
     assert {view.view for view in views} == KINDS
     assert len(views) == len(KINDS)
-    saved = [view.saved for view in views]
-    assert saved == sorted(saved, reverse=True)
+    assert views == ranked(views)
     for view in views:
         mapping = view.to_mapping()
         validate(mapping, VIEW)
@@ -326,3 +329,122 @@ def test_within_one_loop_nothing_slower_is_called_a_drift():
     found = views.get("unexplained")
     assert found is None or found.share_of_gap_power < 0.2
     assert views["branch"].share_of_gap_power > 0.8
+
+
+def a_view(p_value, saved, share=0.5):
+    return View("delay", "delay", 0.0, 1.0, "s", share, p_value, "", saved)
+
+
+@given(
+    st.lists(st.tuples(st.floats(0, 1), st.floats(-99, 999)), min_size=2, max_size=8)
+)
+def test_no_view_that_chance_may_give_stands_before_one_it_may_not(numbers):
+    views = [a_view(p_value, saved) for p_value, saved in numbers]
+    order = ranked(views)
+    # Bonferroni: with k views tried, below 0.05 / k.
+    sure = [view.p_value * len(views) < 0.05 for view in order]
+    assert sure == sorted(sure, reverse=True)
+    for kind in (True, False):
+        saved = [v.saved for v, one in zip(order, sure, strict=True) if one is kind]
+        assert saved == sorted(saved, reverse=True)
+
+
+def test_a_large_share_without_evidence_is_not_first():
+    likely = a_view(0.3, saved=400.0, share=0.95)
+    sure = a_view(1e-6, saved=90.0, share=0.6)
+    assert ranked([likely, sure]) == (sure, likely)
+
+
+def told_by(compared, view, floor=None):
+    views = locate(compared, noise_floor(compared, floor))
+    return next(one.sentence for one in views if one.view == view)
+
+
+@pytest.mark.parametrize(("square", "cube"), [(0.1, 0.0), (0.05, 0.2), (0.0, 0.2)])
+def test_even_and_odd_distortion_are_told_with_their_shares(square, cube):
+    """A sine's square is a second harmonic, its cube three parts first, one third."""
+    u = np.sin(2 * np.pi * np.arange(4000) / 400)
+    residual = square * u**2 + cube * u**3
+    noise = 0.001 * np.random.default_rng(0).standard_normal(4000)
+    sentence = told_by(
+        [made.compared(u, residual + noise, period_samples=400)], "frequency"
+    )
+    even, first, third = square**2 / 8, (0.75 * cube) ** 2 / 2, (0.25 * cube) ** 2 / 2
+    whole = even + first + third
+    for share, words in ((even, "even lines"), (third, "odd lines")):
+        told = re.search(rf"(\d+) % on {words} beside them \(p < 0.001\)", sentence)
+        if share > 0:
+            assert int(told[1]) == pytest.approx(100 * share / whole, abs=1)
+        else:
+            assert told is None
+    assert f"{100 * first / whole:.0f} % lies on the input's own lines" in sentence
+
+
+def test_a_wider_loop_is_told_with_its_frequency_and_by_how_much():
+    """Ellipses of area pi a b sin(phase): half as wide again at 80 Hz alone."""
+    found = []
+    for hertz, period in ((8, 250), (80, 25)):
+        angle = 2 * np.pi * hertz * np.arange(4000) * DT
+        u, s = np.sin(angle), 5 * np.sin(angle - 0.1)
+        wider = 1.5 if hertz == 80 else 1.0
+        y = s - 5 * (wider - 1) * np.sin(0.1) * np.cos(angle)
+        noise = 0.01 * np.random.default_rng(hertz).standard_normal(len(u))
+        found.append(compare(f"sine-{hertz}", u, y + noise, s, period))
+    sentence = told_by(found, "branch")
+    area = 5 * np.pi * np.sin(0.1)
+    ends = re.search(
+        r"more area than the simulation's between (\S+) and (\S+) Hz", sentence
+    )
+    assert 8 < float(ends[1]) < 80 < float(ends[2]) < 100
+    assert f": {1.5 * area:.3g} against {area:.3g} A um a cycle, 50 % more" in sentence
+    assert "less area" not in sentence
+
+
+def test_what_does_not_repeat_and_what_is_not_coherent_is_told():
+    """Parts of equal power: a gain error, and a tone that no period holds."""
+    t = np.arange(4000) * DT
+    u = np.sin(2 * np.pi * 10 * t)
+    tone = np.sin(2 * np.pi * 333.3 * t)
+    noise = 0.01 * np.random.default_rng(0).standard_normal(4000)
+    one = compare("sine", u, 6 * u + 0.2 * (u + tone) + noise, 6 * u, 200)
+    sentence = told_by([one], "unexplained", 0.01)
+    assert "At least 50 % of the gap is coherent with the input (p < 0.001)" in sentence
+    assert "50 % does not repeat with the input (p < 0.001)" in sentence
+
+
+def test_what_the_input_makes_without_coherence_is_told_to_repeat():
+    """A square of a sine lies where the input has no line, and comes every period."""
+    u = np.sin(2 * np.pi * 10 * np.arange(4000) * DT)
+    noise = 0.001 * np.random.default_rng(0).standard_normal(4000)
+    one = compare("sine", u, 6 * u + 0.2 * u**2 + noise, 6 * u, 200)
+    sentence = told_by([one], "unexplained")
+    assert "Next to none of the gap is coherent with the input" in sentence
+    assert "Next to all of the gap of periodic records repeats" in sentence
+
+
+def test_evidence_of_lines_loops_and_coherence_is_that_of_chance_in_noise():
+    chances = {name: [] for name in ("odd", "even", "other", "loops", "coherence")}
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        compared = [
+            compare(n, u, 6 * u + 0.1 * rng.standard_normal(len(u)), 6 * u, p)
+            for n, u, p in inputs(2000, seed)
+        ]
+        samples = take_samples(compared, noise_floor(compared, 0.1))
+        distortion = take_distortion(samples)
+        if distortion is not None:
+            for name in ("odd", "even", "other"):
+                chances[name].append(getattr(distortion, f"p_{name}"))
+        chances["loops"].append(take_loops(samples).p_value)
+        chances["coherence"].append(take_coherence(samples).p_value)
+    for name, found in chances.items():
+        assert len(found) > 40, name
+        # A binomial count of 60 at 5 % exceeds 9 in one of a thousand.
+        assert np.sum(np.array(found) < 0.05) <= 9, name
+        assert np.min(found) > 1e-4, name
+
+
+def test_drift_is_neither_distortion_nor_a_loop():
+    """It does not come again with the period, though it has power on its lines."""
+    sentence = next(v.sentence for v in views_of("drift", "gain") if v.view == "branch")
+    assert "have much the same area" in sentence

@@ -213,6 +213,34 @@ def curves():
             "frequency": [10.0, 70.0],
         },
         "harmonics": None,
+        "distortion": {
+            "record": ["sine-010hz", "sine-070hz"],
+            "excited": [0.1, 0.5],
+            "odd": [0.0, 0.05],
+            "even": [0.1, 0.2],
+            "either": [0.0, 0.0],
+            "other": [0.05, 0.0],
+            "lines": {
+                "record": "sine-070hz",
+                "noise": 0.002,
+                "excited": {"frequency": [70.0], "amplitude": [0.3]},
+                "odd": {"frequency": [210.0, 350.0], "amplitude": [0.02, 0.01]},
+                "even": {"frequency": [140.0, 280.0], "amplitude": [0.1, 0.02]},
+                "either": {"frequency": [], "amplitude": []},
+            },
+        },
+        "loops": {
+            "frequency": [10.0, 70.0],
+            "measured": [0.5, 0.9],
+            "simulated": [0.5, 0.4],
+            "error": [0.01, 0.01],
+        },
+        "coherence": {
+            "frequency": [10.0, 70.0],
+            "coherence": [0.3, 0.9],
+            "chance": [0.5, 0.5],
+            "share": 0.7,
+        },
     }
 
 
@@ -307,7 +335,7 @@ def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
 
 
 def test_page_stands_alone(page):
-    assert len(page.sources) >= 8
+    assert len(page.sources) >= 10
     assert all(source.startswith("data:image/") for source in page.sources)
     assert not {"script", "link", "iframe"} & set(page.tags)
     assert "Not drawn" not in page.said
@@ -348,15 +376,38 @@ def test_what_is_not_there_is_said(tmp_path):
     assert "gap.json holds no black box" in said
 
 
-@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate"])
+DRAWN = (
+    "spectrum",
+    "response",
+    "over_input",
+    "over_rate",
+    "loops",
+    "coherence",
+    "distortion",
+    "slow",
+    "records",
+)
+
+
+@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate", *DRAWN[4:7]])
 def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
     folder = write_folder(tmp_path, small(), with_tables=False)
     there = {"units": curves()["units"], key: curves()[key]}
     (folder / "curves.json").write_text(json.dumps(there))
     page = read(write_report(folder))
     assert len(page.sources) == 1
-    for name in ("spectrum", "response", "over_input", "over_rate", "slow", "records"):
+    for name in DRAWN:
         assert (f"Not drawn: curves.json: no {name}." in page.said) == (name != key)
+
+
+def test_what_the_records_cannot_show_is_said_with_its_reason(tmp_path):
+    folder = write_folder(tmp_path, small(), with_tables=False)
+    none = dict.fromkeys(("distortion", "loops", "coherence"))
+    (folder / "curves.json").write_text(json.dumps(curves() | none))
+    said = read(write_report(folder)).said
+    assert "Not drawn: distortion, as no record repeats" in said
+    assert "Not drawn: areas of loops, as the input never moves" in said
+    assert "Not drawn: coherence, as records are too short" in said
 
 
 def test_a_reader_is_told_of_a_promise_that_was_not_kept(tmp_path):

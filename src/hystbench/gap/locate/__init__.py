@@ -20,7 +20,10 @@ from hystbench.gap.locate.spectra import take_spectra
 from hystbench.gap.locate.unexplained import unexplained_view
 from hystbench.gap.locate.view import View
 
-__all__ = ["View", "curves", "locate"]
+__all__ = ["LEVEL", "View", "curves", "locate", "ranked"]
+
+LEVEL = 0.05
+"""Of a view's p-value times the number of views, for more than chance."""
 
 
 def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
@@ -35,7 +38,8 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     Returns
     -------
     tuple of View
-        One of each kind, the most telling first.
+        One of each kind, the most telling first; those whose p-value, times the number
+        of views, is not below 0.05 come last.
 
     Raises
     ------
@@ -56,6 +60,10 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     effect: forms are also tried beside what such a shape could leave, and must then
     save clearly more than the shape alone does. Ranges are chosen after that: the
     narrowest that holds four fifths.
+
+    A share is no evidence: a free form holds much of any residual of few facts. So a
+    view that chance may give, after Bonferroni's correction for the views tried, never
+    stands before one that it may not.
     """
     if not compared:
         raise InputError("locate: expected at least one record, got none")
@@ -71,4 +79,13 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
         rate_view(samples),
         record_view(samples),
     )
-    return tuple(sorted(views, key=lambda view: -view.saved))
+    return ranked(views)
+
+
+def ranked(views: Sequence[View]) -> tuple[View, ...]:
+    """Put the views that save most first, behind them those that chance may give."""
+
+    def order(view: View) -> tuple[bool, float]:
+        return view.p_value * len(views) >= LEVEL, -view.saved
+
+    return tuple(sorted(views, key=order))

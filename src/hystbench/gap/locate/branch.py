@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from hystbench.gap.locate.loops import take_loops, told
 from hystbench.gap.locate.regression import Form, best, fit_form, fitted_p_value
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
@@ -43,7 +44,7 @@ def branch_view(samples: Samples) -> View:
         sentence=(
             f"{percent(share)} of the gap is {kind}, at every rate alike, "
             f"{percent(rising)} of it while the input rises; it is {number(apart)} "
-            f"{unit} on average."
+            f"{unit} on average.{told(take_loops(samples))}"
         ),
         saved=form.saved,
     )

@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
-from hystbench.gap.locate.distortion import take_distortion
+from hystbench.gap.locate.coherence import coherence_curve, take_coherence
+from hystbench.gap.locate.distortion import KINDS, Distortion, Lines, take_distortion
+from hystbench.gap.locate.listed import IntArray, in_groups, listed
+from hystbench.gap.locate.loops import loop_curve, take_loops
 from hystbench.gap.locate.record import record_shares
 from hystbench.gap.locate.samples import Samples, take_samples
 from hystbench.gap.locate.slow_time import block_means
 from hystbench.gap.locate.spectra import Spectra, take_spectra
 from hystbench.record import FloatArray
 
-IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-# Points of a curve over frequency or time, and of a map over an axis.
-POINTS = 200
+# Points of a map over an axis.
 CELLS = 40
+# The input excites bins with this share of its strongest one's power.
+EXCITED = 1e-4
+# Lines of a kind in the picture of one record.
+LINES = 100
 
 
 def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
@@ -59,8 +65,20 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
           (Y), ``floor`` (Y), ``loop_area`` (U Y a cycle of the residual over the
           input, positive where the measurement lags more), ``frequency`` (Hz, the
           main one).
-        - ``harmonics``: ``excited``, ``odd``, ``even``, ``other``: shares of the
-          residual's power in periodic records, or null where there are none.
+        - ``harmonics``: ``excited``, ``odd``, ``even``, ``either``, ``other``: shares
+          of the gap above the noise in periodic records, or null where there are none.
+        - ``distortion``: where these shares lie, or null: ``record``, and the same five
+          lists, all of them together adding to one; and of the record that holds most
+          beside the input's lines ``lines``: ``record``, ``noise`` (Y, amplitude that
+          the floor gives a line) and for ``excited``, ``odd``, ``even`` and ``either``
+          ``frequency`` (Hz) and ``amplitude`` (Y) of the first 100.
+        - ``loops``: ``frequency`` (Hz) of third-octave bands; ``measured``,
+          ``simulated`` (U Y a cycle, positive where the output lags) and ``error`` of
+          their difference; or null where the input never moves.
+        - ``coherence``: of the residual with the input: ``frequency`` (Hz),
+          ``coherence`` (0 to 1), ``chance`` (what an unrelated residual exceeds in one
+          of twenty) and ``share`` (of the gap, one number); or null where records are
+          short.
 
     Raises
     ------
@@ -75,20 +93,32 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
     distortion = take_distortion(samples)
     return {
         "units": {"input": channels.input.unit, "output": channels.output.unit},
-        "response": _response(spectra),
+        "response": _response(spectra, _driven(samples)),
         "spectrum": _spectrum(samples, spectra),
         "over_input": _over_input(samples, floor),
         "over_rate": _over_rate(samples),
         "slow": [_slow(item, f) for item, f in _with_frequency(samples)],
         "records": _records(samples, floor),
-        "harmonics": None if distortion is None else dict(vars(distortion)),
+        "harmonics": None if distortion is None else distortion.shares(),
+        "distortion": None if distortion is None else _distortion(samples, distortion),
+        "loops": loop_curve(take_loops(samples)),
+        "coherence": coherence_curve(take_coherence(samples)),
     }
 
 
-def _response(spectra: Spectra) -> dict[str, list[float]]:
-    """Give measurement over simulation where the simulation has power."""
-    excited = spectra.simulated >= 1e-5 * float(np.max(spectra.simulated))
-    groups = _groups(np.cumsum(excited) - 1, int(np.sum(excited)))
+def _driven(samples: Samples) -> FloatArray:
+    """Give the input's power in the bins of the spectra."""
+    driven = tuple(Compared(one.record, one.record.u) for one in samples.compared)
+    return take_spectra(replace(samples, compared=driven)).simulated
+
+
+def _response(spectra: Spectra, driven: FloatArray) -> dict[str, list[float]]:
+    """Give measurement over simulation where the input has power.
+
+    A harmonic that the simulation makes by itself has no response.
+    """
+    excited = driven >= EXCITED * float(np.max(driven))
+    groups = in_groups(np.cumsum(excited) - 1, int(np.sum(excited)))
     cross = _gather(groups, spectra.cross.real, excited) + 1j * _gather(
         groups, spectra.cross.imag, excited
     )
@@ -103,17 +133,17 @@ def _response(spectra: Spectra) -> dict[str, list[float]]:
         simulated * measured, 1e-300
     )
     return {
-        "frequency": _listed(energy / simulated),
-        "magnitude": _listed(np.abs(ratio)),
-        "phase": _listed(np.degrees(np.angle(ratio))),
-        "coherence": _listed(np.clip(coherence, 0.0, 1.0)),
+        "frequency": listed(energy / simulated),
+        "magnitude": listed(np.abs(ratio)),
+        "phase": listed(np.degrees(np.angle(ratio))),
+        "coherence": listed(np.clip(coherence, 0.0, 1.0)),
     }
 
 
 def _spectrum(samples: Samples, spectra: Spectra) -> dict[str, list[float]]:
     """Give amplitude densities of the residual, its linear part and the floor."""
     count = len(spectra.frequency)
-    groups = _groups(np.arange(count), count)
+    groups = in_groups(np.arange(count), count)
     everywhere = np.ones(count, dtype=np.bool_)
     noise = _gather(groups, spectra.noise, everywhere)
     centre = _gather(groups, spectra.noise * spectra.frequency, everywhere) / noise
@@ -124,10 +154,10 @@ def _spectrum(samples: Samples, spectra: Spectra) -> dict[str, list[float]]:
     linear = np.minimum(spectra.linear, spectra.residual)
 
     def density(power: FloatArray) -> list[float]:
-        return _listed(np.sqrt(scale * _gather(groups, power, everywhere)))
+        return listed(np.sqrt(scale * _gather(groups, power, everywhere)))
 
     return {
-        "frequency": _listed(centre),
+        "frequency": listed(centre),
         "residual": density(spectra.residual),
         "linear": density(linear),
         "simulated": density(spectra.simulated),
@@ -153,9 +183,9 @@ def _over_input(samples: Samples, floor: Floor) -> dict[str, Any]:
     count = np.maximum(np.bincount(cell, minlength=CELLS), 1)
     power = np.bincount(cell, samples.residual**2, CELLS) / count
     return {
-        "input": _listed(0.5 * (edges[1:] + edges[:-1])),
+        "input": listed(0.5 * (edges[1:] + edges[:-1])),
         **branches,
-        "rms": _listed(np.sqrt(power)),
+        "rms": listed(np.sqrt(power)),
         "floor": floor.rms,
     }
 
@@ -170,9 +200,9 @@ def _over_rate(samples: Samples) -> dict[str, list[float]]:
         return np.asarray(np.add.reduceat(values[order], starts) / count)
 
     return {
-        "rate": _listed(mean(samples.speed)),
-        "mean": _listed(mean(samples.residual)),
-        "rms": _listed(np.sqrt(mean(samples.residual**2))),
+        "rate": listed(mean(samples.speed)),
+        "mean": listed(mean(samples.residual)),
+        "rms": listed(np.sqrt(mean(samples.residual**2))),
     }
 
 
@@ -191,8 +221,8 @@ def _slow(item: Compared, frequency: float) -> dict[str, Any]:
     time = (np.arange(len(means)) + 0.5) * size * dt
     return {
         "record": item.record.name,
-        "time": _listed(time),
-        "residual": _listed(means),
+        "time": listed(time),
+        "residual": listed(means),
     }
 
 
@@ -206,11 +236,11 @@ def _records(samples: Samples, floor: Floor) -> dict[str, list[Any]]:
     ]
     return {
         "name": [item.record.name for item in items],
-        "share": _listed(record_shares(samples)),
+        "share": listed(record_shares(samples)),
         "rms": [float(np.sqrt(np.mean(item.residual**2))) for item in items],
         "floor": [floor.per_record[item.record.name] for item in items],
         "loop_area": areas,
-        "frequency": _listed(frequencies),
+        "frequency": listed(frequencies),
     }
 
 
@@ -221,16 +251,34 @@ def _loop_area(item: Compared, frequency: float) -> float:
     return -area / max(len(record) * record.dt * float(frequency), 1e-300)
 
 
-def _groups(place: IntArray, count: int) -> IntArray:
-    """Number the group of each bin, so that there are at most ``POINTS``."""
-    size = max(1, -(-count // POINTS))
-    return place // size
+def _distortion(samples: Samples, distortion: Distortion) -> dict[str, Any]:
+    """Give the shares record by record, and the lines of the one that tells most."""
+    above = np.array([one.above(samples.noise) for one in distortion.records])
+    beside = above[:, 1:4].sum(axis=1)
+    # Where nothing lies beside the input's lines, the record with the largest gap.
+    most = int(np.argmax(beside if np.any(beside > 0) else above.sum(axis=1)))
+    shares = above / max(float(np.sum(above)), 1e-300)
+    return {
+        "record": [one.record for one in distortion.records],
+        **{
+            name: listed(column)
+            for name, column in zip((*KINDS, "other"), shares.T, strict=True)
+        },
+        "lines": _lines(distortion.records[most]),
+    }
+
+
+def _lines(lines: Lines) -> dict[str, Any]:
+    """Give the first lines of each kind."""
+    found: dict[str, Any] = {"record": lines.record, "noise": lines.noise_amplitude}
+    for number, name in enumerate(KINDS):
+        chosen = np.flatnonzero(lines.kind == number)[:LINES]
+        found[name] = {
+            "frequency": listed(lines.frequency[chosen]),
+            "amplitude": listed(lines.amplitude[chosen]),
+        }
+    return found
 
 
 def _gather(groups: IntArray, values: FloatArray, chosen: BoolArray) -> FloatArray:
     return np.bincount(groups[chosen], values[chosen]).astype(np.float64)
-
-
-def _listed(values: ArrayLike) -> list[float]:
-    """Give plain floats, with as many digits as a picture can show."""
-    return [float(f"{value:.6g}") for value in np.asarray(values)]

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.compared import Compared
-from hystbench.gap.locate.distortion import Distortion, take_distortion
+from hystbench.gap.locate.distortion import take_distortion, told
 from hystbench.gap.locate.regression import (
     Form,
     colour_count,
@@ -46,7 +46,6 @@ def frequency_view(samples: Samples, spectra: Spectra) -> View:
     start, end = float(spectra.low[first]), float(spectra.high[last])
     share = samples.share(form.explained, form.freedom)
     inside = share * float(np.sum(power[first : last + 1]) / max(power.sum(), 1e-300))
-    distortion = take_distortion(samples)
     return View(
         view="frequency",
         axis="frequency",
@@ -58,7 +57,7 @@ def frequency_view(samples: Samples, spectra: Spectra) -> View:
         sentence=(
             f"{percent(share)} of the gap is linear in the simulated output and looks "
             f"like {kind}; {percent(inside)} of the gap lies between {number(start)} "
-            f"and {number(end)} Hz.{_told(distortion)}"
+            f"and {number(end)} Hz.{told(take_distortion(samples))}"
         ),
         saved=form.saved,
     )
@@ -175,14 +174,3 @@ def _p_value(samples: Samples, spectra: Spectra) -> float:
     left = np.maximum(spectra.residual - freest, 0.0)
     count = colour_count(n, left / width, fitted / width, width)
     return f_test(share, 2 * bands, count / HANN_INFLATION)
-
-
-def _told(distortion: Distortion | None) -> str:
-    """Tell what lies off the excited lines."""
-    if distortion is None:
-        return ""
-    return (
-        f" Of the residual of periodic records, {percent(distortion.excited)} lies on "
-        f"excited lines, {percent(distortion.odd)} on other odd harmonics and "
-        f"{percent(distortion.even)} on even ones."
-    )

@@ -9,6 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.gap.floor import periodogram
+from hystbench.gap.locate.coherence import take_coherence
+from hystbench.gap.locate.coherence import told as told_coherence
+from hystbench.gap.locate.distortion import take_distortion, told_repeating
 from hystbench.gap.locate.regression import (
     best,
     fit_by_record,
@@ -107,7 +110,8 @@ def unexplained_view(samples: Samples) -> View:
         p_value=p_value,
         sentence=(
             f"{percent(share)} of the gap is {kind} that the input does not explain, "
-            f"{where}."
+            f"{where}.{told_coherence(take_coherence(samples))}"
+            f"{told_repeating(take_distortion(samples))}"
         ),
         saved=form.saved,
     )

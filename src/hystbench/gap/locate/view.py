@@ -5,6 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+SIGNIFICANT = 0.01
+"""Of a p-value, for a part of a view to be told as there."""
+MATTERS = 0.01
+"""Of the gap's power, for a part of a view to be told at all."""
+
 
 @dataclass(frozen=True)
 class View:
@@ -65,3 +70,8 @@ def percent(share: float) -> str:
 def number(value: float) -> str:
     """Write a number as it stands in a sentence, to three digits."""
     return f"{value:.3g}"
+
+
+def chance(p_value: float) -> str:
+    """Write a p-value as it stands in a sentence."""
+    return "p < 0.001" if p_value < 0.001 else f"p = {p_value:.2g}"

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from hystbench.figures.style import unit_text
-from hystbench.gap.report import pictures, words
+from hystbench.gap.locate import LEVEL
+from hystbench.gap.report import pictures, where, words
 from hystbench.gap.report.pictures import Picture, draw
 from hystbench.gap.report.read import Content
 
@@ -24,6 +25,12 @@ OPTIONAL: dict[str, Any] = {
 }
 #: And its parts with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
+#: Why a curve is null.
+WHY = {
+    "distortion": "distortion, as no record repeats with a gap above the noise",
+    "loops": "areas of loops, as the input never moves",
+    "coherence": "coherence, as records are too short or the input never moves",
+}
 
 
 def page(content: Content) -> str:
@@ -53,14 +60,14 @@ def page(content: Content) -> str:
     gap["gap"] = INTERVALS | gap["gap"]
     if gap["black_box"]:
         gap["black_box"] = INTERVALS | gap["black_box"]
-    where, missing = _where(content)
+    drawn, missing = _where(content)
     return environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(gap),
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
         y=unit_text(gap["unit"]),
         named=[effect["name"] for effect in gap["effects"]],
-        where_pictures=where,
+        where_pictures=drawn,
         missing=missing,
         shares=_shares(gap),
         ladder=_ladder(gap),
@@ -81,9 +88,16 @@ def _shares(gap: dict[str, Any]) -> Picture | None:
         return None
     names = [item["view"].replace("-", " ") for item in gap["where"]]
     shares = [100 * item["share_of_gap_power"] for item in gap["where"]]
-    told = "Share of the gap's power in each view, in per cent"
+    sure = [item["p_value"] * len(names) < LEVEL for item in gap["where"]]
     return draw(
-        pictures.bars, names, shares, told, words=told, height=0.5 + 0.22 * len(names)
+        pictures.bars,
+        names,
+        shares,
+        "share of the gap's power (%)",
+        sure,
+        words="Share of the gap's power in each view; grey where it may be chance, "
+        f"as the p-value times the number of views is not below {LEVEL}",
+        height=0.5 + 0.22 * len(names),
     )
 
 
@@ -150,6 +164,11 @@ def _series(content: Content) -> Picture | None:
     )
 
 
+def _rows(names: list[str]) -> float:
+    """Give the height in inches that as many bars need, that of a curve at least."""
+    return max(2.4, 0.8 + 0.16 * min(len(names), pictures.BARS))
+
+
 def _where(content: Content) -> tuple[list[Picture], list[str]]:
     """Draw the curves that are there, and name those that are not."""
     curves = content.curves
@@ -160,7 +179,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("spectrum",),
             lambda: draw(
-                pictures.spectrum,
+                where.spectrum,
                 curves["spectrum"],
                 units["output"],
                 words="Spectrum of the residual beside the simulation and the floor",
@@ -169,7 +188,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("response",),
             lambda: draw(
-                pictures.response,
+                where.response,
                 curves["response"],
                 words="Best linear approximation of measurement over simulation; "
                 "dashed where the simulation is right",
@@ -180,7 +199,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
         (
             ("over_input", "over_rate"),
             lambda: draw(
-                pictures.maps,
+                where.maps,
                 curves.get("over_input"),
                 curves.get("over_rate"),
                 units,
@@ -190,13 +209,37 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
             ),
         ),
         (
+            ("loops", "coherence"),
+            lambda: draw(
+                where.loops,
+                curves.get("loops"),
+                curves.get("coherence"),
+                units,
+                words="Area of the loop, output over input, at each frequency (bars: "
+                "two standard errors), and coherence of the gap with the input",
+                panels=(1, 2),
+            ),
+        ),
+        (
+            ("distortion",),
+            lambda: draw(
+                where.distortion,
+                curves["distortion"],
+                units["output"],
+                words="Distortion: lines of the residual of one periodic record, and "
+                "what lies on them in each; above the noise floor",
+                height=_rows(curves["distortion"]["record"]),
+                panels=(1, 2),
+            ),
+        ),
+        (
             ("slow",),
             lambda: draw(
-                pictures.slow,
+                where.slow,
                 curves["slow"],
                 units["output"],
                 words="Mean of the residual over slow time, record behind record",
-                height=2.0,
+                height=2.6,
             ),
         ),
         (
@@ -205,7 +248,7 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 pictures.bars,
                 curves["records"]["name"],
                 [100 * share for share in curves["records"]["share"]],
-                "share of the gap's power, in per cent",
+                "share of the gap's power (%)",
                 words="Share of the gap's power in each fit record",
                 height=0.6 + 0.2 * len(curves["records"]["name"]),
             ),
@@ -213,7 +256,11 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
     ]
     drawn, missing = [], []
     for keys, make in plans:
-        missing += [f"curves.json: no {key}" for key in keys if not curves.get(key)]
+        missing += [
+            WHY[key] if key in WHY and key in curves else f"curves.json: no {key}"
+            for key in keys
+            if not curves.get(key)
+        ]
         if any(curves.get(key) for key in keys):
             drawn.append(make())
     return drawn, missing

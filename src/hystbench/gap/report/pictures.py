@@ -16,9 +16,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from hystbench.figures.style import (
     BLACK,
     BLUE,
-    GREEN,
     GREY,
-    ORANGE,
     PAGE,
     VERMILION,
     in_style,
@@ -155,91 +153,12 @@ def series(axes: Any, tables: Sequence[HoldOut], floor: float, unit: str) -> Non
         ):
             spectrum.plot(found.frequency_hz[1:], np.sqrt(power[1:]), line, color=color)
         spectrum.axhline(np.sqrt(found.floor), color=FLOOR, linestyle=":")
-        _logarithmic(spectrum, "xy")
+        logarithmic(spectrum, "xy")
         spectrum.set_title("residual, noise floor dotted")
         spectrum.set_xlabel("frequency (Hz)")
         spectrum.set_ylabel(f"({shown}/√Hz)")
     lines = axes[0][0].get_legend_handles_labels()[0]
     legend_above(axes[0][0].figure, lines)
-
-
-def response(axes: Sequence[Axes], curve: dict[str, Any]) -> None:
-    """Draw measurement over simulation, with 1 and 0 where the model is right."""
-    names = (("magnitude", 1.0), ("phase", 0.0), ("coherence", 1.0))
-    units = {"magnitude": "(-)", "phase": "(degrees)", "coherence": "(-)"}
-    for panel, (name, right) in zip(axes, names, strict=True):
-        panel.plot(curve["frequency"], curve[name], ".-", color=BLUE)
-        panel.axhline(right, color=BLACK, linestyle="--", linewidth=0.8)
-        _logarithmic(panel, "x")
-        panel.set_xlabel("frequency (Hz)")
-        panel.set_ylabel(f"{name} {units[name]}")
-    axes[2].set_ylim(0, 1.05)
-
-
-def spectrum(axes: Sequence[Axes], curve: dict[str, Any], unit: str) -> None:
-    """Draw amplitude densities of simulation, residual, its linear part and floor."""
-    (panel,) = axes
-    looks = {
-        "simulated": (GREY, "-", "simulation"),
-        "residual": (VERMILION, "-", "residual"),
-        "linear": (BLUE, "--", "its part linear in the simulation"),
-        "floor": (BLACK, ":", "noise floor"),
-    }
-    for name, (color, line, label) in looks.items():
-        panel.plot(curve["frequency"], curve[name], line, color=color, label=label)
-    _logarithmic(panel, "xy")
-    panel.set_xlabel("frequency (Hz)")
-    panel.set_ylabel(f"amplitude density ({unit_text(unit)}/√Hz)")
-    panel.legend()
-
-
-def maps(
-    axes: Sequence[Axes], over_input: Any, over_rate: Any, units: dict[str, str]
-) -> None:
-    """Draw the residual over the input, branch by branch, and over its rate."""
-    given, made = unit_text(units["input"]), unit_text(units["output"])
-    if over_input:
-        panel, x = axes[0], over_input["input"]
-        floor = over_input["floor"]
-        panel.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
-        for name, color, line in (("rising", BLUE, "-"), ("falling", ORANGE, "--")):
-            panel.plot(x, _numbers(over_input[name]), line, color=color, label=name)
-        panel.plot(x, over_input["rms"], ":", color=BLACK, label="rms")
-        panel.set_xlabel(f"input ({given})")
-        panel.set_ylabel(f"residual ({made})")
-        panel.set_title("by input and branch")
-        panel.legend()
-    if over_rate:
-        panel = axes[1]
-        panel.plot(over_rate["rate"], over_rate["mean"], color=GREEN, label="mean")
-        panel.plot(over_rate["rate"], over_rate["rms"], ":", color=BLACK, label="rms")
-        panel.set_xlabel(f"rate of the input ({given}/s)")
-        panel.set_title("by rate")
-        panel.legend()
-
-
-def slow(axes: Sequence[Axes], paths: Sequence[dict[str, Any]], unit: str) -> None:
-    """Draw the slow path of the residual, record behind record."""
-    (panel,) = axes
-    start = 0.0
-    for place, path in enumerate(paths):
-        time = start + np.asarray(path["time"], dtype=float)
-        color, mark = (BLUE, "o") if place % 2 == 0 else (ORANGE, "s")
-        panel.plot(time, _numbers(path["residual"]), mark + "-", color=color)
-        panel.annotate(
-            path["record"],
-            (time[0], 1),
-            (2, -2),
-            ("data", "axes fraction"),
-            textcoords="offset points",
-            va="top",
-            fontsize=6,
-            rotation=90,
-        )
-        start = float(time[-1]) + (float(time[0]) - start)
-        panel.axvline(start, color=GREY, linewidth=0.6)
-    panel.set_xlabel("time, record behind record (s)")
-    panel.set_ylabel(f"mean residual ({unit_text(unit)})")
 
 
 def _window(table: HoldOut) -> slice:
@@ -253,7 +172,7 @@ def _window(table: HoldOut) -> slice:
     return slice(first, first + width)
 
 
-def _logarithmic(panel: Axes, directions: str) -> None:
+def logarithmic(panel: Axes, directions: str) -> None:
     """Make axes logarithmic, with plain numbers at the decades."""
     for axis, scale in (
         (panel.xaxis, panel.set_xscale),
@@ -274,8 +193,3 @@ def _hull(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]
     stretches = values[: count * size].reshape(count, size)
     ends = np.column_stack([stretches.min(axis=1), stretches.max(axis=1)])
     return np.repeat(time[: count * size : size], 2), ends.ravel()
-
-
-def _numbers(values: Sequence[float | None]) -> Any:
-    """Turn null into a gap of the line."""
-    return np.array([np.nan if each is None else each for each in values])
