@@ -72,7 +72,8 @@ def load(path: Path = LIBRARY) -> ctypes.CDLL:
 
 
 _library = load()
-_KERNELS = {name: getattr(_library, name) for name in _SIGNATURES}
+KERNELS = {name: getattr(_library, name) for name in _SIGNATURES}
+"""Every kernel by its name."""
 
 
 def call(name: str, *arguments: FloatArray | float | int) -> int:
@@ -92,7 +93,7 @@ def call(name: str, *arguments: FloatArray | float | int) -> int:
         _address(value) if isinstance(value, np.ndarray) else value
         for value in arguments
     ]
-    return int(_KERNELS[name](*plain) or 0)
+    return int(KERNELS[name](*plain) or 0)
 
 
 def _address(values: FloatArray) -> int:
