@@ -36,7 +36,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_growing_play": (None, "iiaaaaa"),
     "hb_growing_prandtl_ishlinskii": (_SIZE, "iiaaaaaa"),
     "hb_lms_rows": (_SIZE, "iiaiaaffaaa"),
-    "hb_lms_play": (_SIZE, "iiaaiaafffaaaa"),
+    "hb_lms_play": (None, "iiiaaiaaaffaaaaia"),
     "hb_play_rows": (None, "iiaaiaaa"),
     "hb_lms_volterra": (_SIZE, "iiiaaffffaaaa"),
     "hb_state_space": (None, "iiiaaafaaa"),
