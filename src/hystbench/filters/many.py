@@ -52,11 +52,9 @@ def run_many(
 
     def work(_: int) -> None:
         for batch in todo:
-            _, x, d = listed[batch[0]]
-            filters = [listed[k][0] for k in batch]
-            for k, result in zip(
-                batch, run_together(filters, x, d, None, limit), strict=True
-            ):
+            x, d = listed[batch[0]][1:]
+            results = run_together([listed[k][0] for k in batch], x, d, None, limit)
+            for k, result in zip(batch, results, strict=True):
                 done[k] = result
 
     with ThreadPoolExecutor(count) as pool:
@@ -72,9 +70,9 @@ def _batches(jobs: Sequence[Job], workers: int) -> list[list[int]]:
     same time, so there should be several for each.
     """
     alike: dict[object, list[int]] = {}
-    for k, (item, x, d) in enumerate(jobs):
+    for number, (item, x, d) in enumerate(jobs):
         same = tuple(id(v) for key, v in vars(item).items() if key != "step_size")
-        alike.setdefault((type(item), same, id(x), id(d)), []).append(k)
+        alike.setdefault((type(item), same, id(x), id(d)), []).append(number)
     batches = []
     for numbers in alike.values():
         size = min(MOST, -(-len(numbers) // (SHARES * workers)))
