@@ -1,11 +1,14 @@
 """Every filter against the paper's equations written out, and what all must keep."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
 from hystbench.filters import FILTERS, AdaptiveFilter, run_many
+from hystbench.filters.base import CHUNK
 
 OPTIONS = {
     "delayed": [{}],
@@ -27,6 +30,7 @@ OPTIONS = {
 CASES = [(name, options) for name, several in OPTIONS.items() for options in several]
 
 
+PLAYS = [case for case in CASES if case[0] in ("backlash", "gpo")]
 NAMES = [f"{name}-{place}" for place, (name, _) in enumerate(CASES)]
 
 
@@ -390,6 +394,50 @@ def test_many_at_once_are_the_same_bytes_with_any_number_of_workers(signals):
     for a, b, c in zip(one, two, again, strict=True):
         assert a.output.tobytes() == b.output.tobytes() == c.output.tobytes()
         assert a.weights.tobytes() == b.weights.tobytes() == c.weights.tobytes()
+
+
+@pytest.mark.parametrize("case", [CASES[0], *PLAYS, CASES[-1]])
+@pytest.mark.parametrize("workers", [1, 2])
+def test_step_sizes_together_are_the_same_bytes_as_each_alone(case, workers):
+    # a burst late in a record longer than a chunk: some diverge there, some at once
+    n = CHUNK + 3000
+    rng = np.random.default_rng(8)
+    x = 0.3 * np.sin(0.05 * np.arange(n)) + 0.05 * rng.standard_normal(n)
+    d = x + 0.2 * x**2
+    d[:50] += 1.0
+    d[CHUNK + 500 :] += rng.uniform(-10, 10, n - CHUNK - 500)
+    first = stable(case, 6, x, 0.1)
+    factors = [1e-3, 1e3, 0.1, 0.5, 30.0, 1e150, 1.0, *np.geomspace(0.01, 40, 40)]
+    steps = [replace(first, step_size=first.step_size * f) for f in factors]
+    others = [(replace(first, order=5), x, d), (first, d, x)]
+    jobs = [*((each, x, d) for each in steps), *others, (steps[0], x.copy(), d)]
+    jobs = [jobs[k] for k in rng.permutation(len(jobs))]
+    ends = set()
+    for (alone, u, y), found in zip(jobs, run_many(jobs, workers, 20.0), strict=True):
+        expected = alone.run(u, y, limit=20.0)
+        at = expected.diverged_at
+        ends.add("never" if at is None else f"chunk {at // CHUNK}")
+        assert found.diverged_at == expected.diverged_at
+        for key in ("output", "error", "weights"):
+            assert getattr(found, key).tobytes() == getattr(expected, key).tobytes()
+        for key in ("weights", "past", "operators"):
+            one, other = getattr(found.state, key), getattr(expected.state, key)
+            assert one.tobytes() == other.tobytes()
+        assert found.state.limit == expected.state.limit
+    assert ends == {"never", "chunk 0", "chunk 1"}
+
+
+def test_step_sizes_together_follow_the_equations(signals):
+    x, d = signals
+    for case in PLAYS:
+        first = stable(case, 6, x, 0.1)
+        h = plain_regressors(case, first, x)
+        steps = [replace(first, step_size=first.step_size * f) for f in (1, 2, 0.3)]
+        found = run_many([(each, x, d) for each in steps], workers=1)
+        for each, result in zip(steps, found, strict=True):
+            y, w = plain_lms(h, d, each.step_size)
+            near(result.output, y)
+            near(result.weights, w)
 
 
 # --- the registry and what is refused

@@ -142,6 +142,19 @@ def test_the_fine_search_stays_in_its_grid_and_is_no_worse():
     assert edge.values["time_constant_s"] >= axis[0]
 
 
+@pytest.mark.parametrize("name", ["drive-lag", "resonance"])
+def test_a_step_is_the_same_with_the_signals_at_hand_and_without(name):
+    state = state_of((hysteresis(),), measured(mode(110.0, 0.25), NOISE))
+    score = plain_score(state)
+    one = attempt(state, score, name)
+    best = coarse(one)
+    other = one.at(tuple(float(axis[0]) for axis in one.variant.grids.values()))
+    assert other.score > best.score
+    for trial in (best, other):
+        without = attempt(state, score, name)  # has looked at no point
+        np.testing.assert_array_equal(one.step(trial), without.step(trial))
+
+
 def test_what_is_solved_for_comes_out_as_it_was_put_in():
     state = state_of((hysteresis(),), measured(mode(110.0, 0.25), NOISE))
     score = plain_score(state)

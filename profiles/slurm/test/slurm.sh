@@ -1,13 +1,19 @@
 # A real Slurm of one node on this machine, all of it in one folder. For Debian, as root.
-# Source it: start_slurm FOLDER, stop_slurm FOLDER.
+# Source it: node_size, start_slurm FOLDER CPUS MEMORY_MB, stop_slurm FOLDER.
+
+# CPUs and memory in MB that the node may have: the processors that this process may use
+# and nine tenths of the free memory, with as much for each CPU as a job of ours asks for.
+node_size() { # MB a job, file like /proc/meminfo
+  local memory cpus
+  memory=$(awk '$1 == "MemAvailable:" { print int($2 / 1024 * 0.9) }' "$2")
+  cpus=$(nproc)
+  [ "$((memory / $1))" -ge "$cpus" ] || cpus=$((memory / $1))
+  echo "$cpus $memory"
+}
 
 start_slurm() {
-  local folder=$1 host
+  local folder=$1 cpus=$2 memory=$3 host
   host=$(hostname -s)
-  [ ! -e /etc/slurm/slurm.conf ] || {
-    echo "/etc/slurm/slurm.conf is there: this machine has a Slurm of its own" >&2
-    return 1
-  }
   mkdir -p "$folder/state" "$folder/spool" "$folder/munge"
   dd if=/dev/urandom of="$folder/munge/key" bs=1 count=1024 status=none
   chown -R munge:munge "$folder/munge"
@@ -40,12 +46,12 @@ ReturnToService=2
 # A job that has ended stays in squeue's sight, since there is no sacct here.
 MinJobAge=600
 SchedulerParameters=sched_interval=1,batch_sched_delay=0
-NodeName=$host NodeAddr=127.0.0.1 CPUs=2 RealMemory=6000
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$cpus RealMemory=$memory
 PartitionName=main Nodes=$host Default=YES State=UP
 CONF
   # With SLURM_CONF alone the inner srun finds no configuration.
   mkdir -p /etc/slurm
-  ln -s "$folder/slurm.conf" /etc/slurm/slurm.conf
+  ln -sf "$folder/slurm.conf" /etc/slurm/slurm.conf
   # munged runs as its own user, whose key and folders these are.
   runuser -u munge -- munged --force --key-file="$folder/munge/key" \
     --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" \

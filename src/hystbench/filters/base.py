@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -55,6 +55,10 @@ class State:
     past: FloatArray
     operators: FloatArray
     limit: float | None = None
+
+
+End = tuple[FloatArray, FloatArray]
+"""Weights and outputs of the operators after a chunk."""
 
 
 @dataclass(frozen=True)
@@ -222,36 +226,8 @@ class AdaptiveFilter(ABC):
         InputError
             If x and d differ in length, are not finite or the limit is not positive.
         """
-        x, _ = _finite("x", x)
-        d, largest = _finite("d", d)
-        if len(x) != len(d):
-            raise InputError(f"d: {len(d)} samples given, x has {len(x)}")
-        state = state or self.start()
-        if limit is None:
-            limit = state.limit
-        if limit is None:
-            limit = 1e6 * (largest or 1.0)
-        positive("limit", limit)
-        output, error = np.empty(len(d)), np.empty(len(d))
-        weights, past, operators = state.weights, state.past, state.operators
-        done = 0
-        while done < len(d):
-            part = slice(done, done + CHUNK)
-            line = np.concatenate((past, x[part]))
-            past = line[-self.history :].copy()
-            taken, weights, operators = self._adapt(
-                line, d[part], weights, operators, limit, output[part], error[part]
-            )
-            done += taken
-            if taken < len(line) - self.history:
-                break
-        diverged_at = done if done < len(d) else None
-        if not math.isfinite(kernels.largest(weights)):
-            # overflow in the last update of all: the next prediction would show it
-            diverged_at = done
-            weights = np.nan_to_num(weights)
-        end = State(weights, past, operators, limit)
-        return Result(output[:done], error[:done], weights, diverged_at, end)
+        (result,) = run_together([self], x, d, state, limit)
+        return result
 
     def bound(self, x: ArrayLike) -> Bound:
         """Bound on the step size for an input, Eq. 19.
@@ -291,6 +267,35 @@ class AdaptiveFilter(ABC):
             count += len(rows)
         return total / count
 
+    def _adapt_all(
+        self,
+        filters: Sequence[AdaptiveFilter],
+        line: FloatArray,
+        d: FloatArray,
+        ends: Sequence[End],
+        limit: float,
+        output: FloatArray,
+        error: FloatArray,
+        start: int,
+    ) -> list[tuple[int, End]]:
+        """Run the LMS loops of filters that differ in step size alone over a chunk.
+
+        Where they can share something, a filter has its own way to do this.
+
+        Parameters
+        ----------
+        output, error : ndarray, shape (filters, samples of the record)
+            Written from ``start`` on.
+
+        Returns
+        -------
+        list of (int, (ndarray, ndarray))
+            What :meth:`_adapt` returns, of each.
+        """
+        part = slice(start, start + len(d))
+        rows = zip(filters, ends, output[:, part], error[:, part], strict=True)
+        return [item._adapt(line, d, *end, limit, y, e) for item, end, y, e in rows]
+
     def _adapt(
         self,
         line: FloatArray,
@@ -300,7 +305,7 @@ class AdaptiveFilter(ABC):
         limit: float,
         output: FloatArray,
         error: FloatArray,
-    ) -> tuple[int, FloatArray, FloatArray]:
+    ) -> tuple[int, End]:
         """Run the LMS loop over a chunk, writing output and error.
 
         This one works with any regressor. The filters here have their own, which
@@ -326,7 +331,7 @@ class AdaptiveFilter(ABC):
             done += taken
             if taken < len(h):
                 break
-        return done, lanes[: self.size].copy(), operators
+        return done, (lanes[: self.size].copy(), operators)
 
     def _rows(
         self,
@@ -349,6 +354,76 @@ class AdaptiveFilter(ABC):
     def _kernel_regularization(self) -> float:
         # the kernels take a negative one for the plain LMS
         return self.regularization if self.normalized else -1.0
+
+
+def run_together(
+    filters: Sequence[AdaptiveFilter],
+    x: ArrayLike,
+    d: ArrayLike,
+    state: State | None = None,
+    limit: float | None = None,
+) -> list[Result]:
+    """Run filters that differ in step size alone, each as it would run by itself.
+
+    Parameters
+    ----------
+    filters : sequence of AdaptiveFilter
+        At least one.
+    x, d, state, limit
+        As for :meth:`AdaptiveFilter.run`.
+
+    Returns
+    -------
+    list of Result
+        Their outputs and errors are rows of one array each.
+    """
+    first = filters[0]
+    x, _ = _finite("x", x)
+    d, largest = _finite("d", d)
+    if len(x) != len(d):
+        raise InputError(f"d: {len(d)} samples given, x has {len(x)}")
+    state = state or first.start()
+    if limit is None:
+        limit = state.limit
+    if limit is None:
+        limit = 1e6 * (largest or 1.0)
+    positive("limit", limit)
+    count, past = len(filters), state.past
+    output, error = np.empty((count, len(d))), np.empty((count, len(d)))
+    ends: list[End] = [(state.weights, state.operators)] * count
+    pasts, done = [past] * count, [0] * count
+    for start in range(0, len(d), CHUNK):
+        part = slice(start, start + CHUNK)
+        line = np.concatenate((past, x[part]))
+        past = line[-first.history :].copy()
+        going = [k for k in range(count) if done[k] == start]
+        # All at once for as long as none has diverged, then one by one.
+        rows = (
+            [slice(None)] if len(going) == count else [slice(k, k + 1) for k in going]
+        )
+        for row in rows:
+            own = range(count)[row]
+            signals = (output[row], error[row], start)
+            found = first._adapt_all(
+                filters[row], line, d[part], ends[row], limit, *signals
+            )
+            for k, (taken, end) in zip(own, found, strict=True):
+                done[k] += taken
+                ends[k], pasts[k] = end, past
+    whole = math.isfinite(kernels.largest(np.concatenate([w for w, _ in ends])))
+    results = []
+    for k, (weights, operators) in enumerate(ends):
+        diverged_at = done[k] if done[k] < len(d) else None
+        if not whole and not np.isfinite(weights).all():
+            # overflow in the last update of all: the next prediction would show it
+            diverged_at = done[k]
+            weights = np.nan_to_num(weights)
+        end_state = State(weights, pasts[k], operators, limit)
+        used = slice(done[k])
+        results.append(
+            Result(output[k, used], error[k, used], weights, diverged_at, end_state)
+        )
+    return results
 
 
 def positive(name: str, value: float) -> None:

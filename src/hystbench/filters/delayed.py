@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.filters.base import AdaptiveFilter
+from hystbench.filters.base import AdaptiveFilter, End
 from hystbench.record import FloatArray
 
 
@@ -40,10 +40,10 @@ class DelayedFilter(AdaptiveFilter):
         limit: float,
         output: FloatArray,
         error: FloatArray,
-    ) -> tuple[int, FloatArray, FloatArray]:
+    ) -> tuple[int, End]:
         # rows are windows of the line itself, one sample apart, oldest first
         lanes = kernels.pad_front(weights[::-1])
         steps = np.zeros(len(lanes))
         steps[-self.taps :] = 2 * self.step_size
         taken = self._rows(line[1:], 1, steps, d, limit, lanes, output, error)
-        return taken, lanes[-self.taps :][::-1].copy(), operators
+        return taken, (lanes[-self.taps :][::-1].copy(), operators)

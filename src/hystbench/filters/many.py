@@ -3,23 +3,33 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 from numpy.typing import ArrayLike
 
-from hystbench.filters.base import AdaptiveFilter, Result
+from hystbench.filters.base import AdaptiveFilter, Result, run_together
+
+Job = tuple[AdaptiveFilter, ArrayLike, ArrayLike]
+
+MOST = 32
+"""Filters that are run together: their results share memory."""
+
+SHARES = 4
+"""Batches for each thread, where there are as many filters."""
 
 
 def run_many(
-    jobs: Iterable[tuple[AdaptiveFilter, ArrayLike, ArrayLike]],
+    jobs: Iterable[Job],
     workers: int | None = None,
     limit: float | None = None,
 ) -> list[Result]:
     """Run many filters at once: step sizes, orders, seeds.
 
-    Each job runs as it would alone, so the results do not depend on ``workers``.
-    Jobs may share their arrays.
+    Each job gives what it would give alone, so the results do not depend on
+    ``workers``. Jobs may share their arrays. Filters that differ in step size alone,
+    made of one by :func:`dataclasses.replace`, are run together where their arrays are
+    the very same: what comes before the weights is then the same.
 
     Parameters
     ----------
@@ -33,18 +43,38 @@ def run_many(
     Returns
     -------
     list of Result
-        In the order of the jobs.
+        In the order of the jobs. Those that were run together share memory.
     """
     listed = list(jobs)
     done: list[Result | None] = [None] * len(listed)
-    todo = iter(range(len(listed)))  # one for all: each thread takes the next
+    count = workers or len(os.sched_getaffinity(0))
+    todo = iter(_batches(listed, count))  # one for all: each thread takes the next
 
     def work(_: int) -> None:
-        for k in todo:
-            item, x, d = listed[k]
-            done[k] = item.run(x, d, None, limit)
+        for batch in todo:
+            x, d = listed[batch[0]][1:]
+            results = run_together([listed[k][0] for k in batch], x, d, None, limit)
+            for k, result in zip(batch, results, strict=True):
+                done[k] = result
 
-    count = workers or len(os.sched_getaffinity(0))
     with ThreadPoolExecutor(count) as pool:
         list(pool.map(work, range(count)))  # so that what one raises is raised here
     return [result for result in done if result is not None]
+
+
+def _batches(jobs: Sequence[Job], workers: int) -> list[list[int]]:
+    """Divide jobs, by number, into what one thread runs together.
+
+    Each time threads change places at the interpreter's lock costs as much as a good
+    part of a short run, so a batch should be large; but all threads should end at the
+    same time, so there should be several for each.
+    """
+    alike: dict[object, list[int]] = {}
+    for number, (item, x, d) in enumerate(jobs):
+        same = tuple(id(v) for key, v in vars(item).items() if key != "step_size")
+        alike.setdefault((type(item), same, id(x), id(d)), []).append(number)
+    batches = []
+    for numbers in alike.values():
+        size = min(MOST, -(-len(numbers) // (SHARES * workers)))
+        batches += [numbers[k : k + size] for k in range(0, len(numbers), size)]
+    return sorted(batches)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.errors import InputError, nearest
-from hystbench.filters.base import AdaptiveFilter, positive
+from hystbench.filters.base import AdaptiveFilter, End, positive
 from hystbench.operators import FORMS, Form, follow_direction
 from hystbench.record import FloatArray
 
@@ -100,22 +101,36 @@ class PlayFilter(AdaptiveFilter):
         first = 1 if self.along_line else self.history
         return left[first:], right[first:], r, state
 
-    def _adapt(
+    def _adapt_all(
         self,
+        filters: Sequence[AdaptiveFilter],
         line: FloatArray,
         d: FloatArray,
-        weights: FloatArray,
-        operators: FloatArray,
+        ends: Sequence[End],
         limit: float,
         output: FloatArray,
         error: FloatArray,
-    ) -> tuple[int, FloatArray, FloatArray]:
-        left, right, r, state = self._lanes(line, operators)
-        lanes = kernels.pad_front(weights[::-1])
-        sizes = (len(d), len(r) // kernels.WIDTH)
-        envelopes = (left, right, int(self.along_line))
-        numbers = (2 * self.step_size, self._kernel_regularization(), limit)
-        arrays = (state, lanes, output, error)
-        taken = kernels.call("hb_lms_play", *sizes, *envelopes, d, r, *numbers, *arrays)
+        start: int,
+    ) -> list[tuple[int, End]]:
+        # All have seen the same input: they share envelopes and operators so far.
+        left, right, r, state = self._lanes(line, ends[0][1])
+        count = len(filters)
+        states = np.tile(state, (count, 1))
+        lanes = np.array([kernels.pad_front(weights[::-1]) for weights, _ in ends])
+        steps = np.array([2 * item.step_size for item in filters])
+        taken = np.empty(count)
+        kernels.call(
+            "hb_lms_play",
+            *(count, len(d), len(r) // kernels.WIDTH),
+            *(left, right, int(self.along_line), d, r),
+            *(steps, self._kernel_regularization(), limit),
+            *(states, lanes),
+            *(output.reshape(-1)[start:], error.reshape(-1)[start:]),
+            *(output.shape[1], taken),
+        )
         used = slice(-self.taps, None)
-        return taken, lanes[used][::-1].copy(), state[used][::-1].copy()
+        after = [
+            (weights[used][::-1].copy(), operators[used][::-1].copy())
+            for weights, operators in zip(lanes, states, strict=True)
+        ]
+        return list(zip([int(samples) for samples in taken], after, strict=True))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hystbench import kernels
-from hystbench.filters.base import AdaptiveFilter, positive
+from hystbench.filters.base import AdaptiveFilter, End, positive
 from hystbench.filters.bound import Bound, eigenvalue_bound
 from hystbench.record import FloatArray
 
@@ -121,7 +121,7 @@ class VolterraFilter(AdaptiveFilter):
         limit: float,
         output: FloatArray,
         error: FloatArray,
-    ) -> tuple[int, FloatArray, FloatArray]:
+    ) -> tuple[int, End]:
         spare = -self.taps % TILE
         # the kernel's taps run from the oldest to the newest
         newest_last = np.concatenate((np.zeros(spare), weights[: self.taps][::-1]))
@@ -138,7 +138,7 @@ class VolterraFilter(AdaptiveFilter):
         taken = kernels.call("hb_lms_volterra", *sizes, rows, d, *numbers, *arrays)
         second = (_unpack(packed, len(first)) + unmoved)[spare:, spare:]
         after = np.concatenate((first[spare:][::-1], second[::-1, ::-1].ravel()))
-        return taken, after, operators
+        return taken, (after, operators)
 
 
 def _tiles(matrix: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -53,6 +54,16 @@ class Trial:
     score: float
 
 
+class Signals(NamedTuple):
+    """What was simulated at the point that scores least: a step begins there."""
+
+    point: Point
+    score: float
+    own: FloatArray
+    residual: FloatArray
+    amplitudes: FloatArray
+
+
 class Attempt:
     """One variant on one model, evaluated at values of its searched parameters.
 
@@ -69,7 +80,7 @@ class Attempt:
         self.more = np.hstack([state.tangents, state.beside_columns])
         self.stiffness = state.stiffness_of(self.more.shape[1])
         self.zero: FloatArray | None = None
-        self.last: tuple[Point, FloatArray, FloatArray, FloatArray] | None = None
+        self.least: Signals | None = None
 
     def at(self, point: Point) -> Trial:
         """Score the variant at a point of the grid."""
@@ -80,13 +91,13 @@ class Attempt:
     def _at(self, point: Point) -> Trial:
         own, residual = self._signals(point)
         found = self._solve(residual, own)
-        self.last = (point, own, residual, found.values[: own.shape[1]])
+        if self.least is None or found.score < self.least.score:
+            amplitudes = found.values[: own.shape[1]]
+            self.least = Signals(point, found.score, own, residual, amplitudes)
         variant = self.variant
         values = dict(zip(variant.grids, point, strict=True))
-        amplitudes = found.values[: len(variant.unit)]
-        values |= {
-            name: float(x) for name, x in zip(variant.unit, amplitudes, strict=True)
-        }
+        scaled = found.values[: len(variant.unit)]
+        values |= {name: float(x) for name, x in zip(variant.unit, scaled, strict=True)}
         return Trial(variant, values, found.score)
 
     def step(self, trial: Trial) -> FloatArray:
@@ -102,10 +113,11 @@ class Attempt:
             If the block refuses values beside those of the trial.
         """
         point = tuple(trial.values[name] for name in self.variant.grids)
-        if self.last is None or self.last[0] != point:
-            self._at(point)
-        assert self.last is not None  # noqa: S101  (for the type checker)
-        _, own, residual, amplitudes = self.last
+        if self.least is not None and self.least.point == point:
+            own, residual, amplitudes = self.least[2:]
+        else:
+            own, residual = self._signals(point)
+            amplitudes = self._solve(residual, own).values[: own.shape[1]]
         now = residual - own @ amplitudes
         moved = []
         for k in range(len(point)):

@@ -36,7 +36,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_growing_play": (None, "iiaaaaa"),
     "hb_growing_prandtl_ishlinskii": (_SIZE, "iiaaaaaa"),
     "hb_lms_rows": (_SIZE, "iiaiaaffaaa"),
-    "hb_lms_play": (_SIZE, "iiaaiaafffaaaa"),
+    "hb_lms_play": (None, "iiiaaiaaaffaaaaia"),
     "hb_play_rows": (None, "iiaaiaaa"),
     "hb_lms_volterra": (_SIZE, "iiiaaffffaaaa"),
     "hb_state_space": (None, "iiiaaafaaa"),
@@ -72,7 +72,8 @@ def load(path: Path = LIBRARY) -> ctypes.CDLL:
 
 
 _library = load()
-_KERNELS = {name: getattr(_library, name) for name in _SIGNATURES}
+KERNELS = {name: getattr(_library, name) for name in _SIGNATURES}
+"""Every kernel by its name."""
 
 
 def call(name: str, *arguments: FloatArray | float | int) -> int:
@@ -92,7 +93,7 @@ def call(name: str, *arguments: FloatArray | float | int) -> int:
         _address(value) if isinstance(value, np.ndarray) else value
         for value in arguments
     ]
-    return int(_KERNELS[name](*plain) or 0)
+    return int(KERNELS[name](*plain) or 0)
 
 
 def _address(values: FloatArray) -> int:

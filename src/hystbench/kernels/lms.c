@@ -119,14 +119,11 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
     return k;
 }
 
-/* Regressor = outputs of play operators.  Operator j at sample k reads the
- * envelopes at [k + j] (pace 1: they run along the delay line) or all at [k]
- * (pace 0).  In the padding the threshold is infinite: outputs stay zero. */
-EXPORT index_t hb_lms_play(index_t n, index_t wide, const double *left,
-                           const double *right, index_t pace, const double *d,
-                           const double *r, double step, double regularization,
-                           double limit, double *state, double *weights, double *y,
-                           double *e)
+static index_t lms_one_play(index_t n, index_t wide, const double *left,
+                            const double *right, index_t pace, const double *d,
+                            const double *r, double step, double regularization,
+                            double limit, double *state, double *weights, double *y,
+                            double *e)
 {
 #define ALONG(size)                                                                \
     lms_play(n, left, right, 1, d, r, step, regularization, limit, state, weights, \
@@ -138,6 +135,26 @@ EXPORT index_t hb_lms_play(index_t n, index_t wide, const double *left,
     FOR_SIZES(wide, TOGETHER)
 #undef ALONG
 #undef TOGETHER
+}
+
+/* Regressor = outputs of play operators.  Operator j at sample k reads the
+ * envelopes at [k + j] (pace 1: they run along the delay line) or all at [k]
+ * (pace 0).  In the padding the threshold is infinite: outputs stay zero.
+ *
+ * Runs count filters that differ in step alone, one after the other: each has its
+ * row of state and weights, and of y and e with stride numbers a row.  taken is the
+ * samples that each took. */
+EXPORT void hb_lms_play(index_t count, index_t n, index_t wide, const double *left,
+                        const double *right, index_t pace, const double *d,
+                        const double *r, const double *step, double regularization,
+                        double limit, double *state, double *weights, double *y,
+                        double *e, index_t stride, double *taken)
+{
+    const index_t size = wide * WIDTH;
+    for (index_t i = 0; i < count; i++)
+        taken[i] = lms_one_play(n, wide, left, right, pace, d, r, step[i],
+                                regularization, limit, state + i * size,
+                                weights + i * size, y + i * stride, e + i * stride);
 }
 
 /* Outputs of those operators as rows, for the correlation matrix of Eq. 19. */

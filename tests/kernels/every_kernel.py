@@ -1,0 +1,124 @@
+"""Run every kernel and print digests of what it wrote: every_kernel.py PROCESSORS.
+
+PROCESSORS is how many of those allowed are used, at most. It is set before NumPy is
+imported, as for a process that is confined from the start.
+"""
+
+import hashlib
+import json
+import os
+import sys
+
+allowed = sorted(os.sched_getaffinity(0))
+os.sched_setaffinity(0, allowed[: int(sys.argv[1])])
+
+import numpy as np  # noqa: E402
+
+from hystbench import kernels, operators  # noqa: E402
+from hystbench.blocks.jiles_atherton import JilesAtherton  # noqa: E402
+from hystbench.blocks.preisach import Preisach  # noqa: E402
+from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
+from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E402
+from hystbench.filters import FILTERS, run_many  # noqa: E402
+
+DT = 1e-4
+SAMPLES = 33_000  # more than the filters take at a time
+
+
+def signals():
+    """Input, and the output of a plant with memory and a bend."""
+    k = np.arange(SAMPLES)
+    x = 0.5 * np.sin(0.031 * k) + 0.2 * np.sin(0.17 * k + 1)
+    x += 0.02 * np.random.default_rng(5).standard_normal(SAMPLES)
+    memory = np.convolve(x, 0.7 ** np.arange(40))[:SAMPLES]
+    return x, memory + 0.5 * memory**2
+
+
+def filters(x, d):
+    """Outputs, errors and final weights of every filter, plain and normalized."""
+    more = {
+        "delayed": {},
+        "backlash": {"amplitude": 1.0},
+        "gpo": {"amplitude": 1.0},
+        "volterra": {"second_order_step": 1e-4},
+    }
+    assert set(more) == set(FILTERS)
+    jobs = [
+        (FILTERS[name](order=order, step_size=1e-3, normalized=n, **options), x, d)
+        for name, options in more.items()
+        for order in (3, 30, 70)
+        for n in (False, True)
+    ]
+    for (adaptive, _, _), result in zip(jobs, run_many(jobs), strict=True):
+        assert result.diverged_at is None
+        arrays = (result.output, result.error, result.weights)
+        yield f"{adaptive.name} {adaptive.order} {adaptive.normalized}", arrays
+    for name in ("gpo", "backlash"):
+        adaptive = FILTERS[name](order=30, step_size=1e-3, **more[name])
+        line = np.concatenate((np.zeros(adaptive.history), x[:3000]))
+        yield (
+            f"regressor of {name}",
+            adaptive.regressor(line, np.zeros(adaptive.taps)),
+        )
+
+
+def models(x):
+    """Outputs and last states of the operators, and of the linear systems."""
+    left, right = x + 0.1, x - 0.1
+    r, w = np.linspace(0, 0.9, 31), np.linspace(1, 0.1, 31)
+    few, some = r[:11], w[:11]
+    growth = 1 + 0.1 * x
+    a = 0.1 * np.random.default_rng(6).standard_normal((11, 11))
+    o = operators
+    yield "gpo, Eq. 12", o.generalized_play(left, right, r, form="eq12", v=x)
+    yield "gpi", o.generalized_prandtl_ishlinskii(left, right, r, w)
+    rates = (0.03 * growth, 0.9 * growth)
+    yield "rdgpi", o.rate_dependent_prandtl_ishlinskii(left, right, *rates, 31)
+    yield "growing play", (o.growing_play(x, r, growth),)
+    growing = o.growing_prandtl_ishlinskii(left, right, r, w, growth)
+    yield "growing Prandtl-Ishlinskii", (growing,)
+    yield "state space", o.state_space(a, few, some, 0.1, x)
+    yield "modes", (o.modes(few, some, some, 0.1, x, np.zeros(11)),)
+
+
+def blocks(x):
+    """Outputs of the blocks that have a kernel of their own."""
+    each = (
+        SlewLimit(rate=50.0),
+        StiffnessHardening(
+            coefficient=0.5, frequency_hz=300.0, damping_ratio=0.05, participation=0.4
+        ),
+        JilesAtherton(
+            saturation=1.0, shape=0.2, coupling=0.1, pinning=0.2, reversibility=0.2
+        ),
+        Preisach(
+            limit=1.5, reversible=0.1, cells=40, weights=(1.0,), centres=(0.0,),
+            centre_spreads=(0.5,), half_widths=(0.3,), half_width_spreads=(0.2,),
+        ),
+    )  # fmt: skip
+    for block in each:
+        yield block.name, (block.simulate(x, x, DT),)
+
+
+def main():
+    """Print the digests of what each wrote, and the names of the kernels called."""
+    called, plain = set(), kernels.call
+
+    def noted(name, *arguments):
+        called.add(name)
+        return plain(name, *arguments)
+
+    kernels.call = noted
+    x, d = signals()
+    digests = {}
+    for name, arrays in (*filters(x, d), *models(x), *blocks(x)):
+        assert all(np.isfinite(values).all() and values.any() for values in arrays)
+        bytes_of_all = b"".join(values.tobytes() for values in arrays)
+        digests[name] = hashlib.sha256(bytes_of_all).hexdigest()
+    processors = len(os.sched_getaffinity(0))
+    told = {"called": sorted(called), "digests": digests, "processors": processors}
+    print(json.dumps(told))
+
+
+if __name__ == "__main__":
+    main()
