@@ -62,7 +62,7 @@ lint: $(READY)
 	$(BIN)/snakefmt --check Snakefile workflow
 
 test: lint
-	$(BIN)/pytest -n 2 --dist worksteal
+	$(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 docs: $(READY)
 	$(BIN)/snakemake --cores all all pressure structures held_out gap blind

@@ -24,6 +24,11 @@ settings.register_profile(
 settings.load_profile("hystbench")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the workflows: each takes long, and two workers end together."""
+    items.sort(key=lambda item: "pipeline" not in item.path.parts)
+
+
 @pytest.fixture(scope="session")
 def root() -> Path:
     return ROOT

@@ -175,7 +175,7 @@ def decide(
         floor.method == "upper-bound",
         lone_share([item.residual for item in after]),
         unrepeated(after, floor.rms),
-        any("frequency_hz" not in values for _, values in state.beside),
+        state.wanders,
     )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")
