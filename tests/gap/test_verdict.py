@@ -9,6 +9,7 @@ from hystbench.gap.rank import Candidate, near
 from hystbench.gap.thresholds import TIE
 from hystbench.gap.verdict import (
     ABOVE,
+    HALF,
     LONE,
     LOOSE,
     PATH,
@@ -72,9 +73,14 @@ def test_a_drift_may_leave_bends_of_its_path(differs):
     assert word == ("unnamed" if differs > PATH * 200.0 else "named")
 
 
-def test_a_name_does_not_stand_beside_lone_samples():
-    assert judge(left(0.1), True, 0.0, lone=2 * LONE)[0] == "unnamed"
-    assert judge(left(0.1), True, 0.0, lone=0.5 * LONE)[0] == "named"
+@given(SHARES, SHARES)
+def test_a_name_does_not_stand_where_much_of_the_gap_stays_in_lone_samples(lone, stays):
+    found = Left(0.0, 0.0, 100.0, 100.0 * stays, 1e6)
+    word, reason = judge(found, True, 0.0, lone=lone)
+    # As with a sharp corner that is fitted a little too round.
+    told = lone * found.loose > LONE
+    assert word == ("unnamed" if told or found.loose > HALF else "named")
+    assert ("lone samples" in reason) == (told and found.loose <= HALF)
 
 
 def test_a_slightly_wrong_shape_beside_a_named_effect_does_not_undo_the_name():

@@ -24,8 +24,8 @@ INSIDE = 0.3
 """Share of the gap that then has to lie in what a wrong shape of it could do."""
 HALF = 0.5
 """The same, where what stays is no more than a slightly wrong shape leaves."""
-LONE = 0.2
-"""Share of the power of what is left, in samples far off, that is not noise."""
+LONE = 0.12
+"""Share of the gap that stays in samples far off and is not noise."""
 UNREPEATED = 0.5
 """Power above the floor, in floors, that differs between periods and is not noise."""
 SOME = 0.03
@@ -156,7 +156,7 @@ def judge(
         Whether a drift is named, whose path is new in every record.
     """
     box = explained_by_box or 0.0
-    foreign = _foreign(left, lone, unrepeated, path)
+    foreign = _foreign(left, lone * left.loose if named else lone, unrepeated, path)
     if not named:
         if retuned and left.all_before > ABOVE and left.loose < LOOSE:
             return "parameters", (
@@ -194,8 +194,8 @@ def _foreign(left: Left, lone: float, unrepeated: float | None, path: bool) -> s
     """Say what is left that no effect and no wrong hysteresis does, if any is."""
     if lone > LONE:
         return (
-            f"{100 * lone:.0f} % of what is left stands in lone samples, far off "
-            "from the others, which no effect of the vocabulary does"
+            f"{100 * lone:.0f} % of the gap stays in lone samples, far off from the "
+            "others, which no effect of the vocabulary does"
         )
     least = max(UNREPEATED, SOME * left.all_after)
     if path:
