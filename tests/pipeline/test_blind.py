@@ -91,7 +91,7 @@ def contest(folder, solvers, solver):
     absent = {"command": ["none", *PLACES], "time_limit_s": 1.0, "needs": ["no_such"]}
     config["blind"] |= {
         "set": "small",
-        "transfer": False,
+        "transfer_scale": 0,
         "chunk": 12,
         "solver": solver,
         "solvers": {**solvers, "absent": absent},

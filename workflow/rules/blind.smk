@@ -74,7 +74,7 @@ rule blind_summary:
                 f"{BLIND}/judged/transfer/{chunk}.csv"
                 for chunk in blind_chunks("transfer")
             ]
-            if CONTEST["transfer"]
+            if CONTEST["transfer_scale"]
             else []
         ),
         code=code("hystbench.commands.blind_summary"),
@@ -104,6 +104,7 @@ rule blind_summary:
             {
                 "set": CONTEST["set"],
                 "scale": CONTEST["scale"],
+                "transfer_scale": CONTEST["transfer_scale"],
                 "solver": CONTEST["solver"],
                 "skipped": SKIPPED,
             }

@@ -20,7 +20,7 @@ SKIPPED = {
 ENTERED = [name for name in CONTEST["solvers"] if name not in SKIPPED]
 # The set that is judged, with all solvers, and the transfer set, with one.
 BLIND_SOLVERS = {CONTEST["set"]: ENTERED}
-if CONTEST["transfer"]:
+if CONTEST["transfer_scale"]:
     BLIND_SOLVERS["transfer"] = list(
         dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
     )
@@ -31,9 +31,14 @@ if CONTEST["solver"] not in CONTEST["solvers"]:
     )
 
 
+def blind_scale(name):
+    """How large a set is held."""
+    return CONTEST["transfer_scale" if name == "transfer" else "scale"]
+
+
 def blind_chunks(name):
     """Numbers of the chunks of a set."""
-    return list(chunks(plan(name, CONTEST["scale"]), CONTEST["chunk"]))
+    return list(chunks(plan(name, blind_scale(name)), CONTEST["chunk"]))
 
 
 def blind_entrants(wildcards):
@@ -53,7 +58,7 @@ def blind_case_settings(wildcards):
     return settings_text(
         {
             "set": wildcards.set,
-            "scale": CONTEST["scale"],
+            "scale": blind_scale(wildcards.set),
             "size": CONTEST["chunk"],
             "chunk": wildcards.chunk,
         }

@@ -30,6 +30,7 @@ def blind_summary(
     about = {
         "set": settings["set"],
         "scale": settings["scale"],
+        "transfer_scale": settings["transfer_scale"],
         "seeds": [min(seeds), max(seeds)],
         "seeds_used_while_mending": mended,
     }

@@ -175,7 +175,6 @@ def decide(
         floor.method == "upper-bound",
         lone_share([item.residual for item in after]),
         unrepeated(after, floor.rms),
-        state.wanders,
     )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")

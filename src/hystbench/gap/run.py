@@ -226,7 +226,8 @@ def what_is_new(state: State) -> Nuisance | None:
         if "frequency_hz" in values
         for order in range(1, beside.order + 1)
     ]
-    return offset_and_mains(tones, offset=state.wanders)
+    path = any("frequency_hz" not in values for _, values in state.beside)
+    return offset_and_mains(tones, offset=path)
 
 
 def _run_base(

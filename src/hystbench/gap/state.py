@@ -212,11 +212,6 @@ class State:
         """
         return (other.power(floor) - self.power(floor)) / gap
 
-    @property
-    def wanders(self) -> bool:
-        """Whether a drift has a path of its own in every record."""
-        return any("frequency_hz" not in values for _, values in self.beside)
-
     def power(self, floor: float) -> float:
         """Mean square of the residual above the floor, of the records alike."""
         rest = self.residual

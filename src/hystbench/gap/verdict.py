@@ -20,18 +20,20 @@ ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
 SLIGHT = 0.015
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
+WIDE = 0.045
+"""The same of all that is left, most of which reshaping could do."""
 INSIDE = 0.3
 """Share of the gap that then has to lie in what a wrong shape of it could do."""
 HALF = 0.5
 """The same, where what stays is no more than a slightly wrong shape leaves."""
 LONE = 0.12
-"""Share of the gap that stays in samples far off and is not noise."""
+"""Power that stays in samples far off, over that of the gap, that is not noise."""
 UNREPEATED = 0.5
 """Power above the floor, in floors, that differs between periods and is not noise."""
 SOME = 0.03
 """Share of what is left that has to differ so, to be told from settling."""
-PATH = 0.1
-"""Share of the gap that a drift's path may have beyond the bends that were fitted."""
+REST = 0.15
+"""Share of the gap that stays, from which on what it is can undo a name."""
 BOX = 0.15
 """Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
@@ -81,10 +83,12 @@ class Left:
         return self._slight(self.before, self.all_before)
 
     def _slight(self, beyond: float, whole: float) -> bool:
-        if beyond <= ABOVE:
+        if whole <= ABOVE:
             return True
+        if whole >= WIDE**2 * self.output:
+            return False
         small = beyond < SLIGHT**2 * self.output
-        return small and beyond < (1 - INSIDE) * whole
+        return beyond <= ABOVE or (small and beyond < (1 - INSIDE) * whole)
 
     @property
     def little_named(self) -> bool:
@@ -130,7 +134,6 @@ def judge(
     bound: bool = False,
     lone: float = 0.0,
     unrepeated: float | None = None,
-    path: bool = False,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -152,12 +155,12 @@ def judge(
     unrepeated : float or None
         Power of what is left that differs between periods of the same input, above the
         floor and in floors; none where no record repeats.
-    path : bool
-        Whether a drift is named, whose path is new in every record.
     """
     box = explained_by_box or 0.0
-    foreign = _foreign(left, lone * left.loose if named else lone, unrepeated, path)
+    foreign = _foreign(left, lone, unrepeated)
     if not named:
+        if left.slight and foreign:
+            return "unnamed", foreign
         if retuned and left.all_before > ABOVE and left.loose < LOOSE:
             return "parameters", (
                 "re-tuning the base within what is free leaves "
@@ -168,12 +171,13 @@ def judge(
                 "no effect pays; the floor is only an upper bound, so that there is "
                 "no gap cannot be claimed: give period_samples or noise_rms"
             )
-        if left.slight and foreign:
-            return "unnamed", foreign
+        if left.slight and left.all_after <= ABOVE:
+            return "no-gap", "what is left is noise"
         if left.slight:
+            share = float(np.sqrt(left.all_after / left.output))
             return "no-gap", (
-                "what is left is noise, or no more than a slightly wrong shape of the "
-                "base could leave"
+                f"what is left, {100 * share:.2g} % of the output, is no more than a "
+                "slightly wrong shape of the base could leave"
             )
         return "unnamed", (
             f"a gap of {left.after:.2g} times the noise power is there and no effect "
@@ -190,17 +194,23 @@ def judge(
     return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
 
 
-def _foreign(left: Left, lone: float, unrepeated: float | None, path: bool) -> str:
-    """Say what is left that no effect and no wrong hysteresis does, if any is."""
-    if lone > LONE:
+def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
+    """Say what is left that no effect and no wrong hysteresis does, if any is.
+
+    Where names leave little of the gap, it is no more than noise of another colour, or
+    the last bends of a drift's path.
+    """
+    gap = max(left.all_before, 1.0)
+    far = lone * (1.0 + left.all_after)
+    if far > LONE * gap:
         return (
-            f"{100 * lone:.0f} % of the gap stays in lone samples, far off from the "
-            "others, which no effect of the vocabulary does"
+            f"{100 * lone:.0f} % of what is left stands in lone samples, far off "
+            "from the others, which no effect of the vocabulary does"
         )
-    least = max(UNREPEATED, SOME * left.all_after)
-    if path:
-        least = max(least, PATH * left.all_before)
-    if unrepeated is not None and unrepeated > least:
+    differs = unrepeated is not None and unrepeated > max(
+        UNREPEATED, SOME * left.all_after
+    )
+    if differs and left.all_after > REST * gap:
         return (
             f"{unrepeated:.2g} times the noise power is left that differs from one "
             "period of the same input to the next, which neither a named effect nor a "

@@ -53,7 +53,12 @@ CREEP = gap(named("creep", 0.75), views=[view()])
 NOTHING = gap(verdict="no-gap")
 
 
-ABOUT = {"set": "small", "scale": 0.5, "seeds_used_while_mending": [1, 9]}
+ABOUT = {
+    "set": "small",
+    "scale": 0.5,
+    "transfer_scale": 0.25,
+    "seeds_used_while_mending": [1, 9],
+}
 
 
 def a_contest():
@@ -203,7 +208,7 @@ def test_which_cases_the_score_is_of(tmp_path):
     write_score(own, away, "s", ABOUT, {}, tmp_path)
     assert [tuple(line.values()) for line in table(tmp_path / "contest.csv")] == [
         ("small", "0.5", "3", "10", "30"),
-        ("transfer", "0.5", "1", "40", "40"),
+        ("transfer", "0.25", "1", "40", "40"),
         ("development and tests", "", "", "1", "9"),
     ]
 

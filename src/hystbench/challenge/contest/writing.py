@@ -56,8 +56,8 @@ def write_score(
     solver : str
         Whose score it is.
     about : mapping
-        What summary.json says of the contest: ``set``, ``scale``, its seeds and
-        ``seeds_used_while_mending`` (first and last).
+        What summary.json says of the contest: ``set``, ``scale``, ``transfer_scale``,
+        its seeds and ``seeds_used_while_mending`` (first and last).
     skipped : mapping of str to str
         Solvers that did not enter, and why.
     out : Path
@@ -126,10 +126,13 @@ def _held(
 ) -> list[tuple[Any, ...]]:
     """Say how large each set is and which seeds it has, and those used before."""
     told: list[tuple[Any, ...]] = []
-    for name, judged in ((about["set"], rows), ("transfer", transfer)):
+    for name, scale, judged in (
+        (about["set"], about["scale"], rows),
+        ("transfer", about["transfer_scale"], transfer),
+    ):
         seeds = [row.seed for row in judged]
         if seeds:
-            told.append((name, about["scale"], len(seeds), min(seeds), max(seeds)))
+            told.append((name, scale, len(seeds), min(seeds), max(seeds)))
     mended = about["seeds_used_while_mending"]
     return [*told, ("development and tests", None, None, *mended)]
 
