@@ -94,6 +94,8 @@ GAP = {
         "noise": 0.0911,
         "step_error": 0.0173,
         "floor": 0.0927,
+        "lone_share": 0.0,
+        "unrepeated": 0.0213,
     },
     "ranking": [
         {

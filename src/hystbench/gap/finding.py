@@ -161,6 +161,8 @@ def decide(
     folds = make_folds(records, whole=False)
     box = black_box(start, floor)
     after = compared if state is start else _compared(state.chain, state)
+    lone = lone_share([item.residual for item in after])
+    differs = unrepeated(after, floor.rms)
     explained = None
     if box_matters(left, bool(state.added)):
         rest = box
@@ -173,8 +175,8 @@ def decide(
         explained,
         bool(start.free),
         floor.method == "upper-bound",
-        lone_share([item.residual for item in after]),
-        unrepeated(after, floor.rms),
+        lone,
+        differs,
     )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")
@@ -197,7 +199,7 @@ def decide(
             )
             for item in state.added
         ],
-        "fit": _fit(start, state, floor),
+        "fit": _fit(start, state, floor) | {"lone_share": lone, "unrepeated": differs},
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
         "next_experiment": None if experiment is None else experiment.mapping(),

@@ -100,6 +100,11 @@ FIT = _object(
         "noise": NUMBER,
         "step_error": NUMBER,
         "floor": NUMBER,
+        # Share of the power of what is left that stands in lone samples; and how much
+        # of it differs between periods of the same input, above the noise's power and
+        # in units of that. Null where no record repeats.
+        "lone_share": NUMBER,
+        "unrepeated": OPTIONAL,
     }
 )
 

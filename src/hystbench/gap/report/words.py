@@ -34,7 +34,7 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
         effects=listed(names), reason=gap["reason"].rstrip(".")
     )
     if gap["verdict"] == "unnamed" and names:
-        sentence += f" Beside it the simulator lacks {listed(names)}."
+        sentence += f" A part of the gap looks like {listed(names)}."
     return sentence
 
 
