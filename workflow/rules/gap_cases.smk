@@ -7,9 +7,17 @@ def of_case(key):
 
 
 def model_of_case(wildcards):
-    """The model file of a case; a base that is identified has none."""
+    """The model file of a case, or the module of a function that lies here.
+
+    A base that is identified has none.
+    """
     model = GAP_CASES[wildcards.case]["model"]
-    return [model] if model.endswith((".yaml", ".yml")) else []
+    if model.endswith((".yaml", ".yml")):
+        return [model]
+    dotted, function, _ = model.partition(":")
+    place = Path(*dotted.split("."))
+    sources = [place.with_suffix(".py"), place / "__init__.py"]
+    return [str(path) for path in sources if function and path.is_file()]
 
 
 def limits_of_case(wildcards):
