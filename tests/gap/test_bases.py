@@ -89,7 +89,7 @@ class TestLinear:
         hold=st.sampled_from(["zero-order", "linear"]),
         seed=st.integers(0, 1000),
     )
-    @settings(max_examples=10)
+    @settings(max_examples=6)
     def test_a_lag_is_found_whatever_the_hold(self, tau, gain, hold, seed):
         # The exact answer of a lag to a staircase and to straight lines.
         dt, count = 0.001, 2000
