@@ -232,6 +232,11 @@ class AdaptiveFilter(ABC):
     def bound(self, x: ArrayLike) -> Bound:
         """Bound on the step size for an input, Eq. 19.
 
+        The correlation matrix and its eigenvalues are BLAS's and LAPACK's work. Their
+        last bits may depend on the library and on its threads: for the same bytes
+        on any number of processors, set ``OPENBLAS_NUM_THREADS=1`` before NumPy is
+        imported, as the command ``hystbench`` does.
+
         Parameters
         ----------
         x : array_like, shape (n,)
