@@ -394,8 +394,8 @@ def run_together(
     if not filters:
         raise InputError("filters: none given, at least one expected")
     first = filters[0]
-    for number, item in enumerate(filters):
-        _refuse_unlike(first, item, number)
+    if len(filters) > 1:
+        _refuse_unlike(filters)
     x, _ = _finite("x", x)
     d, largest = _finite("d", d)
     if len(x) != len(d):
@@ -456,14 +456,16 @@ def _hashed(value: object) -> object:
     return value
 
 
-def _refuse_unlike(first: AdaptiveFilter, item: AdaptiveFilter, number: int) -> None:
-    one, other = but_step_size(first), but_step_size(item)
-    if one != other:
-        keys = (key for key in one | other if one.get(key) != other.get(key))
-        raise InputError(
-            f"filters: number {number} has another {next(keys)} than number 0; "
-            "run together, they may differ in step_size alone"
-        )
+def _refuse_unlike(filters: Sequence[AdaptiveFilter]) -> None:
+    one = but_step_size(filters[0])
+    for number, item in enumerate(filters[1:], 1):
+        other = but_step_size(item)
+        if one != other:
+            keys = (key for key in one | other if one.get(key) != other.get(key))
+            raise InputError(
+                f"filters: number {number} has another {next(keys)} than number 0; "
+                "run together, they may differ in step_size alone"
+            )
 
 
 def _neighbours(going: Sequence[bool]) -> list[slice]:
