@@ -20,7 +20,7 @@ help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
 	@echo "make docs       fill the tables of README.md and docs/ from results/ (after test-slurm)"
-	@echo "make bench      measure kernels and pipeline beside their peers"
+	@echo "make bench      measure kernels and pipeline beside their peers, fill docs/speed.md"
 	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
 	@echo "make clean      remove .venv, .venv-rivals and results"
@@ -70,11 +70,12 @@ docs: $(READY)
 	test -f results/benchmarks/growth.png || $(MAKE) bench
 	$(BIN)/hystbench docs
 
-# Writes results/benchmarks/*.csv; a quiet machine makes the figures worth keeping.
-# One part alone: make bench BENCH=kernels
+# Writes results/benchmarks/*.csv, and docs/speed.md from all of them; a quiet machine
+# makes the figures worth keeping. One part alone: make bench BENCH=kernels
 BENCH ?= all
 bench: $(VENV)/ready-bench
 	CC="$(CC)" $(BIN)/python -m benchmarks $(BENCH)
+	$(if $(filter all,$(BENCH)),$(BIN)/hystbench docs docs/speed.md)
 
 # Installs Slurm and starts its daemons for the time of the test.
 test-slurm: $(VENV)/ready-slurm

@@ -95,18 +95,18 @@ class CReference:
         mu: float,
         thresholds: FloatArray,
         envelope: Envelope | None = None,
+        ahead: bool = False,
     ) -> Adapted:
-        """Backlash, or GPO with an envelope."""
+        """Backlash, or GPO with an envelope; ``ahead`` as for LMS."""
         line, r = self._line(x, 1), thresholds[::-1].copy()
         w, y = np.zeros(self._order + 1), np.empty(len(x))
+        spaces = np.empty_like(line), np.empty_like(line)
+        filtered = *spaces, d, r, 2 * mu, w, y, int(ahead)
         if envelope is None:
-            play = self._library.reference_backlash
-            _call(play, len(x), line, d, r, 2 * mu, w, y)
+            _call(self._library.reference_backlash, len(x), line, *filtered)
         else:
             a = np.array(list(envelope.to_dict().values()))
-            spaces = np.empty_like(line), np.empty_like(line)
-            gpo = self._library.reference_gpo
-            _call(gpo, len(x), line, a, *spaces, d, r, 2 * mu, w, y)
+            _call(self._library.reference_gpo, len(x), line, a, *filtered)
         return Adapted(y, w[::-1])
 
     def volterra(

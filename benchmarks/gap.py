@@ -2,9 +2,10 @@
 
 The cases are the first of the development set of the blind contest: twelve records and
 70,000 samples each. Each measurement runs in a process of its own, so that its peak
-memory is its own; its seconds leave the start of Python and the imports out.
+memory is its own; its seconds leave out the start of Python, the imports and reading
+the records.
 
-How the cost grows is told by one round of naming (:func:`hystbench.gap.name.rank`),
+How the cost grows is told by one round of naming (:func:`hystbench.gap.rank.rank`),
 since more data may take more rounds. Fewer samples are the first part of each record,
 fewer candidates the first of the effects in alphabetical order.
 """

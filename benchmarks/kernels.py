@@ -149,6 +149,9 @@ def plays(name: str, x: FloatArray, d: FloatArray) -> Contest:
             PLAIN: lambda: reference.play_lms(x, d, ORDER, mu, r, envelope),
             "numba": lambda: loops.play_lms(x, d, ORDER, mu, r, envelope),
             **c_builds("", lambda c: c.play_lms(x, d, mu, r, envelope)),
+            **c_builds(
+                ", looked ahead", lambda c: c.play_lms(x, d, mu, r, envelope, True)
+            ),
         },
         repeats=7,
     )

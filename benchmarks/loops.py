@@ -23,17 +23,13 @@ def _lms(line, d, taps, step, w, y):  # type: ignore[no-untyped-def] # noqa: ANN
 
 
 @numba.njit(fastmath=True)
-def _plays(line, left, right, d, r, step, w, y):  # type: ignore[no-untyped-def] # noqa: ANN001, ANN202
+def _plays(low, high, d, r, step, w, y):  # type: ignore[no-untyped-def] # noqa: ANN001, ANN202
     taps = len(r)
     state = np.zeros(taps)
     for k in range(len(d)):
         total = 0.0
         for i in range(taps):
-            move = line[k + 1 + i] - line[k + i]
-            if move > 0:
-                state[i] = max(right[k + 1 + i] - r[i], state[i])
-            elif move < 0:
-                state[i] = min(left[k + 1 + i] + r[i], state[i])
+            state[i] = max(low[k + i] - r[i], min(high[k + i] + r[i], state[i]))
             total += w[i] * state[i]
         y[k] = total
         change = step * (d[k] - total)
@@ -78,8 +74,12 @@ def play_lms(
     line = np.concatenate((np.zeros(order + 1), x))
     left = line if envelope is None else envelope.left(line)
     right = line if envelope is None else envelope.right(line)
+    # Directed once a sample, by a finite bound: fastmath knows no infinity.
+    move, none = np.diff(line), np.finfo(float).max
+    low = np.where(move > 0, right[1:], -none)
+    high = np.where(move < 0, left[1:], none)
     w, y = np.zeros(order + 1), np.empty(len(x))
-    _plays(line, left, right, d, thresholds[::-1].copy(), 2 * mu, w, y)
+    _plays(low, high, d, thresholds[::-1].copy(), 2 * mu, w, y)
     return Adapted(y, w[::-1])
 
 

@@ -1,7 +1,7 @@
 """What was asked of the project's speed, beside what the other parts measured.
 
-A figure whose table or row is not there is listed as not measured. Of several rows that
-a figure speaks of the worst counts.
+A figure whose table or row is not there is listed as not measured. Of several repeats
+of a measurement the median counts, of several rows that a figure speaks of the worst.
 """
 
 from __future__ import annotations
@@ -43,22 +43,27 @@ def reach() -> Iterator[Reached]:
     seconds = table("pipeline.csv")
     for what, limit in NEEDED.items():
         same = [r for r in seconds if r["what"] == what or is_changed(r["what"], what)]
-        yield most(f"{what}: seconds", limit, column(same, "seconds"))
+        found = column(same, "median_seconds")
+        yield most(f"{what}: median seconds", limit, found)
     found = column(table("gap.csv"), "seconds", what="a case")
     middle = [statistics.median(found)] if found else []
-    yield most("a case of the gap workflow: median seconds of computing", 1.0, middle)
+    gap = "a case of the gap workflow, seconds of computing"
+    yield most(f"{gap}: median of the cases", 1.0, middle)
+    yield most(f"{gap}: worst of the cases", 1.0, found)
 
 
 def kernels(rows: Rows) -> Iterator[Reached]:
     """Ratios to the peers, to NumPy loops and to C."""
     for samples in (20_000, 1_000_000):
         for peer in PEERS:
-            found = column(rows, "ratio", kernel="LMS", peer=peer, samples=samples)
+            found = column(
+                rows, "median_ratio", kernel="LMS", peer=peer, samples=samples
+            )
             yield least(f"LMS, {samples:,} samples: times {peer}", 150, found)
     for kernel in ("gpo", "volterra"):
-        found = column(rows, "ratio", kernel=kernel, peer="NumPy loop")
+        found = column(rows, "median_ratio", kernel=kernel, peer="NumPy loop")
         yield least(f"{kernel}: times a NumPy loop", 100, found)
-    found = column(rows, "ratio", kernel="volterra", peer="PyDaptiveFiltering")
+    found = column(rows, "median_ratio", kernel="volterra", peer="PyDaptiveFiltering")
     yield least("volterra: times PyDaptiveFiltering", 1000, found)
     allowed = [
         row
@@ -66,7 +71,7 @@ def kernels(rows: Rows) -> Iterator[Reached]:
         if row["peer"].startswith("C,") and "-ffast-math" not in row["peer"]
     ]
     for kernel, samples in KERNELS:
-        found = column(allowed, "ratio", kernel=kernel, samples=samples)
+        found = column(allowed, "median_ratio", kernel=kernel, samples=samples)
         # its least ratio is that of the fastest
         over = [1 / min(found)] if found else []
         yield most(f"{kernel}, {samples:,} samples: time over the best C", 1.3, over)

@@ -5,6 +5,7 @@
  * Lines hold TAPS - 1 (lms, volterra) or TAPS (plays) zeros before the first sample;
  * weights and operators run from the oldest tap to the newest.
  */
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -44,21 +45,32 @@ void reference_lms_ahead(index_t n, const double *restrict line,
     for (int i = 0; i < TAPS; i++) w[i] += change * last[i];
 }
 
-/* Plays along the line; left and right are the envelopes of the line. */
-static inline void plays(index_t n, const double *restrict line,
-                         const double *restrict left, const double *restrict right,
-                         const double *restrict d, const double *restrict r,
-                         double step, double *restrict w, double *restrict y)
+/* Direct the envelopes of the line, once a sample: where it does not rise nothing pushes
+ * up, where it does not fall nothing down.  A finite bound, since -ffast-math knows no
+ * infinity. */
+static inline void direct(index_t n, const double *restrict line, double *restrict low,
+                          double *restrict high)
+{
+    for (index_t k = 1; k < n + TAPS; k++) {
+        const double move = line[k] - line[k - 1];
+        low[k] = move > 0 ? low[k] : -DBL_MAX;
+        high[k] = move < 0 ? high[k] : DBL_MAX;
+    }
+}
+
+/* Plays along the line of directed envelopes. */
+static inline void plays(index_t n, const double *restrict low,
+                         const double *restrict high, const double *restrict d,
+                         const double *restrict r, double step, double *restrict w,
+                         double *restrict y)
 {
     double state[TAPS] = {0};
     for (index_t k = 0; k < n; k++) {
         double sum = 0;
         for (int i = 0; i < TAPS; i++) {
-            const double move = line[k + 1 + i] - line[k + i];
-            const double low = right[k + 1 + i] - r[i], high = left[k + 1 + i] + r[i];
-            const double up = low > state[i] ? low : state[i];
-            const double down = high < state[i] ? high : state[i];
-            state[i] = move > 0 ? up : move < 0 ? down : state[i];
+            const double least = low[k + 1 + i] - r[i], most = high[k + 1 + i] + r[i];
+            const double under = most < state[i] ? most : state[i];
+            state[i] = least > under ? least : under;
             sum += w[i] * state[i];
         }
         const double change = step * (d[k] - sum);
@@ -67,22 +79,51 @@ static inline void plays(index_t n, const double *restrict line,
     }
 }
 
-void reference_backlash(index_t n, const double *line, const double *d, const double *r,
-                        double step, double *w, double *y)
+/* The same with the output looked ahead by one step, as for LMS. */
+static inline void plays_ahead(index_t n, const double *restrict low,
+                               const double *restrict high, const double *restrict d,
+                               const double *restrict r, double step,
+                               double *restrict w, double *restrict y)
 {
-    plays(n, line, line, line, d, r, step, w, y);
+    double state[TAPS] = {0}, change = 0;
+    for (index_t k = 0; k < n; k++) {
+        double before = 0, overlap = 0;
+        for (int i = 0; i < TAPS; i++) {
+            const double least = low[k + 1 + i] - r[i], most = high[k + 1 + i] + r[i];
+            const double last = state[i], under = most < last ? most : last;
+            const double now = least > under ? least : under;
+            before += w[i] * now;
+            overlap += last * now;
+            w[i] += change * last;
+            state[i] = now;
+        }
+        y[k] = before + change * overlap;
+        change = step * (d[k] - y[k]);
+    }
+    for (int i = 0; i < TAPS; i++) w[i] += change * state[i];
 }
 
-/* a: the eight parameters of Eqs. 5 and 6; left and right: space for n + TAPS. */
+/* low and high: space for n + TAPS. */
+void reference_backlash(index_t n, const double *restrict line, double *restrict low,
+                        double *restrict high, const double *d, const double *r,
+                        double step, double *w, double *y, index_t ahead)
+{
+    for (index_t k = 0; k < n + TAPS; k++) low[k] = high[k] = line[k];
+    direct(n, line, low, high);
+    (ahead ? plays_ahead : plays)(n, low, high, d, r, step, w, y);
+}
+
+/* a: the eight parameters of Eqs. 5 and 6; low and high: space for n + TAPS. */
 void reference_gpo(index_t n, const double *restrict line, const double *restrict a,
-                   double *restrict left, double *restrict right, const double *d,
-                   const double *r, double step, double *w, double *y)
+                   double *restrict low, double *restrict high, const double *d,
+                   const double *r, double step, double *w, double *y, index_t ahead)
 {
     for (index_t k = 0; k < n + TAPS; k++) {
-        left[k] = a[0] * tanh(a[1] * line[k] + a[2]) + a[3];
-        right[k] = a[4] * tanh(a[5] * line[k] + a[6]) + a[7];
+        high[k] = a[0] * tanh(a[1] * line[k] + a[2]) + a[3];
+        low[k] = a[4] * tanh(a[5] * line[k] + a[6]) + a[7];
     }
-    plays(n, line, left, right, d, r, step, w, y);
+    direct(n, line, low, high);
+    (ahead ? plays_ahead : plays)(n, low, high, d, r, step, w, y);
 }
 
 /* All TAPS + TAPS^2 weights: predict, then correct. */

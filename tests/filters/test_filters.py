@@ -1,14 +1,18 @@
 """Every filter against the paper's equations written out, and what all must keep."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
+from hystbench import kernels
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
-from hystbench.filters import FILTERS, AdaptiveFilter, run_many
-from hystbench.filters.base import CHUNK
+from hystbench.filters import FILTERS, AdaptiveFilter, many, run_many
+from hystbench.filters.base import CHUNK, run_together
+from hystbench.filters.delayed import DelayedFilter
+from hystbench.filters.gpo import GPOFilter
+from hystbench.record import FloatArray
 
 OPTIONS = {
     "delayed": [{}],
@@ -438,6 +442,82 @@ def test_step_sizes_together_follow_the_equations(signals):
             y, w = plain_lms(h, d, each.step_size)
             near(result.output, y)
             near(result.weights, w)
+
+
+def test_what_cannot_be_run_together_is_refused(signals):
+    gpo = stable(("gpo", {"amplitude": 1.0}), 3, signals[0], 0.1)
+    other_envelope = replace(gpo.envelope, a3=gpo.envelope.a3 + 0.1)
+    for other, key in (
+        (replace(gpo, order=4), "order"),
+        (replace(gpo, amplitude=0.5), "amplitude"),
+        (replace(gpo, envelope=other_envelope), "envelope"),
+        (replace(gpo, normalized=True), "normalized"),
+        (DelayedFilter(order=3, step_size=0.1), "filter"),
+    ):
+        with pytest.raises(InputError, match=f"number 1 has another {key} than"):
+            run_together([gpo, other], *signals)
+    with pytest.raises(InputError, match="none given"):
+        run_together([], *signals)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_filters_built_apart_are_run_together(signals, workers, monkeypatch):
+    asked = []
+
+    def noted(filters, *rest):
+        asked.append([item.step_size for item in filters])
+        return run_together(filters, *rest)
+
+    monkeypatch.setattr(many, "run_together", noted)
+    steps = [1e-3 * (7 * k % 16 + 1) for k in range(16)]
+    built = [
+        GPOFilter(
+            order=3,
+            step_size=step,
+            amplitude=float("0.7"),  # a number of its own
+            envelope=replace(PUBLISHED_ENVELOPE),
+        )
+        for step in steps
+    ]
+    run_many([(each, *signals) for each in built], workers)
+    assert sorted(step for batch in asked for step in batch) == sorted(steps)
+    assert len(asked) == (1 if workers == 1 else 8)  # several for each of two threads
+    assert all(batch == sorted(batch) for batch in asked)
+
+
+def test_a_setting_that_is_an_array_counts_by_identity(signals):
+    @dataclass(frozen=True, kw_only=True)
+    class Shaped(DelayedFilter):
+        shape: FloatArray
+
+    x, d = signals
+    shape = np.ones(3)
+    one = Shaped(order=2, step_size=1e-3, shape=shape)
+    run_together([one, replace(one, step_size=2e-3)], x, d)
+    with pytest.raises(InputError, match="another shape"):
+        run_together([one, replace(one, shape=shape.copy())], x, d)
+
+
+def test_those_that_go_on_stay_together(signals, monkeypatch):
+    # those with the largest step sizes diverge at once; the others share their calls
+    x = np.tile(signals[0], 1 + 3 * CHUNK // len(signals[0]))[: 3 * CHUNK]
+    first = stable(("gpo", {"amplitude": 1.0}), 6, x, 0.1)
+    steps = [replace(first, step_size=first.step_size * f) for f in (0.1, 1, 0.5)]
+    wild = [replace(first, step_size=1e9 * k) for k in (1, 2)]
+    counts, plain = [], kernels.call
+
+    def noted(name, *arguments):
+        if name == "hb_lms_play":
+            counts.append(arguments[0])
+        return plain(name, *arguments)
+
+    monkeypatch.setattr(kernels, "call", noted)
+    listed = [wild[0], *steps, wild[1]]
+    d = x + x**2
+    found = run_many([(each, x, d) for each in listed], 1)
+    told = [result.diverged_at is None for result in found]
+    assert told == [False, True, True, True, False]
+    assert counts == [5, 3, 3]
 
 
 # --- the registry and what is refused

@@ -1,5 +1,7 @@
 """Run every kernel and print digests of what it wrote: every_kernel.py PROCESSORS.
 
+Also the bounds of Eq. 19, which are BLAS's work.
+
 PROCESSORS is how many of those allowed are used, at most. It is set before NumPy is
 imported, as for a process that is confined from the start.
 """
@@ -23,6 +25,12 @@ from hystbench.filters import FILTERS, run_many  # noqa: E402
 
 DT = 1e-4
 SAMPLES = 33_000  # more than the filters take at a time
+MORE = {
+    "delayed": {},
+    "backlash": {"amplitude": 1.0},
+    "gpo": {"amplitude": 1.0},
+    "volterra": {"second_order_step": 1e-4},
+}
 
 
 def signals():
@@ -36,16 +44,10 @@ def signals():
 
 def filters(x, d):
     """Outputs, errors and final weights of every filter, plain and normalized."""
-    more = {
-        "delayed": {},
-        "backlash": {"amplitude": 1.0},
-        "gpo": {"amplitude": 1.0},
-        "volterra": {"second_order_step": 1e-4},
-    }
-    assert set(more) == set(FILTERS)
+    assert set(MORE) == set(FILTERS)
     jobs = [
         (FILTERS[name](order=order, step_size=1e-3, normalized=n, **options), x, d)
-        for name, options in more.items()
+        for name, options in MORE.items()
         for order in (3, 30, 70)
         for n in (False, True)
     ]
@@ -53,13 +55,29 @@ def filters(x, d):
         assert result.diverged_at is None
         arrays = (result.output, result.error, result.weights)
         yield f"{adaptive.name} {adaptive.order} {adaptive.normalized}", arrays
+    # one call for several step sizes
+    together = [
+        (FILTERS[name](order=30, step_size=1.1e-4 * k, **MORE[name]), x, d)
+        for name in ("gpo", "backlash")
+        for k in range(1, 18)
+    ]
+    for (adaptive, _, _), result in zip(together, run_many(together), strict=True):
+        arrays = (result.output, result.error, result.weights)
+        yield f"{adaptive.name}, step size {adaptive.step_size}", arrays
     for name in ("gpo", "backlash"):
-        adaptive = FILTERS[name](order=30, step_size=1e-3, **more[name])
+        adaptive = FILTERS[name](order=30, step_size=1e-3, **MORE[name])
         line = np.concatenate((np.zeros(adaptive.history), x[:3000]))
         yield (
             f"regressor of {name}",
             adaptive.regressor(line, np.zeros(adaptive.taps)),
         )
+
+
+def bounds(x):
+    """Bounds of Eq. 19 of the filters."""
+    for name, options in MORE.items():
+        bound = FILTERS[name](order=30, step_size=1e-3, **options).bound(x)
+        yield name, [float(value).hex() for value in vars(bound).values()]
 
 
 def models(x):
@@ -117,7 +135,7 @@ def main():
         digests[name] = hashlib.sha256(bytes_of_all).hexdigest()
     processors = len(os.sched_getaffinity(0))
     told = {"called": sorted(called), "digests": digests, "processors": processors}
-    print(json.dumps(told))
+    print(json.dumps(told | {"bounds": dict(bounds(x))}))
 
 
 if __name__ == "__main__":

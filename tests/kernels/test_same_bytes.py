@@ -9,13 +9,15 @@ from pathlib import Path
 import pytest
 
 from hystbench import kernels
+from hystbench.filters import FILTERS
 
 SCRIPT = Path(__file__).with_name("every_kernel.py")
 
 
-def ran(processors, hash_seed):
+def ran(processors, hash_seed, **more):
     words = [sys.executable, str(SCRIPT), str(processors)]
-    environment = {**os.environ, "PYTHONHASHSEED": hash_seed}
+    free = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}
+    environment = {**free, "PYTHONHASHSEED": hash_seed, **more}
     done = subprocess.run(
         words, capture_output=True, text=True, check=False, env=environment
     )
@@ -25,12 +27,14 @@ def ran(processors, hash_seed):
 
 @pytest.fixture(scope="module")
 def runs():
-    return [ran(1, "1"), ran(2, "2"), ran(2, "3")]
+    """On one processor; on two; on two with BLAS set as the command sets it."""
+    if len(os.sched_getaffinity(0)) < 2:
+        pytest.skip("one processor: two have nothing to differ in")
+    return [ran(1, "1"), ran(2, "2"), ran(2, "3", OPENBLAS_NUM_THREADS="1")]
 
 
 def test_the_processes_were_confined(runs):
-    allowed = len(os.sched_getaffinity(0))
-    assert [run["processors"] for run in runs] == [1, min(2, allowed), min(2, allowed)]
+    assert [run["processors"] for run in runs] == [1, 2, 2]
 
 
 def test_every_kernel_was_run(runs):
@@ -43,3 +47,10 @@ def test_every_kernel_wrote_the_same_bytes(runs):
     assert len(set(one["digests"].values())) == len(one["digests"])
     for other in others:
         assert other["digests"] == one["digests"]
+
+
+def test_bounds_are_the_same_bytes_with_one_thread_of_blas(runs):
+    # on one processor BLAS has one thread of itself
+    one, _, other = runs
+    assert set(one["bounds"]) == set(FILTERS)
+    assert other["bounds"] == one["bounds"]

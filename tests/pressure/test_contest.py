@@ -1,12 +1,15 @@
 """The contest: grids, choices and ranks against plain counting."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from hystbench import kernels
 from hystbench.adaptive import make_filter
 from hystbench.errors import InputError
+from hystbench.metrics import mean_square_error
 from hystbench.pressure.contest import (
     Entry,
     Grid,
@@ -103,6 +106,27 @@ def test_each_step_size_of_volterra_has_the_whole_grid(settings, records):
     found = run_grid(adaptive, "LMS", one, CALIBRATED[:1], [0.1, 0.2, 0.3], 0.01)
     assert len(set(found.fractions)) == 9
     assert found.mse.shape == (9, 1)
+
+
+def test_step_sizes_of_a_record_are_one_call(settings, records, monkeypatch):
+    job = settings.filter_job("backlash")
+    adaptive = make_filter("backlash", job, records[SIGNALS[0]])
+    counts, plain = [], kernels.call
+
+    def noted(name, *arguments):
+        if name == "hb_lms_play":
+            counts.append(arguments[0])
+        return plain(name, *arguments)
+
+    monkeypatch.setattr(kernels, "call", noted)
+    fractions = [0.05 * number for number in range(1, 8)]
+    found = run_grid(adaptive, "LMS", records, CALIBRATED, fractions, 0.01)
+    assert counts == [len(fractions)] * len(records)
+    for row, steps in enumerate(found.steps):
+        alone = replace(adaptive, step_size=steps["mu"])
+        for column, name in enumerate(found.signals):
+            error = alone.run(records[name].u, records[name].y).error
+            assert found.mse[row, column] == mean_square_error(error)
 
 
 def test_held_out_signals_never_choose_their_own_step(settings, twin_file):

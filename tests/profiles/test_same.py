@@ -64,6 +64,25 @@ def test_another_result_is_told(folders, name, old, new):
     assert (done.returncode, done.stderr) == (1, f"{name}: not the same\n")
 
 
+def test_a_key_that_is_no_time_is_compared(folders):
+    for folder, duration in zip(folders, (1, 2), strict=True):
+        (folder / "plan.json").write_text(json.dumps({"seconds_asked": duration}))
+        (folder / "limits.csv").write_text(
+            f"figure,reached\nseconds_limit,{duration}\n"
+        )
+    done = compared(*folders)
+    told = "limits.csv: not the same\nplan.json: not the same\n"
+    assert (done.returncode, done.stderr) == (1, told)
+
+
+def test_two_files_are_compared(folders):
+    one, other = (folder / "cases.csv" for folder in folders)
+    edit(folders[1], "cases.csv", "1.5", "2.5")
+    assert compared(one, other).returncode == 0
+    edit(folders[1], "cases.csv", "creep", "drift")
+    assert compared(one, other).returncode == 1
+
+
 def test_a_file_that_one_lacks_is_told(folders):
     (folders[0] / "cases.csv").unlink()
     done = compared(*folders)

@@ -22,9 +22,11 @@ def programs(tmp_path):
     return folder
 
 
-def as_user(programs, number):
-    path = programs / "id"
-    path.write_text(f"#!{BASH}\necho {number}\n")
+def tells(programs, name, answer):
+    """Put a program in the folder that says always the same."""
+    path = programs / name
+    path.unlink(missing_ok=True)
+    path.write_text(f"#!{BASH}\necho {answer}\n")
     path.chmod(0o755)
 
 
@@ -37,21 +39,29 @@ def started(programs):
 
 
 def test_another_user_than_root_is_refused_in_one_line(programs):
-    as_user(programs, 1000)
+    tells(programs, "id", 1000)
     done = started(programs)
     told = "make test-slurm: it installs and starts Slurm, so it must run as root\n"
     assert (done.returncode, done.stdout, done.stderr) == (1, "", told)
 
 
-def test_neither_slurm_nor_apt_is_refused_in_one_line(programs):
+@pytest.mark.parametrize(
+    ("free_mb", "told"),
+    [
+        (
+            20_000,
+            "slurmctld was not found, and neither was apt-get to install it (Debian)",
+        ),
+        (900, "900 MB of memory to spare, at least 1000 expected"),
+    ],
+)
+def test_no_slurm_no_apt_and_no_memory_are_refused_in_one_line(programs, free_mb, told):
     if Path("/etc/slurm/slurm.conf").exists():
         pytest.skip("this machine has a Slurm of its own, which is refused first")
-    as_user(programs, 0)
+    tells(programs, "id", 0)
+    tells(programs, "awk", free_mb)  # in place of this machine's memory
     done = started(programs)
-    told = (
-        "make test-slurm: slurmctld was not found, and neither was apt-get to install "
-        "it (Debian)\n"
-    )
+    told = f"make test-slurm: {told}\n"
     assert (done.returncode, done.stdout, done.stderr) == (1, "", told)
 
 
@@ -70,9 +80,7 @@ def test_the_node_is_as_large_as_the_machine(
     meminfo.write_text(
         f"MemTotal: 99999999 kB\nMemAvailable: {free_mb * 1024} kB\nBuffers: 1 kB\n"
     )
-    (programs / "nproc").unlink()
-    (programs / "nproc").write_text(f"#!{BASH}\necho {processors}\n")
-    (programs / "nproc").chmod(0o755)
+    tells(programs, "nproc", processors)
     script = f'. "{SCRIPTS}/slurm.sh"; node_size 1000 "{meminfo}"'
     done = subprocess.run(
         [BASH, "-c", script],
@@ -84,8 +92,9 @@ def test_the_node_is_as_large_as_the_machine(
     assert done.stdout == size + "\n"
 
 
-def test_the_node_has_no_more_than_this_process_may_use():
-    script = f'. "{SCRIPTS}/slurm.sh"; node_size 1 /proc/meminfo'
+def test_the_node_has_no_more_than_this_process_may_use(tmp_path):
+    (tmp_path / "meminfo").write_text("MemAvailable: 20000000 kB\n")
+    script = f'. "{SCRIPTS}/slurm.sh"; node_size 1 "{tmp_path}/meminfo"'
     one = sorted(os.sched_getaffinity(0))[0]
     done = subprocess.run(
         [BASH, "-c", script],

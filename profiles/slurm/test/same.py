@@ -1,7 +1,7 @@
-"""Whether two folders hold the same results: same.py ONE OTHER.
+"""Whether two folders, or two files, hold the same results: same.py ONE OTHER.
 
 Every file but logs must be there in both and have the same bytes. Of JSON and CSV the
-times a solver took are left out: keys, columns and rows whose name has `seconds` in it.
+times that a solver took are left out: the keys, columns and figures of TIMES.
 """
 
 import csv
@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-TIME = "seconds"
+TIMES = {"seconds", "cpu_seconds", "seconds_per_case", "clock_seconds_per_case"}
 
 
 def told(path: Path) -> Any:
@@ -26,7 +26,8 @@ def told(path: Path) -> Any:
 def timeless(content: Any) -> Any:
     """Leave out what is a time, at any depth."""
     if isinstance(content, dict):
-        return {key: timeless(each) for key, each in content.items() if TIME not in key}
+        kept = content.keys() - TIMES
+        return {key: timeless(each) for key, each in content.items() if key in kept}
     if isinstance(content, list):
         return [timeless(each) for each in content if not of_time(each)]
     return content
@@ -34,11 +35,13 @@ def timeless(content: Any) -> Any:
 
 def of_time(content: Any) -> bool:
     """Tell whether a row is a figure that is a time."""
-    return isinstance(content, dict) and TIME in str(content.get("figure", ""))
+    return isinstance(content, dict) and content.get("figure") in TIMES
 
 
 def files(folder: Path) -> set[Path]:
-    """Files of a folder, by their place in it, without logs."""
+    """Files of a folder, by their place in it, without logs; or the one file."""
+    if folder.is_file():
+        return {Path()}
     found = (file.relative_to(folder) for file in folder.rglob("*") if file.is_file())
     return {file for file in found if "logs" not in file.parts}
 

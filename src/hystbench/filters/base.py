@@ -232,6 +232,11 @@ class AdaptiveFilter(ABC):
     def bound(self, x: ArrayLike) -> Bound:
         """Bound on the step size for an input, Eq. 19.
 
+        The correlation matrix and its eigenvalues are BLAS's and LAPACK's work. Their
+        last bits may depend on the library and on its threads: for the same bytes
+        on any number of processors, set ``OPENBLAS_NUM_THREADS=1`` before NumPy is
+        imported, as the command ``hystbench`` does.
+
         Parameters
         ----------
         x : array_like, shape (n,)
@@ -280,7 +285,7 @@ class AdaptiveFilter(ABC):
     ) -> list[tuple[int, End]]:
         """Run the LMS loops of filters that differ in step size alone over a chunk.
 
-        Where they can share something, a filter has its own way to do this.
+        One after the other, where a filter has no kernel that takes them all.
 
         Parameters
         ----------
@@ -308,8 +313,8 @@ class AdaptiveFilter(ABC):
     ) -> tuple[int, End]:
         """Run the LMS loop over a chunk, writing output and error.
 
-        This one works with any regressor. The filters here have their own, which
-        make the regressor inside the loop.
+        This works with any regressor. A filter whose kernel makes the regressor
+        inside the loop has its own, or its own :meth:`_adapt_all`.
 
         Returns
         -------
@@ -365,6 +370,9 @@ def run_together(
 ) -> list[Result]:
     """Run filters that differ in step size alone, each as it would run by itself.
 
+    Filters of play operators go through one call of the kernel a chunk; once some
+    have diverged, neighbours that have not stay together.
+
     Parameters
     ----------
     filters : sequence of AdaptiveFilter
@@ -376,8 +384,18 @@ def run_together(
     -------
     list of Result
         Their outputs and errors are rows of one array each.
+
+    Raises
+    ------
+    InputError
+        If there is no filter, if they differ in more than the step size, and as for
+        :meth:`AdaptiveFilter.run`.
     """
+    if not filters:
+        raise InputError("filters: none given, at least one expected")
     first = filters[0]
+    if len(filters) > 1:
+        _refuse_unlike(filters)
     x, _ = _finite("x", x)
     d, largest = _finite("d", d)
     if len(x) != len(d):
@@ -396,12 +414,7 @@ def run_together(
         part = slice(start, start + CHUNK)
         line = np.concatenate((past, x[part]))
         past = line[-first.history :].copy()
-        going = [k for k in range(count) if done[k] == start]
-        # All at once for as long as none has diverged, then one by one.
-        rows = (
-            [slice(None)] if len(going) == count else [slice(k, k + 1) for k in going]
-        )
-        for row in rows:
+        for row in _neighbours([samples == start for samples in done]):
             own = range(count)[row]
             signals = (output[row], error[row], start)
             found = first._adapt_all(
@@ -424,6 +437,42 @@ def run_together(
             Result(output[k, used], error[k, used], weights, diverged_at, end_state)
         )
     return results
+
+
+def but_step_size(item: AdaptiveFilter) -> dict[str, object]:
+    """Give what must be the same of filters that are run together.
+
+    Settings count by value; those without a hash, as arrays, by identity.
+    """
+    values = {key: value for key, value in vars(item).items() if key != "step_size"}
+    return {"filter": type(item)} | {key: _hashed(v) for key, v in values.items()}
+
+
+def _hashed(value: object) -> object:
+    try:
+        hash(value)
+    except TypeError:
+        return id(value)
+    return value
+
+
+def _refuse_unlike(filters: Sequence[AdaptiveFilter]) -> None:
+    one = but_step_size(filters[0])
+    for number, item in enumerate(filters[1:], 1):
+        other = but_step_size(item)
+        if one != other:
+            keys = (key for key in one | other if one.get(key) != other.get(key))
+            raise InputError(
+                f"filters: number {number} has another {next(keys)} than number 0; "
+                "run together, they may differ in step_size alone"
+            )
+
+
+def _neighbours(going: Sequence[bool]) -> list[slice]:
+    """Give the runs of neighbours that are all going."""
+    bounded = [False, *going, False]
+    edges = [k for k in range(len(going) + 1) if bounded[k] != bounded[k + 1]]
+    return [slice(*pair) for pair in zip(edges[::2], edges[1::2], strict=True)]
 
 
 def positive(name: str, value: float) -> None:

@@ -51,7 +51,10 @@ class Bound:
 
 
 def eigenvalue_bound(correlation: FloatArray, size: int) -> Bound:
-    """Eigenvalues of R; those beyond the matrix given, up to ``size``, are zero."""
+    """Eigenvalues of R; those beyond the matrix given, up to ``size``, are zero.
+
+    They are LAPACK's: their last bits may depend on the number of its threads.
+    """
     values = np.linalg.eigvalsh(correlation)
     largest = float(values[-1])
     nonzero = values[values > size * np.finfo(float).eps * largest]

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from numpy.typing import ArrayLike
 
-from hystbench.filters.base import AdaptiveFilter, Result, run_together
+from hystbench.filters.base import AdaptiveFilter, Result, but_step_size, run_together
 
 Job = tuple[AdaptiveFilter, ArrayLike, ArrayLike]
 
@@ -16,7 +16,7 @@ MOST = 32
 """Filters that are run together: their results share memory."""
 
 SHARES = 4
-"""Batches for each thread, where there are as many filters."""
+"""Batches for each thread, where there are several threads and as many filters."""
 
 
 def run_many(
@@ -27,9 +27,9 @@ def run_many(
     """Run many filters at once: step sizes, orders, seeds.
 
     Each job gives what it would give alone, so the results do not depend on
-    ``workers``. Jobs may share their arrays. Filters that differ in step size alone,
-    made of one by :func:`dataclasses.replace`, are run together where their arrays are
-    the very same: what comes before the weights is then the same.
+    ``workers``. Jobs may share their arrays. Filters that differ in step size alone
+    are run together where x and d are the very same arrays: what comes before the
+    weights is then the same.
 
     Parameters
     ----------
@@ -67,14 +67,18 @@ def _batches(jobs: Sequence[Job], workers: int) -> list[list[int]]:
 
     Each time threads change places at the interpreter's lock costs as much as a good
     part of a short run, so a batch should be large; but all threads should end at the
-    same time, so there should be several for each.
+    same time, so there should be several for each. Filters in a batch stand in the
+    order of their step sizes: those that diverge are then neighbours, and so are
+    those that :func:`run_together` goes on with.
     """
     alike: dict[object, list[int]] = {}
     for number, (item, x, d) in enumerate(jobs):
-        same = tuple(id(v) for key, v in vars(item).items() if key != "step_size")
-        alike.setdefault((type(item), same, id(x), id(d)), []).append(number)
+        same = tuple(but_step_size(item).items())
+        alike.setdefault((same, id(x), id(d)), []).append(number)
+    parts = SHARES * workers if workers > 1 else 1
     batches = []
     for numbers in alike.values():
-        size = min(MOST, -(-len(numbers) // (SHARES * workers)))
+        numbers.sort(key=lambda number: jobs[number][0].step_size)
+        size = min(MOST, -(-len(numbers) // parts))
         batches += [numbers[k : k + size] for k in range(0, len(numbers), size)]
     return sorted(batches)

@@ -93,7 +93,8 @@ class VolterraFilter(AdaptiveFilter):
         """Bound on the step sizes for an input, Eq. 19, as a whole and by part.
 
         The two equal columns of a product make one of sqrt(2) times its size and
-        one of zeros, with the same eigenvalues: so half the matrix will do.
+        one of zeros, with the same eigenvalues: so half the matrix will do. As for
+        the last bits, see :meth:`hystbench.filters.base.AdaptiveFilter.bound`.
         """
         rows, columns = np.triu_indices(self.taps)
         scale = np.where(rows == columns, 1.0, np.sqrt(2.0))

@@ -172,20 +172,26 @@ def run_grid(
         for parts in grid
     ]
     own = step_names(adaptive.name)
-    jobs = [
-        (_with_steps(adaptive, {own[name]: mu for name, mu in step.items()}), record)
+    filters = [
+        _with_steps(adaptive, {own[name]: mu for name, mu in step.items()})
         for step in steps
-        for record in records.values()
     ]
-    mse = np.array(mean_square_errors(jobs)).reshape(len(steps), len(records))
+    columns = [mean_square_errors(filters, record) for record in records.values()]
+    # A row lies in one piece, by which the order of its sum in the mean is fixed.
+    mse = np.ascontiguousarray(np.array(columns).T)
     return Grid(grid, steps, list(records), mse)
 
 
-def mean_square_errors(jobs: Sequence[tuple[AdaptiveFilter, Record]]) -> list[float]:
-    """Run filters on records; infinite where one diverged."""
+def mean_square_errors(
+    filters: Sequence[AdaptiveFilter], record: Record
+) -> list[float]:
+    """Run filters on a record; infinite where one diverged.
+
+    All of one record: filters that differ in step size alone are then run together.
+    """
     errors = []
-    for start in range(0, len(jobs), BATCH):
-        batch = ((each, r.u, r.y) for each, r in jobs[start : start + BATCH])
+    for start in range(0, len(filters), BATCH):
+        batch = ((f, record.u, record.y) for f in filters[start : start + BATCH])
         for result in run_many(batch, workers=1):
             finite = result.diverged_at is None
             errors.append(mean_square_error(result.error) if finite else math.inf)
