@@ -9,6 +9,7 @@ ends is scored on the whole record.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
@@ -190,7 +191,9 @@ def evolution(slow: Record, limit: float) -> tuple[str, int, float, float, int]:
     def search() -> None:
         bounds = list(zip(LOW, HIGH, strict=True))
         try:
-            differential_evolution(cost, bounds, rng=SEED, polish=False)
+            # Where a population has come together, another one begins.
+            for seed in itertools.count(SEED):
+                differential_evolution(cost, bounds, rng=seed, polish=False)
         except OutOfTimeError:
             print(f"differential evolution: ended after {limit:.0f} s")
 
