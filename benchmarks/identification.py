@@ -181,6 +181,7 @@ def evolution(slow: Record, limit: float) -> tuple[str, int, float, float, int]:
     On the whole record it would see a small part of so many points in that time.
     """
     fit, start = Fit(slow, SEARCH_SAMPLES), perf_counter()
+    begun: list[int] = []
 
     def cost(point: FloatArray) -> float:
         if perf_counter() - start > limit:
@@ -193,10 +194,11 @@ def evolution(slow: Record, limit: float) -> tuple[str, int, float, float, int]:
         try:
             # Where a population has come together, another one begins.
             for seed in itertools.count(SEED):
+                begun.append(seed)
                 differential_evolution(cost, bounds, rng=seed, polish=False)
         except OutOfTimeError:
             print(f"differential evolution: ended after {limit:.0f} s")
 
     seconds = timed(search)
     name = "differential evolution, 39 parameters, thinned as ours"
-    return name, 1, seconds, fit.relative_error(), fit.evaluations
+    return name, len(begun), seconds, fit.relative_error(), fit.evaluations

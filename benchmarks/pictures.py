@@ -70,9 +70,8 @@ def growth(orders: Rows, samples: Rows) -> Figure:
     lines(length, samples, "samples", "seconds")
     length.set(xscale="log", yscale="log", xlabel="samples", ylabel="time (s)")
     lines(memory, samples, "samples", "peak_mib")
-    memory.set(
-        xscale="log", xlabel="samples", ylabel="peak memory (MiB)", ylim=(0, None)
-    )
+    memory.set(xscale="log", xlabel="samples", ylabel="peak memory (MiB)")
+    memory.set_ylim(0, 1.15 * memory.get_ylim()[1])
     cost.legend()
     figure.set_layout_engine("constrained")
     return figure

@@ -10,6 +10,7 @@ import pytest
 
 from hystbench.challenge.contest.plan import chunks, plan
 from hystbench.schema import load_yaml
+from hystbench.settings import read_settings
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = ROOT / "profiles" / "slurm" / "test"
@@ -98,6 +99,8 @@ def test_it_runs_three_signals_and_24_blind_cases_in_four_jobs(tmp_path):
     words = [str(SCRIPTS / "small.py"), str(ROOT / "config.yaml"), str(config)]
     subprocess.run([sys.executable, *words], check=True)
     small = load_yaml(config)
+    # The workflow takes it: no key that it does not know.
+    read_settings(small, ROOT / "workflow" / "schemas" / "config.schema.yaml")
     assert len(small["signals"]) == 3
     blind = small["blind"]
     entries = plan(blind["set"], blind["scale"])
