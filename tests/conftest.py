@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
+from hystbench import kernels
+
 ROOT = Path(__file__).parents[1]
 
 # A kernel's first call or a busy machine must not fail a property. In CI the same
@@ -62,6 +64,21 @@ def write_dataset(tmp_path):
 def csv_text(time, u, y, header="time_s,current_A,displacement_um") -> str:
     rows = [f"{t:.9g},{a:.9g},{b:.9g}" for t, a, b in zip(time, u, y, strict=True)]
     return "\n".join([header, *rows]) + "\n"
+
+
+@pytest.fixture
+def play_counts(monkeypatch):
+    """List how many filters each call of the play operators' LMS kernel runs."""
+    counts: list[int] = []
+    plain = kernels.call
+
+    def noted(name, *arguments):
+        if name == "hb_lms_play":
+            counts.append(arguments[0])
+        return plain(name, *arguments)
+
+    monkeypatch.setattr(kernels, "call", noted)
+    return counts
 
 
 @pytest.fixture

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from hystbench import kernels
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
 from hystbench.filters import FILTERS, AdaptiveFilter, many, run_many
@@ -498,26 +497,18 @@ def test_a_setting_that_is_an_array_counts_by_identity(signals):
         run_together([one, replace(one, shape=shape.copy())], x, d)
 
 
-def test_those_that_go_on_stay_together(signals, monkeypatch):
+def test_those_that_go_on_stay_together(signals, play_counts):
     # those with the largest step sizes diverge at once; the others share their calls
     x = np.tile(signals[0], 1 + 3 * CHUNK // len(signals[0]))[: 3 * CHUNK]
     first = stable(("gpo", {"amplitude": 1.0}), 6, x, 0.1)
     steps = [replace(first, step_size=first.step_size * f) for f in (0.1, 1, 0.5)]
     wild = [replace(first, step_size=1e9 * k) for k in (1, 2)]
-    counts, plain = [], kernels.call
-
-    def noted(name, *arguments):
-        if name == "hb_lms_play":
-            counts.append(arguments[0])
-        return plain(name, *arguments)
-
-    monkeypatch.setattr(kernels, "call", noted)
     listed = [wild[0], *steps, wild[1]]
     d = x + x**2
     found = run_many([(each, x, d) for each in listed], 1)
     told = [result.diverged_at is None for result in found]
     assert told == [False, True, True, True, False]
-    assert counts == [5, 3, 3]
+    assert play_counts == [5, 3, 3]
 
 
 # --- the registry and what is refused

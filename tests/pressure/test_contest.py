@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench import kernels
 from hystbench.adaptive import make_filter
 from hystbench.errors import InputError
 from hystbench.metrics import mean_square_error
@@ -108,20 +107,12 @@ def test_each_step_size_of_volterra_has_the_whole_grid(settings, records):
     assert found.mse.shape == (9, 1)
 
 
-def test_step_sizes_of_a_record_are_one_call(settings, records, monkeypatch):
+def test_step_sizes_of_a_record_are_one_call(settings, records, play_counts):
     job = settings.filter_job("backlash")
     adaptive = make_filter("backlash", job, records[SIGNALS[0]])
-    counts, plain = [], kernels.call
-
-    def noted(name, *arguments):
-        if name == "hb_lms_play":
-            counts.append(arguments[0])
-        return plain(name, *arguments)
-
-    monkeypatch.setattr(kernels, "call", noted)
     fractions = [0.05 * number for number in range(1, 8)]
     found = run_grid(adaptive, "LMS", records, CALIBRATED, fractions, 0.01)
-    assert counts == [len(fractions)] * len(records)
+    assert play_counts == [len(fractions)] * len(records)
     for row, steps in enumerate(found.steps):
         alone = replace(adaptive, step_size=steps["mu"])
         for column, name in enumerate(found.signals):

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hystbench.gap.compared import Compared
+from hystbench.gap.periods import settled
 from hystbench.record import FloatArray
 
 LEAST_PERIODS = 3
@@ -48,7 +49,5 @@ def unrepeated(compared: Sequence[Compared], floor_rms: float) -> float | None:
 
 
 def _spread(residual: FloatArray, period: int) -> float:
-    """Give the variance of a place in the period over all periods but the first."""
-    count = len(residual) // period - 1
-    periods = residual[-count * period :].reshape(count, period)
-    return float(np.mean(np.var(periods, axis=0, ddof=1)))
+    """Give the variance of a place in the period over the settled periods."""
+    return float(np.mean(np.var(settled(residual, period), axis=0, ddof=1)))

@@ -11,6 +11,7 @@ from hystbench.gap.locate.amplitude import amplitude_view
 from hystbench.gap.locate.branch import branch_view
 from hystbench.gap.locate.curves import curves
 from hystbench.gap.locate.delay import delay_view
+from hystbench.gap.locate.distortion import take_distortion
 from hystbench.gap.locate.frequency import frequency_view
 from hystbench.gap.locate.rate import rate_view
 from hystbench.gap.locate.record import record_view
@@ -69,13 +70,14 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
         raise InputError("locate: expected at least one record, got none")
     samples = take_samples(compared, floor)
     spectra = take_spectra(samples)
+    distortion = take_distortion(samples)
     views = (
         delay_view(samples, spectra),
         amplitude_view(samples),
         branch_view(samples),
-        frequency_view(samples, spectra),
+        frequency_view(samples, spectra, distortion),
         slow_time_view(samples),
-        unexplained_view(samples),
+        unexplained_view(samples, distortion),
         rate_view(samples),
         record_view(samples),
     )

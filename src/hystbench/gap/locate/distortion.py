@@ -11,6 +11,7 @@ from scipy import fft, special
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import MATTERS, SIGNIFICANT, chance, percent
+from hystbench.gap.periods import settled
 from hystbench.record import FloatArray
 
 IntArray = NDArray[np.int64]
@@ -190,12 +191,11 @@ def _lines(item: Compared, noise: float) -> Lines | None:
     if not period or len(item.record) < 2 * period:
         return None
     count = len(item.record) // period
-    # The first period holds the way from rest, where there are others to do without.
-    used = count - 1 if count > 2 else count
     excited = _excited(item.record.u[-count * period :].reshape(count, period))
     if not len(excited):
         return None
-    runs = fft.rfft(item.residual[-used * period :].reshape(used, period), axis=1)
+    runs = fft.rfft(settled(item.residual, period), axis=1)
+    used = len(runs)
     mean = runs.mean(axis=0)
     twice = np.full(len(mean), 2.0)
     if period % 2 == 0:

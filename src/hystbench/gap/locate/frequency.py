@@ -10,7 +10,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.compared import Compared
-from hystbench.gap.locate.distortion import take_distortion, told
+from hystbench.gap.locate.distortion import Distortion, told
 from hystbench.gap.locate.regression import (
     Form,
     colour_count,
@@ -29,7 +29,9 @@ DAMPINGS = (0.01, 0.02, 0.05, 0.1, 0.2)
 MODES = 80
 
 
-def frequency_view(samples: Samples, spectra: Spectra) -> View:
+def frequency_view(
+    samples: Samples, spectra: Spectra, distortion: Distortion | None
+) -> View:
     """Fit linear dynamics to residual against simulated output.
 
     The forms are a mode, a first-order lag, diffusion and any gain and phase in a few
@@ -57,7 +59,7 @@ def frequency_view(samples: Samples, spectra: Spectra) -> View:
         sentence=(
             f"{percent(share)} of the gap is linear in the simulated output and looks "
             f"like {kind}; {percent(inside)} of the gap lies between {number(start)} "
-            f"and {number(end)} Hz.{told(take_distortion(samples))}"
+            f"and {number(end)} Hz.{told(distortion)}"
         ),
         saved=form.saved,
     )

@@ -13,6 +13,7 @@ from hystbench.gap.locate.regression import narrowest_bins
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.spectra import HANN_INFLATION
 from hystbench.gap.locate.view import MATTERS, SIGNIFICANT, chance, number, percent
+from hystbench.gap.periods import settled
 from hystbench.record import FloatArray
 
 # Third-octave bands, ten in about a decade, as in acoustics (IEC 61260).
@@ -130,20 +131,18 @@ def _spectra(item: Compared) -> _Spectra:
     n, period = len(item.record), item.record.period_samples
     repeats = period is not None and n >= 2 * period
     size = period if repeats and period else n
-    # The first period holds the way from rest, where there are others to do without.
-    runs = n // size - (1 if n // size > 2 else 0)
     window = np.ones(size) if repeats else np.hanning(size)
     signals = np.stack([item.record.u, item.residual, item.simulated])
-    signals = signals[:, -runs * size :]
-    signals = signals - signals.mean(axis=1, keepdims=True)
-    u, r, s = fft.rfft(signals.reshape(3, runs, size) * window, axis=2)[:, :, 1:]
+    runs = settled(signals, size)
+    runs = runs - runs.mean(axis=(1, 2), keepdims=True)
+    u, r, s = fft.rfft(runs * window, axis=2)[:, :, 1:]
     scale = 2 / (size * float(np.sum(window**2)))
     return _Spectra(
         fft.rfftfreq(size, item.record.dt)[1:],
         scale * np.abs(u) ** 2,
         scale * np.imag(r * np.conj(u)),
         scale * np.imag(s * np.conj(u)),
-        runs * size,
+        runs[0].size,
         1.0 if repeats else HANN_INFLATION,
     )
 

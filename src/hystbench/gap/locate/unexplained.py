@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hystbench.gap.floor import periodogram
 from hystbench.gap.locate.coherence import take_coherence
 from hystbench.gap.locate.coherence import told as told_coherence
-from hystbench.gap.locate.distortion import take_distortion, told_repeating
+from hystbench.gap.locate.distortion import Distortion, told_repeating
 from hystbench.gap.locate.regression import (
     best,
     fit_by_record,
@@ -53,7 +53,7 @@ class Lines:
     p_value: float
 
 
-def unexplained_view(samples: Samples) -> View:
+def unexplained_view(samples: Samples, distortion: Distortion | None) -> View:
     """Fit lone lines and drift, each record's own.
 
     A line must stand out in the residual, at one frequency in at least half of the
@@ -111,7 +111,7 @@ def unexplained_view(samples: Samples) -> View:
         sentence=(
             f"{percent(share)} of the gap is {kind} that the input does not explain, "
             f"{where}.{told_coherence(take_coherence(samples))}"
-            f"{told_repeating(take_distortion(samples))}"
+            f"{told_repeating(distortion)}"
         ),
         saved=form.saved,
     )
