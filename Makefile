@@ -10,20 +10,19 @@ BIN := $(VENV)/bin
 READY := $(VENV)/ready
 PIP_INSTALL := -m pip install --quiet --disable-pip-version-check
 INSTALL := $(BIN)/python $(PIP_INSTALL)
-# An environment of their own: they want an older numpy.
-RIVALS := .venv-rivals
 SOURCES := $(wildcard src/hystbench/kernels/*.c src/hystbench/kernels/*.h \
   src/hystbench/challenge/kernels/*.c src/hystbench/challenge/kernels/*.h)
 
-.PHONY: help reproduce test lint docs bench rivals test-slurm clean requirements
+.PHONY: help reproduce test lint docs bench rivals slurm test-slurm clean requirements
 help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
 	@echo "make docs       fill the tables of README.md and docs/ from results/ (after test-slurm)"
 	@echo "make bench      measure kernels and pipeline beside their peers, fill docs/speed.md"
 	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
+	@echo "make slurm      set up .venv-slurm, from which the pipeline runs on a cluster"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
-	@echo "make clean      remove .venv, .venv-rivals and results"
+	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm and results"
 
 # Look first, so that what is missing is said in one line and not by a compiler.
 $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
@@ -36,19 +35,21 @@ $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
 	CC="$(CC)" $(INSTALL) --no-deps --no-build-isolation -e .
 	touch $@
 
-# What a benchmark or a cluster needs beside that: an optional group of pyproject.toml.
+# What a benchmark needs beside that: an optional group of pyproject.toml.
 $(VENV)/ready-%: requirements-%.txt $(READY)
 	$(INSTALL) --require-hashes -r $<
 	touch $@
 
-# After .venv, which looks first and builds the kernels that both use.
-$(RIVALS)/ready: requirements-rivals.txt $(READY)
-	test -x $(RIVALS)/bin/python || $(PYTHON) -m venv $(RIVALS)
-	$(RIVALS)/bin/python $(PIP_INSTALL) --require-hashes -r $<
-	CC="$(CC)" $(RIVALS)/bin/python $(PIP_INSTALL) --no-deps --no-build-isolation -e .
+# Environments of their own: the rivals want an older numpy, and Snakemake imports the
+# cluster's plugin wherever it is installed, which makes every start half as long again.
+# After .venv, which looks first and builds the kernels that all use.
+.venv-%/ready: requirements-%.txt $(READY)
+	test -x $(@D)/bin/python || $(PYTHON) -m venv $(@D)
+	$(@D)/bin/python $(PIP_INSTALL) --require-hashes -r $<
+	CC="$(CC)" $(@D)/bin/python $(PIP_INSTALL) --no-deps --no-build-isolation -e .
 	touch $@
 
-rivals: $(RIVALS)/ready
+rivals slurm: %: .venv-%/ready
 
 reproduce: $(READY)
 	$(BIN)/snakemake --cores all
@@ -78,8 +79,8 @@ bench: $(VENV)/ready-bench
 	$(if $(filter all,$(BENCH)),$(BIN)/hystbench docs docs/speed.md)
 
 # Installs Slurm and starts its daemons for the time of the test.
-test-slurm: $(VENV)/ready-slurm
-	bash profiles/slurm/test/run $(BIN)
+test-slurm: .venv-slurm/ready
+	bash profiles/slurm/test/run .venv-slurm/bin
 
 # Needs pip-tools; the files name no index, so pip's own setting decides.
 COMPILE := pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras \
@@ -91,4 +92,4 @@ requirements:
 	$(COMPILE) --extra rivals --output-file requirements-rivals.txt pyproject.toml
 
 clean:
-	rm -rf $(VENV) $(RIVALS) results .snakemake
+	rm -rf $(VENV) .venv-rivals .venv-slurm results .snakemake

@@ -75,8 +75,9 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         """Compute Eq. 9 with all thresholds times ``growth``."""
         rounds = 2 if self.start == "settled" else 1
         envelope = Envelope(*self.envelope)
-        left = np.tile(envelope.left(v), rounds)
-        right = np.tile(envelope.right(v), rounds)
+        left, right = envelope.left(v), envelope.right(v)
+        if rounds > 1:
+            left, right = np.tile(left, rounds), np.tile(right, rounds)
         if growth is None:
             y, _ = generalized_prandtl_ishlinskii(
                 left, right, self.thresholds, self.weights

@@ -217,16 +217,16 @@ def _flat(u: FloatArray) -> list[tuple[int, int]]:
     moves = np.abs(np.diff(u))
     edges = np.concatenate([[0], np.flatnonzero(moves != 0) + 1, [len(u)]])
     usual = JUMP * float(np.median(moves[moves != 0]))
+    long = np.flatnonzero(np.diff(edges) >= max(STUCK * len(u), 2 * PARTS))
     found = []
-    for first, last in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+    for first, last in zip(edges[long].tolist(), edges[long + 1].tolist(), strict=True):
         # The motion that stops; of a stretch from the start, the one that goes on.
         beside = (
             moves[last : last + APPROACH]
             if not first
             else (moves[max(first - APPROACH, 0) : first])
         )
-        smooth = len(beside) == APPROACH and beside.min() > 0 and beside.max() < usual
-        if smooth and last - first >= max(STUCK * len(u), 2 * PARTS):
+        if len(beside) == APPROACH and beside.min() > 0 and beside.max() < usual:
             found.append((first, last))
     return found
 

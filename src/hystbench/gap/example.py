@@ -7,6 +7,7 @@ measured data, and no blind test: twin and effects share their blocks.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,9 +19,11 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.files import write_csv, write_text
 from hystbench.model import Model
-from hystbench.record import Channel, Record
+from hystbench.record import Channel, FloatArray, Record
 
 NAME = "twin"
+EXCITED = 1e-3
+"""Of the largest line: a smaller one is the noise of the input's measurement."""
 
 
 def write_example(
@@ -51,7 +54,9 @@ def write_example(
             table = np.column_stack([record.time, record.u, record.y])
             rows = ([repr(value) for value in row] for row in table.tolist())
             write_csv(folder / "dataset" / file, columns, rows)
-            entries.append({"file": file, "use": use})
+            period = whole_period(record.u)
+            repeated = {} if period is None else {"period_samples": period}
+            entries.append({"file": file, "use": use, **repeated})
     about = {
         "name": NAME,
         "description": "Records of the twin, a simulation; not measured.",
@@ -63,6 +68,27 @@ def write_example(
     text = yaml.safe_dump(about, sort_keys=False, default_flow_style=None)
     write_text(folder / "dataset" / "dataset.yaml", text)
     slow_loop_model(identified, first.input, first.output).save(folder / "base.yaml")
+
+
+def whole_period(u: FloatArray) -> int | None:
+    """Find after how many samples an input repeats, where its record holds whole periods.
+
+    Only lines that are multiples of ``g`` are excited where the record holds ``g``
+    periods; the largest such ``g`` that divides the record's samples gives the period.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n,)
+
+    Returns
+    -------
+    int or None
+        Samples; None where the record holds no two whole periods.
+    """
+    size = np.abs(np.fft.rfft(u))
+    lines = np.flatnonzero(size > EXCITED * size.max())
+    periods = math.gcd(len(u), *lines.tolist())
+    return len(u) // periods if periods > 1 else None
 
 
 def slow_loop_model(
