@@ -20,7 +20,7 @@ from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS, TIE
-from hystbench.gap.verdict import judge, what_is_left
+from hystbench.gap.verdict import LONE, judge, what_is_left
 
 SEED = 1
 NEXT = 1
@@ -115,9 +115,15 @@ def verdict(names, family):
     return word, {item.effect for item in state.added}
 
 
-def test_two_effects_are_both_named_and_no_third():
-    pair = ("creep", "drive-lag")
-    assert verdict(pair, "gpi") == ("named", set(pair))
+PAIRS = [
+    (("creep", "drive-lag"), "gpi"),
+    (("saturation", "resonance"), "preisach"),
+]
+
+
+@pytest.mark.parametrize(("pair", "family"), PAIRS)
+def test_two_effects_are_both_named_and_no_third(pair, family):
+    assert verdict(pair, family) == ("named", set(pair))
 
 
 @pytest.mark.parametrize("family", ["gpi", "preisach"])
@@ -125,11 +131,27 @@ def test_where_nothing_is_hidden_nothing_is_named(family):
     assert verdict((), family) == ("no-gap", set())
 
 
-def test_an_effect_outside_the_vocabulary_has_no_name(monkeypatch):
+def unnamed(name, monkeypatch):
+    """What gap.json says of an effect outside the vocabulary."""
     # What would tell likely effects apart takes long and decides nothing.
     monkeypatch.setattr("hystbench.gap.finding.tell_apart", lambda *given: (None, ""))
-    records, base = hidden(("capacitive-pickup",), "gpi")
+    records, base = hidden((name,), "gpi")
     content = find("hidden", records, base).content
     assert content["verdict"] == "unnamed"
+    return content
+
+
+def test_an_effect_outside_the_vocabulary_has_no_name(monkeypatch):
+    content = unnamed("capacitive-pickup", monkeypatch)
     # The views are then what there is to say.
     assert content["where"][0]["share_of_gap_power"] > 0.5
+
+
+def test_a_bad_contact_is_what_the_input_does_not_explain(monkeypatch):
+    first = unnamed("random-telegraph", monkeypatch)["where"][0]
+    assert first["view"] == "unexplained"
+    assert first["share_of_gap_power"] > 0.5
+
+
+def test_dropouts_are_seen_as_lone_samples(monkeypatch):
+    assert unnamed("dropouts", monkeypatch)["fit"]["lone_share"] > LONE

@@ -71,7 +71,7 @@ def write_example(
 
 
 def whole_period(u: FloatArray) -> int | None:
-    """Find after how many samples an input repeats, where its record holds whole periods.
+    """Find after how many samples an input repeats, if its record holds whole periods.
 
     Only lines that are multiples of ``g`` are excited where the record holds ``g``
     periods; the largest such ``g`` that divides the record's samples gives the period.
