@@ -1,4 +1,6 @@
-"""`snakemake --lint` has nothing to say but for the environment."""
+"""`snakemake --lint` has nothing to say but for the environment; scheduling."""
+
+import sys
 
 # The environment is .venv, made by make from requirements.txt with hashes.
 ACCEPTED = {"Specify a conda environment or container for each rule."}
@@ -9,3 +11,12 @@ def test_snakemake_lint(finished):
     told = [line for line in result.stderr.splitlines() if line.startswith("    * ")]
     titles = {line.removeprefix("    * ").removesuffix(":") for line in told}
     assert titles == ACCEPTED
+
+
+def test_no_job_waits_for_a_limit_on_submissions(workflow):
+    """Snakemake tells how many jobs more may start: with a limit that is the limit."""
+    one = ["--verbose", "--force", "results/signals/sine-100hz.npz"]
+    assert f"'_job_count': {sys.maxsize}" in (told := workflow.snakemake(*one).stderr)
+    assert "'_job_count': 100" not in told
+    asked = workflow.snakemake(*one, "--max-jobs-per-timespan", "50/1s")
+    assert "'_job_count': 50" in asked.stderr
