@@ -7,6 +7,8 @@ rule blind_make:
         blind_data(f"{BLIND}/data/{{set}}/{{chunk}}"),
     log:
         f"{BLIND}/logs/make-{{set}}-{{chunk}}.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/blind/make-{{set}}-{{chunk}}.tsv"
     wildcard_constraints:
         chunk=r"\d+",
     params:
@@ -25,6 +27,8 @@ rule blind_solve:
         f"{BLIND}/answers/{{set}}/{{solver}}/{{chunk}}.json",
     log:
         f"{BLIND}/logs/solve-{{set}}-{{solver}}-{{chunk}}.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/blind/solve-{{set}}-{{solver}}-{{chunk}}.tsv"
     wildcard_constraints:
         chunk=r"\d+",
     # Minutes, if every case takes its whole time; ten for the rest.
@@ -52,6 +56,8 @@ rule blind_judge:
         f"{BLIND}/judged/{{set}}/{{chunk}}.csv",
     log:
         f"{BLIND}/logs/judge-{{set}}-{{chunk}}.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/blind/judge-{{set}}-{{chunk}}.tsv"
     wildcard_constraints:
         chunk=r"\d+",
     params:

@@ -129,6 +129,8 @@ if config["gap"]["jobs"] == "effects":
             f"{STAGES}/round-{{round}}/{{effect}}.json",
         log:
             f"{RESULTS}/logs/gap/{{case}}/round-{{round}}/{{effect}}.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/gap/{{case}}/round-{{round}}/{{effect}}.tsv"
         message:
             "{wildcards.effect} on {wildcards.case}, round {wildcards.round}"
         shell:
