@@ -186,10 +186,10 @@ def test_chunks_equal_the_whole(case, order, cuts, normalized, signals):
     if case[0] == "volterra":
         name, options = case
         adaptive = make((name, {**options, "second_order_step": 1e-5}), order, 1e-4)
-    whole = adaptive.run(x, d, limit=1e6)
+    whole = adaptive.run(x, d)
     state, output = adaptive.start(), []
     for part in np.split(np.arange(len(x)), cuts):
-        result = adaptive.run(x[part], d[part], state, limit=1e6)
+        result = adaptive.run(x[part], d[part], state)
         state = result.state
         output.append(result.output)
     # where a chunk ends a sum is cut in two, so the last bits may differ
@@ -201,7 +201,7 @@ def test_chunks_equal_the_whole(case, order, cuts, normalized, signals):
 
 def test_an_empty_chunk_changes_nothing(case, signals):
     x, d = signals
-    adaptive = make(case, 5, 1e-4)
+    adaptive = stable(case, 5, x)
     state = adaptive.run(x[:100], d[:100]).state
     result = adaptive.run([], [], state)
     assert result.diverged_at is None
@@ -288,21 +288,52 @@ def test_divergence_is_where_the_plain_loop_passes_the_limit(case, signals):
     assert adaptive.run(x, d, limit=100.0).diverged_at == k
 
 
-def test_limit_is_kept_from_chunk_to_chunk(signals):
+def test_a_limit_is_kept_from_chunk_to_chunk(signals):
     x, d = signals
     adaptive = make(CASES[0], 3, 1e-3)
-    first = adaptive.run(x[:10], d[:10])
-    assert first.state.limit == 1e6 * np.abs(d[:10]).max()
-    assert adaptive.run(x[10:], d[10:], first.state).state.limit == first.state.limit
-    assert adaptive.run(x, 0 * d).state.limit == 1e6
+    first = adaptive.run(x[:10], d[:10], limit=7.0)
+    assert first.state.limit == 7.0
+    loud = d[10:].copy()
+    loud[5] = 100.0
+    assert adaptive.run(x[10:], loud, first.state).diverged_at == 5
+    assert adaptive.run(x[10:], loud, first.state, limit=1e3).diverged_at is None
+
+
+def test_a_quiet_first_chunk_sets_no_limit_to_a_loud_second(signals):
+    x, d = signals
+    adaptive = make(CASES[0], 3, 1e-3)
+    quiet = 1e-9 * d[:10]
+    first = adaptive.run(x[:10], quiet)
+    second = adaptive.run(x[10:], d[10:], first.state)
+    assert np.abs(second.error).max() > 1e6 * np.abs(quiet).max()
+    assert second.diverged_at is None
+    assert second.state.largest == np.abs(d[10:]).max()
+
+
+def test_the_limit_of_a_silent_record_is_that_of_one_in_its_unit(case):
+    adaptive = make(case, 0, 1e-3)
+    assert adaptive.run([1.0], [0.0]).diverged_at is None
+    weights = np.full(adaptive.size, 1e8)
+    assert adaptive.run([1.0], [0.0], adaptive.start(weights)).diverged_at == 0
+
+
+def test_what_has_diverged_does_not_go_on(case, signals):
+    x, d = signals
+    adaptive = stable(case, 6, x[:200], share=20.0)
+    state = adaptive.run(x, d, limit=100.0).state
+    with pytest.raises(InputError, match="state: the filter has diverged"):
+        adaptive.run(x, d, state)
 
 
 @pytest.mark.parametrize("order", [100, 4095])
 def test_high_orders_run(order, signals):
     x, d = signals
     for case in CASES[:-2]:
-        result = make(case, order, 0.1, normalized=True).run(x[:50], d[:50])
-        assert len(result.output) == 50
+        adaptive = make(case, order, 0.1, normalized=True)
+        result = adaptive.run(x[:50], d[:50])
+        # The first prediction is zero; what is learned makes later errors less.
+        assert result.error[0] == d[0]
+        assert np.abs(result.error[25:]).mean() < np.abs(d[25:50]).mean()
 
 
 # --- Eq. 19
@@ -382,6 +413,10 @@ def test_mean_converges_below_the_margin_and_not_far_above(name):
     step = np.diag(adaptive.steps)
     values = np.linalg.eigvals(np.eye(adaptive.size) - 2 * step @ (h.T @ h / len(h)))
     assert np.abs(values).max() <= 1 + 1e-12
+    # The largest eigenvalue is no less than the mean of all: there is no slack beyond.
+    beyond = 1.01 * adaptive.size / 0.99 * step
+    values = np.linalg.eigvals(np.eye(adaptive.size) - 2 * beyond @ (h.T @ h / len(h)))
+    assert np.abs(values).max() > 1
     values = np.linalg.eigvals(step @ (h.T @ h / len(h)))
     assert values.real.sum() == pytest.approx(0.99)
 

@@ -48,13 +48,20 @@ class State:
     operators : ndarray
         Outputs of the play operators, by tap; empty for filters without.
     limit : float or None
-        Error beyond which the filter has diverged; None before the first chunk.
+        Error beyond which the filter has diverged; None for a million times
+        ``largest``.
+    largest : float
+        Largest ``|d|`` so far.
+    diverged : bool
+        Whether it has; then it cannot go on.
     """
 
     weights: FloatArray
     past: FloatArray
     operators: FloatArray
     limit: float | None = None
+    largest: float = 0.0
+    diverged: bool = False
 
 
 End = tuple[FloatArray, FloatArray]
@@ -209,7 +216,9 @@ class AdaptiveFilter(ABC):
         """Filter a record, or the next chunk of one.
 
         Chunk after chunk, each with the state of the one before, gives what the
-        whole record gives at once.
+        whole record gives at once. (The default limit knows of the chunks so far
+        alone: a filter that comes near it in a quiet one may be told earlier that it
+        has diverged.)
 
         Parameters
         ----------
@@ -219,12 +228,13 @@ class AdaptiveFilter(ABC):
             Where the chunk before ended; the start by default.
         limit : float, optional
             Magnitude of the error beyond which the filter has diverged. By default
-            a million times the largest ``|d|`` of the first chunk.
+            that of the chunk before, or a million times the largest ``|d|`` so far.
 
         Raises
         ------
         InputError
-            If x and d differ in length, are not finite or the limit is not positive.
+            If x and d differ in length, are not finite, the limit is not positive or
+            the filter diverged in a chunk before.
         """
         (result,) = run_together([self], x, d, state, limit)
         return result
@@ -401,10 +411,11 @@ def run_together(
     if len(x) != len(d):
         raise InputError(f"d: {len(d)} samples given, x has {len(x)}")
     state = state or first.start()
-    if limit is None:
-        limit = state.limit
-    if limit is None:
-        limit = 1e6 * (largest or 1.0)
+    if state.diverged:
+        raise InputError("state: the filter has diverged; expected one that goes on")
+    largest = max(largest, state.largest)
+    kept = state.limit if limit is None else limit
+    limit = 1e6 * (largest or 1.0) if kept is None else kept
     positive("limit", limit)
     count, past = len(filters), state.past
     output, error = np.empty((count, len(d))), np.empty((count, len(d)))
@@ -431,7 +442,8 @@ def run_together(
             # overflow in the last update of all: the next prediction would show it
             diverged_at = done[k]
             weights = np.nan_to_num(weights)
-        end_state = State(weights, pasts[k], operators, limit)
+        diverged = diverged_at is not None
+        end_state = State(weights, pasts[k], operators, kept, largest, diverged)
         used = slice(done[k])
         results.append(
             Result(output[k, used], error[k, used], weights, diverged_at, end_state)
