@@ -1,10 +1,11 @@
 """Algorithm 1 by variable projection, beside searches over all 39 parameters.
 
-All methods have the same slow record of the twin and ten starts (the swarm of
-differential evolution is its own). Parameters: the eight of the envelopes and 31
-weights, none negative. Ours searches on the record thinned and goes down the last bit
-on all of it; so may the others, ``thinned as ours``, with the same samples. Where each
-ends is scored on the whole record.
+All methods have the same slow record of the twin and ten starts: a plain pair of
+envelopes and nine random ones (the swarm of differential evolution is its own).
+Parameters: the eight of the envelopes and 31 weights, none negative. Ours searches on
+the record thinned and goes down the last bit on all of it; so may the others,
+``thinned as ours``, with the same samples. Where each ends is scored on the whole
+record.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from hystbench.envelope import Envelope, thresholds
 from hystbench.errors import InputError
 from hystbench.identification import identify
 from hystbench.identification.algorithm import SEARCH_SAMPLES
-from hystbench.identification.shape import envelope_of, random_point
+from hystbench.identification.shape import envelope_of, plain_point, random_point
 from hystbench.identification.weights import reduced
 from hystbench.measurement import measure
 from hystbench.model import load_model
@@ -159,11 +160,11 @@ def thinned_least_squares(slow: Record) -> tuple[str, int, float, float, int]:
 
 
 def from_random_points(fit: Fit, slow: Record) -> None:
-    """Go down from each of ten random points."""
+    """Go down from ten points: plain envelopes, as ours begins, and random ones."""
     random = np.random.default_rng(SEED)
     span = float(slow.u.min()), float(slow.u.max())
-    for _ in range(STARTS):
-        envelope = envelope_of(random_point(random), *span)
+    for number in range(STARTS):
+        envelope = envelope_of(random_point(random) if number else plain_point(), *span)
         weights = random.uniform(0, 2, ORDER + 1)
         point = np.concatenate((list(envelope.to_dict().values()), weights))
         descend(fit, point, EVALUATIONS)

@@ -28,6 +28,7 @@ JOB_COLUMNS = ("rule", "jobs", "seconds", "mean_seconds", "peak_mib")
 GROWTH_COLUMNS = ("signals", "filters", "orders", "jobs", "seconds", "seconds_per_job")
 FULL, NOTHING = "full reproduction, figures and report", "nothing to do"
 CHANGED, HELP = "one changed step size to tables", "hystbench --help"
+ALONE = "the tables alone, from nothing"
 #: Seconds that each may take.
 NEEDED = {FULL: 60.0, NOTHING: 2.0, CHANGED: 8.0, HELP: 0.15}
 TABLES = "results/compare/tables.txt"
@@ -39,23 +40,25 @@ def main() -> None:
         folder = Path(name)
         config = load_yaml(ROOT / "config.yaml")
         configure(folder, config)
-        rows = [
-            (FULL, *full(folder), NEEDED[FULL]),
+        rows = [(FULL, *full(folder), NEEDED[FULL])]
+        jobs = list(jobs_of(folder))  # before other runs write theirs
+        rows += [
             (NOTHING, *repeated(3, lambda: snakemake(folder)), NEEDED[NOTHING]),
             *(
                 (f"{CHANGED}, {name}", *timed, NEEDED[CHANGED])
                 for name, timed in changed(folder, config)
             ),
             (HELP, *repeated(9, lambda: hystbench("--help")), NEEDED[HELP]),
+            (ALONE, *alone(folder), None),
             ("rival: one script, no figures", *rival(folder), None),
         ]
-        over = [ours - its for ours, its in zip(rows[0][2], rows[-1][2], strict=True)]
+        over = [ours - its for ours, its in zip(rows[-2][2], rows[-1][2], strict=True)]
         told: list[tuple[object, ...]] = [
             *((what, jobs, *s[0:2], limit, s[2]) for what, jobs, s, limit in rows),
-            ("full reproduction over the rival", None, *over[:2], None, None),
+            (f"{ALONE}: over the rival", None, *over[:2], None, None),
         ]
         write_table("pipeline.csv", COLUMNS, told)
-        write_table("jobs.csv", JOB_COLUMNS, list(jobs_of(folder)))
+        write_table("jobs.csv", JOB_COLUMNS, jobs)
     write_table("growth.csv", GROWTH_COLUMNS, list(growth()))
 
 
@@ -75,9 +78,25 @@ def full(folder: Path) -> Timed:
 def changed(folder: Path, config: dict[str, object]) -> Iterator[tuple[str, Timed]]:
     """One step size is changed and the tables asked for, each filter in turn."""
     for name, steps in config["filters"]["convergence_factor"].items():  # type: ignore[index]
-        steps[next(iter(steps))] *= 0.99
-        configure(folder, config)
-        yield name, repeated(1, lambda: snakemake(folder, TABLES))
+
+        def once(steps: dict[str, float] = steps) -> int:
+            steps[next(iter(steps))] *= 0.99
+            configure(folder, config)
+            return snakemake(folder, TABLES)
+
+        yield name, repeated(3, once)
+
+
+def alone(folder: Path) -> Timed:
+    """The tables from nothing, with the project's config: what the rival computes."""
+    configure(folder, load_yaml(ROOT / "config.yaml"))
+
+    def once() -> int:
+        shutil.rmtree(folder / "results")
+        shutil.rmtree(folder / ".snakemake")
+        return snakemake(folder, TABLES)
+
+    return repeated(3, once)
 
 
 def rival(folder: Path) -> Timed:
@@ -89,10 +108,8 @@ def rival(folder: Path) -> Timed:
         done.append(run(words, ROOT).stdout)
         return 1
 
-    configure(folder, load_yaml(ROOT / "config.yaml"))
     shutil.copytree(ROOT / "workflow", folder / "workflow", dirs_exist_ok=True)
     timed = repeated(3, script)
-    snakemake(folder, TABLES)
     for cell, mse in json.loads(done[0]).items():
         kept = json.loads((folder / f"results/filters/{cell}.json").read_text())["mse"]
         if kept is None or abs(kept - mse) > 1e-9 * kept:

@@ -7,6 +7,7 @@ of a measurement the median counts, of several rows that a figure speaks of the 
 from __future__ import annotations
 
 import csv
+import math
 import statistics
 from collections.abc import Iterable, Iterator
 
@@ -22,6 +23,9 @@ KERNELS = (
 )
 PEERS = ("padasip", "adaptfilt", "PyDaptiveFiltering")
 BATCHES = ("step sizes", "orders", "seeds")
+
+LINEAR = 1.05
+"""A power, or a ratio of memory, up to which it counts as linear, or as constant."""
 
 Rows = list[dict[str, str]]
 Reached = tuple[str, str, float | None, str]
@@ -39,6 +43,7 @@ def reach() -> Iterator[Reached]:
     for name in BATCHES:
         found = column(batches, "efficiency", batch=name)
         yield least(f"many filters in one call, {name}: of two busy loops", 0.9, found)
+    yield from streams(table("samples.csv"))
     yield from identification(table("identification.csv"))
     seconds = table("pipeline.csv")
     for what, limit in NEEDED.items():
@@ -47,9 +52,14 @@ def reach() -> Iterator[Reached]:
         yield most(f"{what}: median seconds", limit, found)
     found = column(table("gap.csv"), "seconds", what="a case")
     middle = [statistics.median(found)] if found else []
-    gap = "a case of the gap workflow, seconds of computing"
+    gap = "a case of the gap workflow, seconds of computing on one core"
     yield most(f"{gap}: median of the cases", 1.0, middle)
     yield most(f"{gap}: worst of the cases", 1.0, found)
+    rounds = [row for row in table("gap.csv") if row["what"] == "a round"]
+    for name, other in (("samples", "candidates"), ("candidates", "samples")):
+        whole = max((row[other] for row in rounds), key=int, default="")
+        found = power([row for row in rounds if row[other] == whole], name)
+        yield most(f"a round of naming: power of its cost in {name}", LINEAR, found)
 
 
 def kernels(rows: Rows) -> Iterator[Reached]:
@@ -81,6 +91,31 @@ def kernels(rows: Rows) -> Iterator[Reached]:
         key, told = (row["kernel"], row["samples"]), float(row["same_result"] == "yes")
         same[key] = max(told, same.get(key, 0.0))
     yield least("all kernels: the same result as plain loops", 1, [*same.values()])
+
+
+def streams(rows: Rows) -> Iterator[Reached]:
+    """Cost and memory of up to 10^8 samples, chunk after chunk, of each filter."""
+    names = {row["filter"] for row in rows}
+    found = [
+        slope
+        for name in names
+        for slope in power([row for row in rows if row["filter"] == name], "samples")
+    ]
+    yield most("samples in chunks to 10^8: power of the cost", LINEAR, found)
+    few = column(rows, "peak_mib", samples=1_000_000)
+    many = column(rows, "peak_mib", samples=100_000_000)
+    over = [its / least for its, least in zip(many, few, strict=True)]
+    what = "10^8 samples in chunks: peak memory over that of 10^6"
+    yield most(what, LINEAR, over)
+
+
+def power(rows: Rows, name: str) -> list[float]:
+    """Slope of log seconds against the log of a size; one is a linear cost."""
+    if len(rows) < 2:
+        return []
+    sizes = [math.log(float(row[name])) for row in rows]
+    seconds = [math.log(float(row["seconds"])) for row in rows]
+    return [statistics.linear_regression(sizes, seconds).slope]
 
 
 def identification(rows: Rows) -> Iterator[Reached]:

@@ -1,6 +1,6 @@
 """The plainest rival of the pipeline: one script, one process, no files between.
 
-It does the arithmetic of the full reproduction with the same functions, in order, and
+It does the arithmetic of all tables with the same functions, in order, and
 prints the errors of all runs as JSON. It draws no figures, judges no claims and keeps
 nothing for a second run.
 """
@@ -16,8 +16,8 @@ from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error
 from hystbench.model import load_model
 from hystbench.order_errors import filters_by_order, order_errors
-from hystbench.pressure.ensemble import run_ensemble
-from hystbench.pressure.fits import fit_rdgpi
+from hystbench.pressure.configured import run
+from hystbench.pressure.fits import fit
 from hystbench.pressure.twins import read_twins
 from hystbench.rdgpi import identify_rdgpi
 from hystbench.schema import load_yaml
@@ -53,9 +53,10 @@ def main(root: Path) -> dict[str, float | None]:
             run_filter(make_filter("gpo", job, record, identified), record, job)
     swept = records[settings.order_sweep_signal]
     order_errors(swept, filters_by_order(swept, settings.order_sweep_job, identified))
-    for twin in read_twins(map(Path, settings.twin_files)):
-        job = settings.ensemble_job
-        run_ensemble(twin, job, fit_rdgpi(twin, job), seed=0, factors=[1.0])
+    twins = list(read_twins(map(Path, settings.twin_files)))
+    found = fit(twins, settings.twin_fits_job)
+    for model in settings.filters:
+        run(twins, settings.twin_runs_job(model), found)
     return errors
 
 

@@ -2,6 +2,10 @@
 
 import sys
 
+import yaml
+
+from .conftest import ROOT
+
 # The environment is .venv, made by make from requirements.txt with hashes.
 ACCEPTED = {"Specify a conda environment or container for each rule."}
 
@@ -20,3 +24,19 @@ def test_no_job_waits_for_a_limit_on_submissions(workflow):
     assert "'_job_count': 100" not in told
     asked = workflow.snakemake(*one, "--max-jobs-per-timespan", "50/1s")
     assert "'_job_count': 50" in asked.stderr
+
+
+def test_the_cluster_profile_names_rules_and_groups_that_exist(workflow):
+    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config["gap"]["jobs"] = "effects"
+    workflow.configure(config)
+    listed = workflow.snakemake("--list-rules")
+    assert listed.returncode == 0, listed.stderr
+    figures = (ROOT / "src" / "hystbench" / "figures").glob("*.py")
+    # Rules of a dataset's figures are there where the settings name one.
+    rules = set(listed.stdout.split()) | {f"draw_{file.stem}" for file in figures}
+    profile = yaml.safe_load((ROOT / "profiles" / "slurm" / "config.yaml").read_text())
+    of_rule = dict(item.split("=") for item in profile["groups"])
+    assert set(of_rule) | set(profile["set-resources"]) <= rules
+    sizes = dict(item.split("=") for item in profile["group-components"])
+    assert set(sizes) == set(of_rule.values())
