@@ -17,7 +17,7 @@ VERDICTS = {
     "parameters": "The simulator lacks no effect: other values of its parameters, "
     "within their tolerances, close the gap.",
     "no-gap": "There is no gap: {reason}.",
-    "unnamed": "Something is missing that the vocabulary has no name for.",
+    "unnamed": "No effect of the vocabulary accounts for what differs.",
 }
 
 FLOORS = {
