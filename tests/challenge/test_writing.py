@@ -197,6 +197,14 @@ def test_the_page_holds_the_table_of_ranges():
     assert f"<!-- ranges -->\n\n{markdown_table()}\n<!-- end of ranges -->" in page
 
 
+def test_the_table_tells_a_limit_on_one_side_and_on_both():
+    """The sensor's gap cannot be shorter than what moves in it, 90 um."""
+    (gap,) = (row for row in markdown_table().splitlines() if "`gap`" in row)
+    assert gap.split("|")[7].strip() == "90 or more"
+    (lag,) = (row for row in markdown_table().splitlines() if "`sensor-lag`" in row)
+    assert lag.split("|")[7].strip() == "5e-05 to 0.03"
+
+
 def test_rows_are_written_as_numpy_would(written, case):
     table = np.loadtxt(
         written / "case" / "dataset" / "long.csv", delimiter=",", skiprows=1

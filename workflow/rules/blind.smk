@@ -91,6 +91,7 @@ rule blind_summary:
             for name in (
                 "contest",
                 "reach",
+                "further",
                 "transfer",
                 "cases",
                 "transfer-cases",

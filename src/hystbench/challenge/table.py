@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from hystbench.challenge.plant.effects import KINDS
+from hystbench.challenge.plant.kind import Range
 
 HEADER = """\
 | effect | place | form | parameter | range | unit | limits | right views |
@@ -28,13 +31,19 @@ def markdown_table() -> str:
                 if item is not None:
                     sign = "±" if item.sign else ""
                     star = "" if item.shifts else " *"
-                    bounds = f"{item.least:g} to {item.most:g}"
                     cells[3:7] = [
                         f"`{name}`",
                         f"{sign}{item.low:g} to {item.high:g}{star}",
                         item.unit,
-                        bounds.replace("0 to inf", "").replace("to inf", "or more"),
+                        _bounds(item),
                     ]
                 rows.append("| " + " | ".join(cells) + " |\n")
                 first, second, views = ["", ""], "", ""
     return HEADER + "".join(rows)
+
+
+def _bounds(item: Range) -> str:
+    """Say between which values a number is kept; nothing where none is set."""
+    if math.isfinite(item.most):
+        return f"{item.least:g} to {item.most:g}"
+    return f"{item.least:g} or more" if item.least else ""

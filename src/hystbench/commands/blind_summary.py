@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, plan
+from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
 from hystbench.challenge.contest.rows import read_rows
 from hystbench.challenge.contest.writing import write_score
 
@@ -26,13 +26,18 @@ def blind_summary(
 ) -> None:
     """Sum up the JUDGED chunks of a set."""
     seeds = [entry.spec.seed for entry in plan(settings["set"], settings["scale"])]
-    mended = [DEVELOPMENT_SEEDS.start, DEVELOPMENT_SEEDS.stop - 1]
     about = {
         "set": settings["set"],
         "scale": settings["scale"],
         "transfer_scale": settings["transfer_scale"],
         "seeds": [min(seeds), max(seeds)],
-        "seeds_used_while_mending": mended,
+        "seeds_used_while_mending": {
+            name: [used.start, used.stop - 1]
+            for name, used in (
+                ("development and tests", DEVELOPMENT_SEEDS),
+                ("earlier scores", RETIRED_SEEDS),
+            )
+        },
     }
     write_score(
         read_rows(judged),

@@ -157,6 +157,8 @@ def _read(file: Path) -> tuple[str, Any]:
         json.dumps(gap, allow_nan=False, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:
         return f"gap.json: not JSON ({error})", None
+    except OSError as error:
+        return f"gap.json: not readable ({error.strerror})", None
     return "answered", gap
 
 

@@ -9,7 +9,12 @@ from hypothesis import strategies as st
 
 from hystbench.challenge.contest import experiments, tables
 from hystbench.challenge.contest.score import judge
-from hystbench.challenge.contest.summary import calibration_error, reach, summary
+from hystbench.challenge.contest.summary import (
+    calibration_error,
+    further,
+    reach,
+    summary,
+)
 from hystbench.challenge.contest.wilson import wilson
 from hystbench.challenge.contest.writing import write_score
 from hystbench.gap.schema import SCHEMA
@@ -57,7 +62,7 @@ ABOUT = {
     "set": "small",
     "scale": 0.5,
     "transfer_scale": 0.25,
-    "seeds_used_while_mending": [1, 9],
+    "seeds_used_while_mending": {"development": [1, 9], "earlier": [20, 29]},
 }
 
 
@@ -125,6 +130,66 @@ def test_what_was_asked_beside_what_was_reached():
     away = [row(truth(effect()), RESONANCE)] * 7 + [row(truth(effect()), CREEP)] * 3
     transfer = {item.figure: item for item in reach(rows, away)}["transfer top1 20 dB"]
     assert (transfer.reached, transfer.asked, transfer.met) == (0.7, ">= 0.700", True)
+
+
+def test_closed_gaps_and_intervals_by_hand():
+    """Three singles and a case of nothing, which has neither gap nor numbers."""
+    of_case = [
+        {"shrink": 0.2, "parameters": 2, "intervals": 2, "covered": 1},
+        {"shrink": 0.9, "parameters": 3, "intervals": 2, "covered": 2},
+        {"shrink": 1.0, "parameters": 1, "intervals": 1, "covered": 1},
+    ]
+    rows = [row(truth(effect()), RESONANCE, **more) for more in of_case]
+    rows.append(row(truth(kind="none"), NOTHING, shrink=None))
+    told = summary(rows)
+    assert told["shrink_median"] == 0.9
+    assert (told["coverage"]["share"], told["coverage"]["cases"]) == (0.8, 5)
+    assert told["without_interval"] == 1
+    asked = {item.figure: item.met for item in reach(rows, [])}
+    assert not asked["shrink_median"]
+    assert not asked["coverage of 95 % intervals"]
+
+
+def test_unlisted_effects_named_with_confidence():
+    unlisted = truth(effect("dropouts", "only"), kind="unlisted")
+    sure, unsure = (gap(named("creep", size)) for size in (0.81, 0.79))
+    told = summary([row(unlisted, sure), row(unlisted, unsure)])
+    assert told["unlisted_confident"]["share"] == 0.5
+    assert told["unlisted_unnamed"]["share"] == 0.0
+
+
+def test_what_else_there_is_to_say_by_hand():
+    rows = [
+        dataclasses.replace(item, set_size=size, parameter_error=error)
+        for item, size, error in zip(
+            a_contest(),
+            (1, 2, 3, 4, None, None, 9, None),
+            (0.1, 0.3, None, 0.2, None, None, None, None),
+            strict=True,
+        )
+    ]
+    told = {name: (value, cases) for name, value, _, _, cases in further(rows)}
+    assert told["in_set gpi 20 dB"] == (pytest.approx(2 / 3), 3)
+    assert told["in_set preisach 20 dB"] == (1.0, 1)
+    assert told["in_set jiles-atherton 20 dB"] == (None, 0)
+    assert told["pairs_exact"] == (1.0, 1)
+    assert told["set_size at 20 dB, mean"] == (2.5, 4)  # the pair's is not counted
+    assert told["relative error of parameters, median"] == (0.2, 3)
+
+
+def test_shares_that_do_not_carry_over_are_counted(tmp_path):
+    good, bad = (row(truth(effect()), answered) for answered in (RESONANCE, CREEP))
+    for away, off in (([good] * 20, "0.0"), ([good] * 19 + [bad], "0.0")):
+        write_score([good] * 20, away, "s", ABOUT, {}, tmp_path)
+        (line,) = (
+            x for x in table(tmp_path / "reach.csv") if "points off" in x["figure"]
+        )
+        assert (line["reached"], line["met"]) == (off, "yes")
+    write_score([good] * 20, [good] * 9 + [bad], "s", ABOUT, {}, tmp_path)
+    (line,) = (x for x in table(tmp_path / "reach.csv") if "points off" in x["figure"])
+    assert line["met"] == "no"
+    told = {x["figure"]: x["within 5 points"] for x in table(tmp_path / "transfer.csv")}
+    assert told["top1 GPI 20 dB"] == "no"
 
 
 def test_the_confusion_counts_each_case_once():
@@ -209,7 +274,8 @@ def test_which_cases_the_score_is_of(tmp_path):
     assert [tuple(line.values()) for line in table(tmp_path / "contest.csv")] == [
         ("small", "0.5", "3", "10", "30"),
         ("transfer", "0.25", "1", "40", "40"),
-        ("development and tests", "", "", "1", "9"),
+        ("development", "", "", "1", "9"),
+        ("earlier", "", "", "20", "29"),
     ]
 
 

@@ -130,6 +130,57 @@ def reach(rows: Sequence[Row], transfer: Sequence[Row]) -> list[Asked]:
     return found
 
 
+def further(rows: Sequence[Row]) -> list[tuple[str, Any, Any, Any, int]]:
+    """Give what else there is to say of a score: strict figures, sizes, errors.
+
+    Parameters
+    ----------
+    rows : sequence of Row
+        Of one solver on one set.
+
+    Returns
+    -------
+    list of (str, float or None, float or None, float or None, int)
+        A figure, what was reached, its interval where it is a share, and the cases.
+    """
+    singles = _of(rows, "single")
+    at_20 = [row for row in singles if row.ratio_db == 20.0]
+    hidden = [row for row in rows if row.kind in ("single", "pair", "triple")]
+    foreign = _group(singles, "foreign", 20.0)
+    told = [row for row in hidden if row.parameter_error is not None]
+    several = [row for row in rows if row.kind in ("pair", "triple")]
+    found: list[tuple[str, Share]] = [
+        *(
+            (f"in_set {family} 20 dB", shares(_group(singles, family, 20.0), "in_set"))
+            for family in ("gpi", "preisach", "jiles-atherton")
+        ),
+        ("top1_strict foreign 20 dB", shares(foreign, "top1_strict")),
+        ("exact_set_strict foreign 20 dB", shares(foreign, "exact_strict")),
+        (
+            "false_alarm_strict foreign",
+            shares(
+                [r for r in _of(rows, "none") if r.family in FAMILIES["foreign"]],
+                "false_alarm_strict",
+            ),
+        ),
+        ("pairs_exact", shares(_of(rows, "pair"), "exact")),
+        ("triples_exact", shares(_of(rows, "triple"), "exact")),
+        ("where_hit of several effects", shares(several, "where_hit")),
+        ("where_hit of unlisted effects", shares(_of(rows, "unlisted"), "where_hit")),
+    ]
+    error = middle(told, lambda row: row.parameter_error)
+    numbers = [
+        ("set_size at 20 dB, mean", _mean(at_20, "set_size"), len(at_20)),
+        ("set_size_raw at 20 dB, mean", _mean(at_20, "set_size_raw"), len(at_20)),
+        ("brier", brier(rows), len(rows)),
+        ("relative error of parameters, median", error, len(told)),
+    ]
+    return [
+        *((name, *reached) for name, reached in found),
+        *((name, value, None, None, cases) for name, value, cases in numbers),
+    ]
+
+
 def calibration_error(rows: Sequence[Row]) -> float | None:
     """Mean distance of stated confidence from what happened, over the effects named."""
     bins = reliability(rows)

@@ -10,7 +10,7 @@ from typing import Any
 from hystbench.challenge.contest import tables
 from hystbench.challenge.contest.rows import write_rows
 from hystbench.challenge.contest.score import Row
-from hystbench.challenge.contest.summary import reach, summary
+from hystbench.challenge.contest.summary import Asked, further, reach, summary
 from hystbench.files import write_csv, write_json
 
 #: With room for the rounding of a difference of two shares.
@@ -20,6 +20,7 @@ _CONFUSION = ("kind", "hidden", "answered", "right", "cases")
 _REACH = ("figure", "asked", "reached", "low", "high", "cases", "met")
 _CONTEST = ("set", "scale", "cases", "first_seed", "last_seed")
 _TRANSFER = ("figure", "published", "transfer", "difference", "within 5 points")
+_FURTHER = ("figure", "reached", "low", "high", "cases")
 _RIVALS = (
     "solver",
     "cases",
@@ -57,22 +58,25 @@ def write_score(
         Whose score it is.
     about : mapping
         What summary.json says of the contest: ``set``, ``scale``, ``transfer_scale``,
-        its seeds and ``seeds_used_while_mending`` (first and last).
+        its seeds and ``seeds_used_while_mending`` (first and last, by what they
+        were used for).
     skipped : mapping of str to str
         Solvers that did not enter, and why.
     out : Path
-        Folder: ``summary.json``, ``contest.csv``, ``reach.csv``, ``transfer.csv``,
-        ``cases.csv``, ``transfer-cases.csv``, ``confusion.csv``, ``confused.csv``,
-        ``effects.csv``, ``retuned.csv``, ``power.csv``, ``reliability.csv`` and
-        ``rivals.csv``.
+        Folder: ``summary.json``, ``contest.csv``, ``reach.csv``, ``further.csv``,
+        ``transfer.csv``, ``cases.csv``, ``transfer-cases.csv``, ``confusion.csv``,
+        ``confused.csv``, ``effects.csv``, ``retuned.csv``, ``power.csv``,
+        ``reliability.csv`` and ``rivals.csv``.
     """
     own = [row for row in rows if row.solver == solver]
-    asked = reach(own, transfer)
+    carried = list(_carried(own, transfer)) if transfer else []
+    asked = [*reach(own, transfer), *_off(carried)]
     write_csv(out / "reach.csv", _REACH, (_told(astuple(item)) for item in asked))
+    write_csv(out / "further.csv", _FURTHER, map(_told, further(own)))
     write_rows(out / "cases.csv", rows)
     write_rows(out / "transfer-cases.csv", transfer)
     write_csv(out / "contest.csv", _CONTEST, _held(own, transfer, about))
-    write_csv(out / "transfer.csv", _TRANSFER, map(_told, _carried(own, transfer)))
+    write_csv(out / "transfer.csv", _TRANSFER, map(_told, carried))
     counts = tables.confusion(own)
     write_csv(out / "confusion.csv", _CONFUSION, counts)
     write_csv(
@@ -134,7 +138,7 @@ def _held(
         if seeds:
             told.append((name, scale, len(seeds), min(seeds), max(seeds)))
     mended = about["seeds_used_while_mending"]
-    return [*told, ("development and tests", None, None, *mended)]
+    return [*told, *((name, None, None, *ends) for name, ends in mended.items())]
 
 
 def _carried(
@@ -150,6 +154,15 @@ def _carried(
             share = here.figure != "seconds_per_case"
             within = abs(apart) <= FIVE_POINTS if share else None
             yield here.figure, here.reached, there.reached, apart, within
+
+
+def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[Asked]:
+    """Count the shares that are more than 5 points off on the transfer set."""
+    told = [within for *_, within in carried if within is not None]
+    if told:
+        off = told.count(False)
+        figure = "transfer: shares more than 5 points off"
+        yield Asked(figure, "<= 0", float(off), None, None, len(told), not off)
 
 
 def _shared(own: Sequence[Row], rows: Sequence[Row]) -> list[Row]:
