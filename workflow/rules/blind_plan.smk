@@ -3,7 +3,7 @@
 # the judge, who has the answers as input, makes it anew from the seeds.
 import math
 
-from hystbench.challenge.contest.plan import chunks, plan
+from hystbench.challenge.contest.plan import numbers, sizes
 from hystbench.commands.rival import RIVALS
 from hystbench.entrants.environment import begun_by, not_entered
 from hystbench.errors import nearest
@@ -38,13 +38,13 @@ def blind_scale(name):
 
 def blind_chunks(name):
     """Numbers of the chunks of a set."""
-    return list(chunks(plan(name, blind_scale(name)), CONTEST["chunk"]))
+    return numbers(sum(sizes(name, blind_scale(name))), CONTEST["chunk"])
 
 
 def blind_entrants(wildcards):
     """Who enters with a chunk: all, or those whose share reaches it."""
-    numbers = blind_chunks(wildcards.set)
-    before = numbers.index(wildcards.chunk) / len(numbers)
+    every = blind_chunks(wildcards.set)
+    before = every.index(wildcards.chunk) / len(every)
     return [
         solver
         for solver in BLIND_SOLVERS[wildcards.set]

@@ -10,7 +10,9 @@ from hystbench.challenge.contest.plan import (
     SETS,
     STRATA,
     chunks,
+    numbers,
     plan,
+    sizes,
 )
 from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY
 from hystbench.errors import InputError
@@ -130,3 +132,13 @@ def test_a_scale_beyond_the_seeds_is_refused():
     with pytest.raises(InputError, match="scale: 26"):
         plan("published", 26.0)
     assert most * 25.0 <= 5000
+
+
+@pytest.mark.parametrize("scale", [0.01, 0.3, 1.0])
+def test_jobs_are_counted_without_drawing_their_cases(scale):
+    for name in SETS:
+        cases = plan(name, scale)
+        assert sum(sizes(name, scale)) == len(cases)
+        cut = chunks(cases, 7)
+        assert list(cut) == numbers(len(cases), 7)
+        assert tuple(itertools.chain.from_iterable(cut.values())) == cases

@@ -135,29 +135,41 @@ def plan(name: str, scale: float = 1.0) -> tuple[Entry, ...]:
     InputError
         If there is no such set, or the scale asks for more seeds than there are.
     """
-    if name not in STRATA:
-        raise InputError(f"blind: set: no set {name!r}; {nearest(name, SETS)}")
     entries = []
-    for number, stratum in enumerate(STRATA[name]):
-        cases = max(1, round(stratum.cases * scale))
-        most = PER_STRATUM[name]
-        if cases > most:
-            raise InputError(
-                f"blind: scale: {scale:g} asks for {cases} cases of one sort; expected "
-                f"at most {most / stratum.cases:g}"
-            )
-        first = FIRST_SEED[name] + number * most
+    for number, cases in enumerate(sizes(name, scale)):
+        stratum, first = STRATA[name][number], FIRST_SEED[name]
+        first += number * PER_STRATUM[name]
         for k in range(cases):
             spec = _spec(name, stratum, first + k, number + k)
             entries.append(Entry(_hash(name, spec.seed), spec))
     return tuple(sorted(entries, key=lambda entry: entry.name))
 
 
+def sizes(name: str, scale: float = 1.0) -> list[int]:
+    """Count the cases of each stratum of a set, as for :func:`plan`."""
+    if name not in STRATA:
+        raise InputError(f"blind: set: no set {name!r}; {nearest(name, SETS)}")
+    most, counts = PER_STRATUM[name], []
+    for stratum in STRATA[name]:
+        counts.append(max(1, round(stratum.cases * scale)))
+        if counts[-1] > most:
+            raise InputError(
+                f"blind: scale: {scale:g} asks for {counts[-1]} cases of one sort; "
+                f"expected at most {most / stratum.cases:g}"
+            )
+    return counts
+
+
+def numbers(cases: int, size: int) -> list[str]:
+    """Name the jobs into which so many cases are cut."""
+    return [f"{start // size:04d}" for start in range(0, cases, size)]
+
+
 def chunks(entries: tuple[Entry, ...], size: int) -> dict[str, tuple[Entry, ...]]:
     """Cut a set into jobs of so many cases, by number."""
     return {
-        f"{start // size:04d}": entries[start : start + size]
-        for start in range(0, len(entries), size)
+        name: entries[number * size : (number + 1) * size]
+        for number, name in enumerate(numbers(len(entries), size))
     }
 
 
