@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable
 from pathlib import Path
 
 import matplotlib as mpl
@@ -12,6 +11,7 @@ from matplotlib.figure import Figure
 
 import hystbench
 from benchmarks.timing import OUT
+from hystbench.figures.style import BLUE, LOOKS
 from hystbench.files import atomic_path
 
 STYLE = Path(hystbench.__file__).parent / "figures" / "hystbench.mplstyle"
@@ -53,7 +53,7 @@ def kernels(rows: Rows) -> Figure:
         names = [row["peer"] for row in found]
         ratios = [float(row["ratio"]) for row in found]
         place.hlines(names, 1, ratios, color="0.7", linewidth=2)
-        place.plot(ratios, names, "o", color="C0")
+        place.plot(ratios, names, "o", color=BLUE)
         place.axvline(1, color="0.3", linewidth=0.8)
         place.set(xscale="log", title=title, ylim=(len(names) - 0.5, -0.5))
     axes[-1].set_xlabel("time of the peer / time of hystbench")
@@ -79,17 +79,11 @@ def growth(orders: Rows, samples: Rows) -> Figure:
 
 def lines(axes: Axes, rows: Rows, across: str, up: str) -> None:
     """Draw a line for each filter."""
-    marks = dict(zip(names(rows), "os^D", strict=False))
-    for name, mark in marks.items():
+    for name in dict.fromkeys(row["filter"] for row in rows):
         mine = [row for row in rows if row["filter"] == name]
         mine.sort(key=lambda row: float(row[across]))
         points = [[float(row[key]) for row in mine] for key in (across, up)]
-        axes.plot(*points, marker=mark, label=name)
-
-
-def names(rows: Rows) -> Iterable[str]:
-    """List the filters in the order of the table."""
-    return dict.fromkeys(row["filter"] for row in rows)
+        axes.plot(*points, **LOOKS[name].marked)
 
 
 if __name__ == "__main__":
