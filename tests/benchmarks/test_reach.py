@@ -23,9 +23,9 @@ def told(tmp_path, monkeypatch):
 def test_without_tables_nothing_is_measured(told):
     found = told()
     assert set(found.values()) == {NOTHING}
-    # peers, NumPy loops, Volterra, C, the same result; batches; identification; the
-    # pipeline's four, and the gap's median and worst
-    assert len(found) == 6 + 2 + 1 + 7 + 1 + 3 + 3 + 4 + 2
+    # peers, NumPy loops, Volterra, C, the same result; batches; streams; identification;
+    # the pipeline's four, and the gap's median, worst and two powers
+    assert len(found) == 6 + 2 + 1 + 7 + 1 + 3 + 2 + 3 + 4 + 4
 
 
 def test_kernels(told):
@@ -68,11 +68,21 @@ def test_the_rest(told):
         ),
         batch=("batch efficiency", ("orders", 0.95)),
         gap=(
-            "what seconds",
-            ("a case", 0.7),
-            ("a case", 1.1),
-            ("a case", 3.0),
-            ("a round", 5.0),
+            "what seconds samples candidates",
+            ("a case", 0.7, 900, 8),
+            ("a case", 1.1, 900, 8),
+            ("a case", 3.0, 900, 8),
+            # four times the samples twice as long, twice the candidates four times
+            ("a round", 5.0, 100, 8),
+            ("a round", 10.0, 400, 8),
+            ("a round", 2.5, 400, 4),
+        ),
+        samples=(
+            "filter samples seconds peak_mib",
+            ("gpo", 1_000_000, 1.0, 40.0),
+            ("gpo", 100_000_000, 100.0, 42.0),
+            ("delayed", 1_000_000, 1.0, 40.0),
+            ("delayed", 100_000_000, 1000.0, 80.0),
         ),
     )
     # the worst row counts, of rivals with the same samples too
@@ -86,7 +96,15 @@ def test_the_rest(told):
     assert found[f"{pipeline.NOTHING}: median seconds"] == NOTHING
     orders = "many filters in one call, orders: of two busy loops"
     assert found[orders] == (0.95, "yes")
-    gap = "a case of the gap workflow, seconds of computing"
+    power = "a round of naming: power of its cost in"
+    assert found[f"{power} samples"] == (pytest.approx(0.5), "yes")
+    assert found[f"{power} candidates"] == (pytest.approx(2.0), "no")
+    # the worst filter counts
+    streams = "samples in chunks to 10^8: power of the cost"
+    assert found[streams] == (pytest.approx(1.5), "no")
+    memory = "10^8 samples in chunks: peak memory over that of 10^6"
+    assert found[memory] == (2.0, "no")
+    gap = "a case of the gap workflow, seconds of computing on one core"
     assert found[f"{gap}: median of the cases"] == (1.1, "no")
     assert found[f"{gap}: worst of the cases"] == (3.0, "no")
 
