@@ -23,7 +23,7 @@ def told(tmp_path, monkeypatch):
 def test_without_tables_nothing_is_measured(told):
     found = told()
     assert set(found.values()) == {NOTHING}
-    # peers, NumPy loops, Volterra, C, the same result; batches; streams; then Algorithm 1,
+    # peers, NumPy loops, Volterra, C, the same result; batches; streams; Algorithm 1;
     # the pipeline's four, and the gap's median, worst and two powers
     assert len(found) == 6 + 2 + 1 + 7 + 1 + 3 + 2 + 3 + 4 + 4
 
