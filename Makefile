@@ -41,7 +41,7 @@ $(VENV)/ready-%: requirements-%.txt $(READY)
 	touch $@
 
 # Environments of their own: the rivals want an older numpy, and Snakemake imports the
-# cluster's plugin wherever it is installed, which makes every start half as long again.
+# cluster's plugin wherever it is installed, which makes every start longer.
 # After .venv, which looks first and builds the kernels that all use.
 .venv-%/ready: requirements-%.txt $(READY)
 	test -x $(@D)/bin/python || $(PYTHON) -m venv $(@D)

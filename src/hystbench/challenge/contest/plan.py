@@ -135,10 +135,10 @@ def plan(name: str, scale: float = 1.0) -> tuple[Entry, ...]:
     InputError
         If there is no such set, or the scale asks for more seeds than there are.
     """
+    counts = sizes(name, scale)
     entries = []
-    for number, cases in enumerate(sizes(name, scale)):
-        stratum, first = STRATA[name][number], FIRST_SEED[name]
-        first += number * PER_STRATUM[name]
+    for number, (stratum, cases) in enumerate(zip(STRATA[name], counts, strict=True)):
+        first = FIRST_SEED[name] + number * PER_STRATUM[name]
         for k in range(cases):
             spec = _spec(name, stratum, first + k, number + k)
             entries.append(Entry(_hash(name, spec.seed), spec))

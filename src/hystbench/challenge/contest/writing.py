@@ -69,7 +69,7 @@ def write_score(
         ``reliability.csv`` and ``rivals.csv``.
     """
     own = [row for row in rows if row.solver == solver]
-    carried = list(_carried(own, transfer)) if transfer else []
+    carried = list(_carried(own, transfer))
     asked = [*reach(own, transfer), *_off(carried)]
     write_csv(out / "reach.csv", _REACH, (_told(astuple(item)) for item in asked))
     write_csv(out / "further.csv", _FURTHER, map(_told, further(own)))
