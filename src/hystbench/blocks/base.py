@@ -33,6 +33,9 @@ class Block(ABC):
     reruns: ClassVar[bool] = True
     """Whether the block takes any input, or only one whose output is stored."""
 
+    seen: ClassVar[bool] = True
+    """Whether it says what it does inside, or is a whole simulator of somebody's."""
+
     @classmethod
     def parameters(cls) -> dict[str, Parameter]:
         """Return the declared parameters by name, those with a default last."""

@@ -7,7 +7,7 @@ import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -40,6 +40,7 @@ class External(Block):
     name: ClassVar = "external"
     place: ClassVar = "base"
     reference: ClassVar = "by definition"
+    seen: ClassVar = False
 
     function: str = text("package.module:function of u and dt, which gives y")
 
@@ -51,38 +52,57 @@ class External(Block):
             )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Call the function.
+        """Call the function, or give what it gave for the same samples before.
 
         Raises
         ------
         InputError
             If it cannot be imported, raises, or gives anything but n finite numbers.
         """
-        called = f"{self.function}: called with {len(z)} samples and dt = {dt:g} s"
-        function = imported(self.function)
-        try:
-            given = function(np.array(z), dt)
-        except (Exception, SystemExit) as error:
-            # Whatever a user's program raises is to be told in one line.
-            said = " ".join(f"{type(error).__name__}: {error}".split())
-            raise InputError(f"{called}, it raised {said}") from error
-        try:
-            y = np.array(given, dtype=np.float64)
-        except (TypeError, ValueError):
-            raise InputError(
-                f"{called}, it gave {type(given).__name__}; expected {len(z)} numbers"
-            ) from None
-        if y.shape != z.shape:
-            raise InputError(
-                f"{called}, it gave an array of shape {y.shape}; expected ({len(z)},)"
-            )
-        lost = np.flatnonzero(~np.isfinite(y))
-        if len(lost):
-            raise InputError(
-                f"{called}, it gave {y[lost[0]]} at sample {lost[0]}; "
-                "expected finite numbers"
-            )
-        return y
+        return _kept(self.function, z.tobytes(), dt).copy()
+
+
+KEPT = 256
+"""Outputs that are kept: what is searched behind a simulator runs it but once."""
+
+
+@lru_cache(maxsize=KEPT)
+def _kept(name: str, samples: bytes, dt: float) -> FloatArray:
+    return called(name, np.frombuffer(samples), dt)
+
+
+def called(name: str, z: FloatArray, dt: float) -> FloatArray:
+    """Call a function of somebody's and check what it gives.
+
+    Raises
+    ------
+    InputError
+        If it cannot be imported, raises, or gives anything but n finite numbers.
+    """
+    call = f"{name}: called with {len(z)} samples and dt = {dt:g} s"
+    function = imported(name)
+    try:
+        given = function(np.array(z), dt)
+    except (Exception, SystemExit) as error:
+        # Whatever a user's program raises is to be told in one line.
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        raise InputError(f"{call}, it raised {said}") from error
+    try:
+        y = np.array(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{call}, it gave {type(given).__name__}; expected {len(z)} numbers"
+        ) from None
+    if y.shape != z.shape:
+        raise InputError(
+            f"{call}, it gave an array of shape {y.shape}; expected ({len(z)},)"
+        )
+    lost = np.flatnonzero(~np.isfinite(y))
+    if len(lost):
+        raise InputError(
+            f"{call}, it gave {y[lost[0]]} at sample {lost[0]}; expected finite numbers"
+        )
+    return y
 
 
 @cache

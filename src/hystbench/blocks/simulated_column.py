@@ -39,6 +39,7 @@ class SimulatedColumn(Block):
     place: ClassVar = "base"
     reference: ClassVar = "by definition"
     reruns: ClassVar = False
+    seen: ClassVar = False
 
     column: str = text("the name of a column of simulated output")
     records: tuple[Record, ...] = field(default=(), kw_only=True, repr=False)

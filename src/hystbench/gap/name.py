@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from hystbench.gap.fit import finished
 from hystbench.gap.held_back import gain_held_back
+from hystbench.gap.known import without_unknown
 from hystbench.gap.rank import Candidate, Round, make_score, rank
 from hystbench.gap.reconsider import reconsidered, without_needless
 from hystbench.gap.say import Say, silent
@@ -71,6 +72,7 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     if state.added:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
+    state = without_unknown(state, floor_rms, say)
     return Named(state, found.rounds, reasons)
 
 

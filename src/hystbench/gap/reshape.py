@@ -4,6 +4,9 @@ Powers of what enters the hysteresis, powers of play operators of it (sums of pl
 operators approximate any Prandtl-Ishlinskii operator, sums of their powers much of a
 Preisach operator), each operator of the chain's own hysteresis and the tangents of its
 envelopes, all sent through the blocks behind the hysteresis.
+
+Of a simulator whose inside is not seen the same is made of what it gives as well: what
+else may lie in it, behind its hysteresis, is in there.
 """
 
 from __future__ import annotations
@@ -39,10 +42,9 @@ def reshapings(scene: Scene, sample: Sample) -> FloatArray:
     Returns
     -------
     ndarray, shape (scored samples, k)
-        Without a hysteresis in the chain, no column.
+        Without anything in the chain that holds a hysteresis, no column.
     """
-    place = scene.hysteresis
-    if place is None:
+    if scene.loop is None:
         return np.zeros((len(sample), 0))
     behind = scene.chain[scene.behind_hysteresis :]
     at = None if behind else sample  # what nothing follows is wanted there alone
@@ -73,28 +75,42 @@ def _ways(scene: Scene, sample: Sample | None) -> list[Signals]:
 
     Of whole records, or of scored samples.
     """
-    place = scene.hysteresis
+    place = scene.loop
     assert place is not None  # noqa: S101  (the caller has looked)
     block, v = scene.chain[place], scene.before[place]
-    amplitude = scene.largest(place)
-    thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)
-    plays = [play(z, thresholds)[0].T / amplitude for z in v]
-    scaled = [z / amplitude for z in v]
+    ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
+    sources = [v] if block.seen else [v, scene.before[place + 1]]
+    for signals in sources:
+        ways += _powers(signals, sample)
     own: list[Signals] = []
     if isinstance(block, GeneralizedPrandtlIshlinskii):
-        own = _own(scene, block, v)
-    if sample is not None:
-        where = sample.positions
-        plays = [p[:, at] for p, at in zip(plays, where, strict=True)]
-        scaled = [z[at] for z, at in zip(scaled, where, strict=True)]
-        own = [tuple(z[at] for z, at in zip(x, where, strict=True)) for x in own]
-    ways: list[Signals] = [tuple(np.ones_like(z) for z in scaled)]
-    for base in (scaled, *zip(*plays, strict=True)):
-        power = ways[0]
-        for _ in range(POWERS if base is scaled else OPERATOR_POWERS):
-            power = tuple(a * b for a, b in zip(power, base, strict=True))
-            ways.append(power)
+        own = [_at(x, sample) for x in _own(scene, block, v)]
     return ways + own
+
+
+def _at(signals: Signals, sample: Sample | None) -> Signals:
+    """Give whole signals, or their scored samples."""
+    if sample is None:
+        return signals
+    return tuple(z[at] for z, at in zip(signals, sample.positions, strict=True))
+
+
+def _powers(signals: Signals, sample: Sample | None) -> list[Signals]:
+    """Give powers of signals and of play operators of them."""
+    amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
+    thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)
+    scaled = _at(tuple(z / amplitude for z in signals), sample)
+    plays = []
+    for k, z in enumerate(signals):
+        p = play(z, thresholds)[0].T / amplitude
+        plays.append(p if sample is None else p[:, sample.positions[k]])
+    ways = []
+    for base in (scaled, *zip(*plays, strict=True)):
+        power = base
+        for _ in range(POWERS if base is scaled else OPERATOR_POWERS):
+            ways.append(power)
+            power = tuple(a * b for a, b in zip(power, base, strict=True))
+    return ways
 
 
 def _own(

@@ -25,12 +25,10 @@ class Drift(Effect):
         yield self.inserted(scene, end, form="one slope", unit={"slope": small})
         if not any(shows_a_path(record) for record in scene.records):
             return
-        for form, order in (("ramp", 1), ("path", PATH_ORDER)):
+        for form, order in FORMS.items():
+            degrees = sum(degree(record, order) for record in scene.records)
             yield self.added(
-                scene,
-                Beside(self.name, order, path),
-                form=form,
-                charge=0.5 * order * len(scene.records),
+                scene, Beside(self.name, order, path), form=form, charge=0.5 * degrees
             )
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, float]:
@@ -38,7 +36,17 @@ class Drift(Effect):
         return {"slope": float(np.mean(amplitudes[:, 0]))}
 
 
-PATH_ORDER = 4
+FORMS = {"ramp": 1, "path": 4, "winding path": 10}
+"""Degree of the polynomial that is tried in each record."""
+
+
+def degree(record: Record, order: int) -> int:
+    """Give the degree of a record's path, at most one for each period of the input.
+
+    What goes to and fro as fast as the input could be anything that follows it; a path
+    of that degree has half its frequency.
+    """
+    return min(order, max(1, int(periods(record))))
 
 
 def path(record: Record, given: Values, order: int, at: Samples = EVERY) -> FloatArray:
@@ -48,10 +56,5 @@ def path(record: Record, given: Values, order: int, at: Samples = EVERY) -> Floa
         return ramp
     x = np.linspace(-1.0, 1.0, len(record))[at]
     curved = np.polynomial.legendre.legvander(x, order)
-    # A path as fast as the input's own periods could be anything that follows it.
-    curved[:, max(1, int(periods(record) // PERIODS)) + 1 :] = 0.0
+    curved[:, degree(record, order) + 1 :] = 0.0
     return np.ascontiguousarray(np.hstack([ramp, curved[:, :1], curved[:, 2:]]))
-
-
-PERIODS = 2.0
-"""Of the input for each degree of a path."""

@@ -30,6 +30,8 @@ class Hysteresis(Effect):
         """Offer operators over the range of the input."""
         if scene.hysteresis is not None:
             raise Declined("the chain has a hysteresis already")
+        if scene.loop is not None and scene.chain[scene.loop].reruns:
+            raise Declined("the simulator has a hysteresis already")
         amplitude = scene.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
         slope = BEND / amplitude
