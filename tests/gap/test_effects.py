@@ -11,6 +11,7 @@ from hystbench.blocks.base import Block
 from hystbench.gap.change import removable, with_effect, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, logarithmic
+from hystbench.gap.effects.drift import FORMS, WINDING, path
 from hystbench.gap.fit import score_of
 from hystbench.gap.rank import rank
 from hystbench.gap.scene import Scene
@@ -475,6 +476,21 @@ def test_a_path_is_offered_only_where_something_comes_twice_or_rests():
     assert offered("drift", one_loop) == {"one slope"}
     assert offered("drift", one_loop, two_loops) == {"one slope", "ramp", "path"}
     assert offered("drift", hold) == {"one slope", "ramp", "path"}
+    many_loops = record(sine(9.0, count=1000), name="many")
+    more = {"one slope", "ramp", "path", "winding path"}
+    assert offered("drift", one_loop, many_loops) == more
+
+
+@pytest.mark.parametrize(("loops", "highest"), [(1, 1), (3, 3), (9, 9), (40, 10)])
+def test_a_path_goes_to_and_fro_at_most_half_as_often_as_the_input(loops, highest):
+    made = record(sine(loops, count=1000, phase=0.5), name="loops")
+    columns = path(made, {}, FORMS[WINDING])
+    (shown,) = np.nonzero(columns.any(axis=0))
+    rest = columns[:, shown]
+    assert np.linalg.matrix_rank(rest) == highest + 1
+    line = np.vander(np.linspace(-1, 1, 1000), highest + 1)
+    inside = line @ np.linalg.lstsq(line, rest, rcond=None)[0]
+    assert inside == pytest.approx(rest, abs=1e-9)
 
 
 def test_a_tone_beyond_half_the_sampling_rate_stands_for_nothing():

@@ -5,11 +5,15 @@ import pytest
 from hystbench.gap.shortfall import shortfall
 
 
-def content(fit=0.9, held=0.5, new=0.0, outside=(), names=("eddy-diffusion", "drift")):
+def content(
+    fit=0.9, held=0.5, new=0.0, outside=(), names=("eddy-diffusion", "drift"), ladder=()
+):
     return {
         "effects": [{"name": name} for name in names],
         "fit": {"explained": fit, "new_in_every_record": new},
         "gap": {"explained": held},
+        "unit": "um",
+        "ladder": [{"name": "base", "rms": 2.0}, *ladder],
         "black_box": {
             "records": [
                 {"name": "slow", "outside": []},
@@ -27,6 +31,18 @@ def test_what_is_kept_is_not_worth_a_word():
 def test_little_that_is_lost_of_much_is_not_worth_a_word():
     """0.999 against 0.99: ten times as much is left, and still next to nothing."""
     assert shortfall(content(fit=0.999, held=0.99)) is None
+
+
+def test_an_effect_that_widens_the_gap_is_told_though_all_together_shrink_it():
+    steps = [{"name": "eddy-diffusion", "rms": 1.0}, {"name": "creep", "rms": 1.2}]
+    found = shortfall(content(fit=0.5, held=0.9, ladder=steps))
+    assert found["sentence"] == (
+        "On the hold-out records creep widens the gap, from 1 to 1.2 um."
+    )
+    steps[1]["rms"] = 1.001  # no more than rounding is worth
+    assert shortfall(content(fit=0.5, held=0.9, ladder=steps)) is None
+    steps[1]["rms"] = None  # one that runs away is told elsewhere
+    assert shortfall(content(fit=0.5, held=0.9, ladder=steps)) is None
 
 
 def test_a_shortfall_is_told_with_both_shares():

@@ -10,7 +10,12 @@ from hystbench.gap.explained import (
     share_explained,
     share_interval,
 )
-from hystbench.gap.nuisance import offset_and_mains, split_first, without_nuisance
+from hystbench.gap.nuisance import (
+    degree_that_carries_on,
+    path_and_mains,
+    split_first,
+    without_nuisance,
+)
 from hystbench.gap.shrink import ladder, shrink, spectra
 from tests.gap.made import record, sine
 
@@ -141,12 +146,28 @@ def test_interval_is_wider_where_neighbours_go_together():
     assert widths[1] > 2 * widths[0]
 
 
+def test_a_path_is_carried_on_as_far_as_the_fit_records_bear_it_out():
+    """A steady drift along its slope, a bent one along its bend, a wandering not."""
+    time = np.arange(3000) * 1e-3
+    rng = np.random.default_rng(4)
+    walks = [np.cumsum(rng.standard_normal(3000)) / 50 for _ in range(6)]
+    slopes = [a * time for a in rng.uniform(-2, 2, 6)]
+    bends = [a * time**2 for a in rng.uniform(-2, 2, 6)]
+    for paths, expected in ((walks, 0), (slopes, 1), (bends, 2)):
+        made = [
+            record(sine(2, count=3000), path + noise(k, 3000, 0.02), name=f"r{k}")
+            for k, path in enumerate(paths)
+        ]
+        nothing = [np.zeros(3000)] * 6
+        assert degree_that_carries_on(made, nothing) == expected
+
+
 def test_offset_and_mains_are_estimated_on_the_first_part_only():
     time = np.arange(4000) * 0.001
     new = 0.3 + 0.2 * np.sin(2 * np.pi * 50 * time + 1)
     rest = noise(3, size=0.01)
     item = record(sine(2, count=4000), new + rest)
-    nuisance = offset_and_mains([50.0])
+    nuisance = path_and_mains(0, [50.0])
     scored = split_first(item)
     assert np.array_equal(np.flatnonzero(~scored), np.arange(1200))
     left = without_nuisance(item.y, nuisance(item), scored)
@@ -163,7 +184,7 @@ def test_nuisance_treats_base_and_augmented_alike():
     time = np.arange(4000) * 0.001
     item = record(sine(2, count=4000), 5 + 0 * time + sine(7, count=4000))
     zero = np.zeros(4000)
-    same = shrink([item], [zero], [zero], 0.1, "repeats", offset_and_mains())
+    same = shrink([item], [zero], [zero], 0.1, "repeats", path_and_mains(0))
     assert same.explained == 0
     assert same.before == same.after < 1
     assert same.interval == (0, 0)

@@ -89,25 +89,71 @@ def left_over(
     return without_nuisance(residual, nuisance(record), scored), scored
 
 
-def offset_and_mains(mains_hz: Sequence[float] = (), offset: bool = True) -> Nuisance:
-    """Regressors of an offset and of tones of unknown phase.
-
-    No slope: what the first part of a record says of it, the rest would magnify.
+def path_and_mains(degree: int | None, mains_hz: Sequence[float] = ()) -> Nuisance:
+    """Regressors of a polynomial in time and of tones of unknown phase.
 
     Parameters
     ----------
+    degree : int or None
+        Of the polynomial: 0 is an offset. None where a record has no path of its own.
     mains_hz : sequence of float
         Frequencies of the tones.
-    offset : bool
-        Whether the record may have one of its own, as a path of drift leaves it.
     """
 
     def regressors(record: Record) -> FloatArray:
         time = record.time
-        columns = [np.ones_like(time)] if offset else []
+        span = max(float(time[-1]), record.dt)
+        count = 0 if degree is None else degree + 1
+        columns = [(time / span) ** k for k in range(count)]
         for frequency in mains_hz:
             angle = 2 * np.pi * frequency * time
             columns += [np.cos(angle), np.sin(angle)]
         return np.column_stack(columns) if columns else np.zeros((len(time), 0))
 
     return regressors
+
+
+def degree_that_carries_on(
+    records: Sequence[Record],
+    simulated: Sequence[FloatArray],
+    mains_hz: Sequence[float] = (),
+) -> int:
+    """Choose by how much of a path the first part of a record tells the rest.
+
+    A steady drift goes on along its slope; of one that wanders, a slope would magnify
+    what the first part happened to do. Which of them it is, the fit records show.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Fit records.
+    simulated : sequence of ndarray, shape (n,) each
+        Outputs of the model with its effects.
+    mains_hz : sequence of float
+        Frequencies of tones that are estimated as well.
+
+    Returns
+    -------
+    int
+        0 to 2; a higher one must leave clearly less.
+    """
+    best, least = 0, np.inf
+    for degree in range(HIGHEST + 1):
+        nuisance = path_and_mains(degree, mains_hz)
+        left = [
+            residual[scored]
+            for residual, scored in (
+                left_over(record, output, nuisance)
+                for record, output in zip(records, simulated, strict=True)
+            )
+        ]
+        size = float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
+        if size < CLEARLY * least:
+            best, least = degree, size
+    return best
+
+
+HIGHEST = 2
+"""Degree of a path that may be carried on."""
+CLEARLY = 0.9
+"""Of what a lower degree leaves, rms."""

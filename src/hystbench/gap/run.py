@@ -17,7 +17,7 @@ from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
-from hystbench.gap.nuisance import Nuisance, offset_and_mains
+from hystbench.gap.nuisance import Nuisance, degree_that_carries_on, path_and_mains
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
@@ -226,8 +226,11 @@ def what_is_new(state: State) -> Nuisance | None:
         if "frequency_hz" in values
         for order in range(1, beside.order + 1)
     ]
-    path = any("frequency_hz" not in values for _, values in state.beside)
-    return offset_and_mains(tones, offset=path)
+    if all("frequency_hz" in values for _, values in state.beside):
+        return path_and_mains(None, tones)
+    outputs = Scene(state.chain, state.records, state.hold).output
+    degree = degree_that_carries_on(state.records, outputs, tones)
+    return path_and_mains(degree, tones)
 
 
 def _run_base(

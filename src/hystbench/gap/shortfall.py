@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 from typing import Any
 
 from hystbench.gap.effects import effects
@@ -12,6 +13,9 @@ MATTERS = 0.15
 """Share of the gap's power that is gone on fit records alone, to be worth a word."""
 NEW_MATTERS = 0.05
 """Share that what is new in every record takes, to be named as a reason."""
+
+WIDENS = 1.01
+"""RMS after an effect, in that before it, to be told."""
 
 
 def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -26,14 +30,24 @@ def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
     -------
     dict or None
         ``fit`` and ``hold_out``, the shares of the power above the floor that are
-        gone, and a ``sentence``; None where the hold-out records keep the promise.
+        gone, and a ``sentence``; None where the hold-out records keep the promise and
+        no effect widens the gap there.
     """
     promised, kept = content["fit"]["explained"], content["gap"]["explained"]
     if not isinstance(kept, int | float) and kept is not None:
         kept = max(kept)  # a range keeps the promise if it may
-    names = [item["name"] for item in content["effects"]]
-    if not names or promised is None or kept is None or promised - kept < MATTERS:
+    if promised is None or kept is None:
         return None
+    sentences = [_less(content, promised, kept), *_widens(content)]
+    told = " ".join(sentence for sentence in sentences if sentence)
+    return {"fit": promised, "hold_out": kept, "sentence": told} if told else None
+
+
+def _less(content: Mapping[str, Any], promised: float, kept: float) -> str:
+    """Say by how much less is gone than was promised, and why."""
+    names = [item["name"] for item in content["effects"]]
+    if not names or promised - kept < MATTERS:
+        return ""
     sentence = (
         f"On the fit records {100 * promised:.0f} % of the gap's power is gone, on "
         f"the hold-out records {100 * kept:.0f} %"
@@ -45,7 +59,17 @@ def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
     ]
     if reasons:
         sentence += f": {'; '.join(reasons)}"
-    return {"fit": promised, "hold_out": kept, "sentence": f"{sentence}."}
+    return f"{sentence}."
+
+
+def _widens(content: Mapping[str, Any]) -> list[str]:
+    """Say which step down the ladder is a step up on the hold-out records."""
+    return [
+        f"On the hold-out records {step['name']} widens the gap, from "
+        f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
+        for last, step in pairwise(content["ladder"])
+        if last["rms"] and step["rms"] and step["rms"] > WIDENS * last["rms"]
+    ]
 
 
 def _runs_away(content: Mapping[str, Any]) -> list[str]:

@@ -25,18 +25,23 @@ class Drift(Effect):
         yield self.inserted(scene, end, form="one slope", unit={"slope": small})
         if not any(shows_a_path(record) for record in scene.records):
             return
-        for form, order in FORMS.items():
-            degrees = sum(degree(record, order) for record in scene.records)
-            yield self.added(
-                scene, Beside(self.name, order, path), form=form, charge=0.5 * degrees
-            )
+        charges = {
+            form: 0.5 * sum(degree(record, order) for record in scene.records)
+            for form, order in FORMS.items()
+        }
+        if charges[WINDING] == charges[PATH]:
+            del charges[WINDING]  # no record has periods enough to wind
+        for form, charge in charges.items():
+            beside = Beside(self.name, FORMS[form], path)
+            yield self.added(scene, beside, form=form, charge=charge)
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, float]:
         """Give the block's slope: the mean one, of a path that of its ramp."""
         return {"slope": float(np.mean(amplitudes[:, 0]))}
 
 
-FORMS = {"ramp": 1, "path": 4, "winding path": 10}
+RAMP, PATH, WINDING = "ramp", "path", "winding path"
+FORMS = {RAMP: 1, PATH: 4, WINDING: 10}
 """Degree of the polynomial that is tried in each record."""
 
 
