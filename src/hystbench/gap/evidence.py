@@ -90,7 +90,9 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     fit = tuple(record for record in records if record.use == "fit")
     hold_out = tuple(record for record in records if record.use == "hold-out")
     for record in records:
-        check_usable(dataset.record_files[record.name], record)
+        check_usable(
+            dataset.record_files[record.name], record, dataset.stands_still(record.name)
+        )
     about = dataset.about
     hold: Hold = about["input"].get("hold", "band-limited")
     named = about.get("identification")

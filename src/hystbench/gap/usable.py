@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
@@ -23,9 +24,13 @@ PARTS = 12
 """That a stretch is cut into; their means are free of noise and of fast ringing."""
 MOVES = 0.1
 """Of the output's range, that it goes meanwhile."""
+REAL = "; if it is real, say 'stands_still: [{}]' of this record in dataset.yaml"
+"""What a refusal ends with: only who measured can know."""
 
 
-def check_usable(file: Path, record: Record) -> None:
+def check_usable(
+    file: Path, record: Record, stands_still: Collection[str] = ()
+) -> None:
     """Refuse a record one of whose channels stands still while the other moves.
 
     Parameters
@@ -33,13 +38,23 @@ def check_usable(file: Path, record: Record) -> None:
     file : Path
         Where it was read from, for the message.
     record : Record
+    stands_still : collection of {"input", "output"}
+        Channels that really do so, as at an end stop; they are not looked at.
 
     Raises
     ------
     InputError
-        With the first row of the stretch, and whether it looks stuck or clipped.
+        With the first row of the stretch, whether it looks stuck or clipped, and what
+        to say where it is real.
     """
-    _check_input(file, record)
+    if "input" not in stands_still:
+        _check_input(file, record)
+    if "output" not in stands_still:
+        _check_output(file, record)
+
+
+def _check_output(file: Path, record: Record) -> None:
+    """Refuse an output that stands still while the input moves."""
     y, u = record.y, record.u
     changes = np.flatnonzero(np.diff(y) != 0)
     edges = np.concatenate([[0], changes + 1, [len(y)]])
@@ -64,6 +79,7 @@ def check_usable(file: Path, record: Record) -> None:
             f"{file}: row {first + 2}: {record.output.name} is {y[first]:g} "
             f"{record.output.unit} for {last - first} samples while the input moves; "
             f"expected a channel that is not {'clipped' if at_end else 'stuck'}"
+            + REAL.format("output")
         )
 
 
@@ -92,6 +108,7 @@ def _check_input(file: Path, record: Record) -> None:
             raise InputError(
                 f"{file}: row {first + 2}: {name} is {u[first]:g} "
                 f"{said.format(last - first)} a channel that is not stuck"
+                + REAL.format("input")
             )
     for end in (u.min(), u.max()):
         own = [y[a:b] for a, b in flat if u[a] == end and b < len(u)]
@@ -100,6 +117,7 @@ def _check_input(file: Path, record: Record) -> None:
             raise InputError(
                 f"{file}: row {first + 2}: {name} is {end:g} "
                 f"{said.format(last - first)} a channel that is not clipped"
+                + REAL.format("input")
             )
 
 
