@@ -1,9 +1,11 @@
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.dataset import load_dataset
+from hystbench.dataset import SCHEMA, load_dataset
 from tests.conftest import csv_text
 from tests.messages import message
 
@@ -169,3 +171,20 @@ def test_text_that_is_not_utf_8_is_told(write_dataset):
     assert "expected text in UTF-8" in message(lambda: load_dataset(path).read("r"))
     path.write_bytes("name: prüf\n".encode("latin-1"))
     assert "expected text in UTF-8" in message(lambda: load_dataset(path))
+
+
+def keys_of(schema):
+    """Name all keys of a JSON Schema, at any depth."""
+    for name, about in schema.get("properties", {}).items():
+        yield name
+        yield from keys_of(about)
+    if "items" in schema:
+        yield from keys_of(schema["items"])
+
+
+def test_the_tutorial_names_every_key(root):
+    text = (root / "docs" / "tutorial.md").read_text(encoding="utf-8")
+    section = text.partition("## 2. A dataset.yaml")[2].partition("\n## ")[0]
+    words = set(re.findall(r"\w+", section))
+    assert len(found := set(keys_of(SCHEMA))) > 10
+    assert found <= words

@@ -42,6 +42,7 @@ COMMANDS = {
     "pressure": "Judge the claims on many twins, step sizes and seeds.",
     "contest": "Give each filter its own best step size.",
     "gap": "Find what a simulator lacks, add it, show the gap shrink.",
+    "gap-check": "Check all records of a gap before it is searched.",
     "gap-start": "Run the base of a gap on the fit records.",
     "gap-candidate": "Try one effect beside a model.",
     "gap-choose": "Take the best effect of a round, if it pays.",

@@ -81,6 +81,11 @@ SCHEMA: dict[str, Any] = {
                     "file": {"type": "string"},
                     "use": {"enum": ["fit", "hold-out"]},
                     "period_samples": {"type": "integer", "minimum": 2},
+                    "stands_still": {
+                        "type": "array",
+                        "items": {"enum": ["input", "output"]},
+                        "uniqueItems": True,
+                    },
                 },
             },
         },
@@ -116,6 +121,10 @@ class Dataset:
         """Tell what a record may be used for."""
         use: Use = self._entry(name).get("use", "fit")
         return use
+
+    def stands_still(self, name: str) -> tuple[str, ...]:
+        """Tell which channels of a record, input or output, really stand still."""
+        return tuple(self._entry(name).get("stands_still", ()))
 
     def _entry(self, name: str) -> Mapping[str, Any]:
         """Give what dataset.yaml says of a record."""

@@ -4,6 +4,7 @@ Bases that are functions or columns have tests of their own beside their module.
 """
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def tables():
 def rig(tmp_path):
     """Write a dataset and a base, run the workflow on them."""
 
-    def run(records=None, about=None, uses=None, model=None, report=False):
+    def run(records=None, about=None, uses=None, model=None, report=False, real=None):
         folder = tmp_path / "rig"
         folder.mkdir()
         for name, table in (records or tables()).items():
@@ -53,7 +54,10 @@ def rig(tmp_path):
                 header="time_s,current_A,displacement_um",
                 comments="",
             )
-        entries = [{"file": f"{k}.csv", "use": v} for k, v in (uses or USES).items()]
+        said = {} if real is None else {"stands_still": real}
+        entries = [
+            {"file": f"{k}.csv", "use": v, **said} for k, v in (uses or USES).items()
+        ]
         content = {**ABOUT, **(about or {}), "records": entries}
         (folder / "dataset.yaml").write_text(yaml.safe_dump(content))
         base = {
@@ -143,6 +147,21 @@ def test_a_clipped_channel(rig, name):
         "row",
         records=changed(name, clip),
     )
+
+
+def test_a_drive_that_saturates_is_named_once_the_dataset_says_that_it_is_real(rig):
+    """Its output stands still at the limit, in steps of a coarse converter."""
+    limit, step = 0.35, 0.05
+    records = tables()
+    for table in records.values():
+        driven = np.clip(table[:, 1], -limit, limit)
+        table[:, 2] = np.round(12 * driven / step) * step
+    refused(rig, "one.csv", "clipped", "'stands_still: [output]'", records=records)
+    shutil.rmtree(rig.out.parent / "rig")
+    finding = rig(records=records, real=["output"])
+    (effect,) = finding.content["effects"]
+    assert effect["name"] == "drive-saturation"
+    assert effect["parameters"]["limit"]["value"] == pytest.approx(limit, rel=0.02)
 
 
 @pytest.mark.parametrize("name", USES)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import yaml
 
 from hystbench.blocks.gain import Gain
 from hystbench.gap.evidence import check_units, load_evidence
@@ -78,6 +79,89 @@ def test_a_stuck_output_is_named(tmp_path):
     said = message(lambda: load_evidence(write_folder(tmp_path / "d", pair(y))))
     assert "row 402: displacement is" in said
     assert "not stuck" in said
+
+
+def saturated(coarse=0.05):
+    """An output of a drive that saturates, in steps of a coarse converter."""
+    return np.round(np.clip(Y, -4.0, 4.0) / coarse) * coarse
+
+
+def say(folder, stands_still, name="a"):
+    """Say of a record in dataset.yaml that channels really stand still."""
+    file = folder / "dataset.yaml"
+    about = yaml.safe_load(file.read_text())
+    (entry,) = (item for item in about["records"] if item["file"] == f"{name}.csv")
+    entry["stands_still"] = stands_still
+    file.write_text(yaml.safe_dump(about))
+    return folder
+
+
+@pytest.mark.parametrize("use", ["fit", "hold-out"])
+def test_an_output_that_really_saturates_is_taken_where_the_dataset_says_so(
+    tmp_path, use
+):
+    made = [*pair(), record(U, saturated(), name="c", use=use)]
+    folder = write_folder(tmp_path / "d", made)
+    said = message(lambda: load_evidence(folder))
+    assert "c.csv: row" in said
+    assert said.endswith(
+        "expected a channel that is not clipped; if it is real, say "
+        "'stands_still: [output]' of this record in dataset.yaml"
+    )
+    found = load_evidence(say(folder, ["output"], "c"))
+    (taken,) = (item for item in (*found.fit, *found.hold_out) if item.name == "c")
+    np.testing.assert_allclose(taken.y, saturated())
+
+
+def test_an_input_that_is_really_limited_is_taken_where_the_dataset_says_so(tmp_path):
+    """An amplifier at its end, measured, before mechanics that ring."""
+    folder = write_folder(tmp_path / "d", pair(u=np.clip(U, -0.6, 0.6)))
+    said = message(lambda: load_evidence(folder))
+    assert "a.csv: row" in said
+    assert "current is" in said
+    assert said.endswith("'stands_still: [input]' of this record in dataset.yaml")
+    found = load_evidence(say(folder, ["input"]))
+    np.testing.assert_array_equal(found.fit[0].u, np.clip(U, -0.6, 0.6))
+
+
+@pytest.mark.parametrize(
+    ("channels", "name"), [(["input"], "a"), ([], "a"), (["output"], "b")]
+)
+def test_it_holds_of_that_channel_of_that_record_alone(tmp_path, channels, name):
+    folder = write_folder(tmp_path / "d", pair(saturated()))
+    before = message(lambda: load_evidence(folder))
+    assert message(lambda: load_evidence(say(folder, channels, name))) == before
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (["outptu"], "stands_still: 0: 'outptu' is unknown; did you mean 'output'?"),
+        (["y"], "'y' is unknown; expected one of input, output"),
+        ("output", "stands_still: 'output'; expected a list"),
+        (["output", "output"], "expected each item once"),
+    ],
+)
+def test_a_channel_that_is_none_is_refused(tmp_path, value, expected):
+    folder = say(write_folder(tmp_path / "d", pair()), value)
+    said = message(lambda: load_evidence(folder))
+    assert "dataset.yaml: records: 0" in said
+    assert expected in said
+
+
+@pytest.mark.parametrize(
+    ("spoil", "expected"),
+    [
+        (lambda y: y * np.where(np.arange(len(y)) == 7, np.nan, 1), "row 9"),
+        (lambda y: y * np.where(np.arange(len(y)) == 7, np.inf, 1), "row 9"),
+        (np.zeros_like, "constant"),
+    ],
+)
+def test_no_word_makes_a_channel_of_no_number_or_no_motion_usable(
+    tmp_path, spoil, expected
+):
+    folder = write_folder(tmp_path / "d", pair(spoil(saturated())))
+    assert expected in message(lambda: load_evidence(say(folder, ["input", "output"])))
 
 
 def test_an_output_may_rest_with_its_input_and_be_coarsely_digitized(tmp_path):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
+import os
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,6 +18,7 @@ from .conftest import Workflow, small_config
 
 PAGE = "results/gap/tiny/report.html"
 GAP = "results/gap/tiny/gap.json"
+CHECKED = "results/gap/tiny/stages/checked"
 #: Rounds of the small case: the lag is added, then nothing pays.
 ROUNDS = 2
 
@@ -46,12 +49,19 @@ def whole(tmp_path_factory):
     return Finished(workflow.folder, workflow.environment, workflow.run(PAGE))
 
 
+@pytest.fixture(scope="module")
+def effects(tmp_path_factory):
+    workflow = configured(tmp_path_factory.mktemp("effects"), small_config(), "effects")
+    return Finished(workflow.folder, workflow.environment, workflow.run(PAGE))
+
+
 def load(workflow):
     return json.loads((workflow.folder / GAP).read_text())
 
 
 def test_one_job_names_the_lag_and_closes_the_gap(whole):
     assert whole.done == {
+        "gap_check": 1,
         "gap_start": 1,
         "gap_decide": 1,
         "gap_show": 1,
@@ -81,17 +91,20 @@ def test_gap_json_holds_the_rms_of_the_hold_out_record(whole):
         assert gap[key] == pytest.approx(rms, rel=1e-6)
 
 
-def test_a_job_an_effect_gives_the_same(whole, tmp_path_factory, config):
-    workflow = configured(tmp_path_factory.mktemp("effects"), config, "effects")
-    workflow.run(PAGE)
-    stages = workflow.folder / "results/gap/tiny/stages"
+def test_a_job_an_effect_gives_the_same(whole, effects):
+    stages = effects.folder / "results/gap/tiny/stages"
     rounds = [stages / f"round-{number}" for number in range(1, ROUNDS + 1)]
     assert sorted(path for path in stages.iterdir() if path.is_dir()) == rounds
     assert {path.stem for path in rounds[0].iterdir()} == {
         item["name"] for item in load(whole)["ranking"]
     }
-    assert load(workflow) == load(whole)
-    assert workflow.would_run(PAGE) == {}
+    written, as_written = whole.files(), effects.files()
+    assert {"gap/tiny/report.html", "gap/tiny/stages/decision.json"} <= set(written)
+    for name, content in written.items():
+        assert as_written.get(name) == content, name
+    more = set(as_written) - set(written)
+    assert all("/stages/round-" in name for name in more)
+    assert effects.would_run(PAGE) == {}
 
 
 def test_the_next_experiment_is_written_within_the_limits_of_its_dataset(
@@ -125,12 +138,95 @@ def test_limits_between_which_nothing_lies_are_one_line(workflow, config):
     assert told in refused.stdout + refused.stderr
 
 
-def test_hold_out_records_are_read_by_one_job(whole):
-    data = whole.folder / "tiny" / "dataset"
+READ_HOLD_OUT = {"gap_check", "gap_show"}
+"""Rules that may have hold-out files for inputs."""
+DECIDE = {"gap_start", "gap_candidate", "gap_choose", "gap_decide"}
+
+
+HELD_OUT = "tiny/dataset/unseen.csv"
+
+
+@dataclass(frozen=True)
+class Made:
+    """A file, the rule that made it, and the inputs that its job had."""
+
+    file: str
+    rule: str
+    input: frozenset[str]
+
+
+def made(workflow, target) -> list[Made]:
+    """Give all files that a target depends on, as Snakemake recorded them."""
+    result = workflow.snakemake("--detailed-summary", target)
+    assert result.returncode == 0, result.stderr
+    return [
+        Made(
+            row["output_file"],
+            row["rule"],
+            frozenset(row["input-file(s)"].split(",")),
+        )
+        for row in csv.DictReader(io.StringIO(result.stdout), delimiter="\t")
+    ]
+
+
+def upstream(files: list[Made], one: Made) -> set[str]:
+    """Name all files that a file depends on, near and far."""
+    inputs = {item.file: item.input for item in files}
+    found, waiting = set(), set(one.input)
+    while waiting:
+        found |= waiting
+        waiting = set().union(*(inputs.get(name, ()) for name in waiting)) - found
+    return found
+
+
+@pytest.mark.parametrize("mode", ["whole", "effects"])
+def test_hold_out_files_are_never_upstream_of_what_decides(mode, request):
+    files = made(request.getfixturevalue(mode), PAGE)
+    assert {item.rule for item in files if HELD_OUT in item.input} == READ_HOLD_OUT
+    decided = [item for item in files if item.rule in DECIDE]
+    rules = DECIDE if mode == "effects" else {"gap_start", "gap_decide"}
+    assert {item.rule for item in decided} == rules
+    for item in decided:
+        behind = upstream(files, item)
+        assert "tiny/dataset/slow.csv" in behind
+        assert not behind & {HELD_OUT, CHECKED}, item.file
+    (gap,) = (item for item in files if item.file == GAP)
+    assert {HELD_OUT, CHECKED} <= gap.input
+
+
+@pytest.mark.parametrize("mode", ["whole", "effects"])
+def test_an_edited_hold_out_record_is_checked_and_shown_again(mode, request):
+    workflow = request.getfixturevalue(mode)
+    data = workflow.folder / "tiny" / "dataset"
+    kept = (data / "unseen.csv").stat()
     edit(data / "unseen.csv")
-    assert whole.would_run(PAGE) == {"gap_show": 1, "gap_report": 1}
+    again = {"gap_check": 1, "gap_show": 1, "gap_report": 1}
+    assert workflow.would_run(PAGE) == again
+    os.utime(data / "unseen.csv", ns=(kept.st_atime_ns, kept.st_mtime_ns))
+    kept = (data / "slow.csv").stat()
     edit(data / "slow.csv")
-    assert whole.would_run(PAGE) == whole.done
+    assert DECIDE & set(workflow.would_run(PAGE)) >= {"gap_start"}
+    os.utime(data / "slow.csv", ns=(kept.st_atime_ns, kept.st_mtime_ns))
+
+
+def test_a_check_leaves_nothing_of_the_hold_out_records(whole):
+    assert (whole.folder / CHECKED).read_bytes() == b""
+
+
+@pytest.mark.parametrize("mode", ["whole", "effects"])
+def test_a_bad_hold_out_file_stops_the_run_before_the_search(tmp_path, config, mode):
+    workflow = configured(tmp_path, config, mode)
+    file = tmp_path / "tiny" / "dataset" / "unseen.csv"
+    lines = file.read_text().splitlines()
+    lines[8] = "0.0014,nan,1"
+    file.write_text("\n".join(lines) + "\n")
+    # On one core what has priority comes first.
+    result = workflow.snakemake(PAGE, "--cores", "1")
+    assert result.returncode != 0
+    told = "unseen.csv: row 9: column 'current_A' is 'nan'; expected a finite number"
+    assert told in result.stdout + result.stderr
+    stages = tmp_path / "results/gap/tiny/stages"
+    assert not [path for path in stages.rglob("*") if path.is_file()]
 
 
 def test_an_edited_simulator_is_tried_again(tmp_path, config):

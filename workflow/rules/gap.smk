@@ -17,7 +17,7 @@ EFFECTS = {
     if name != "hystbench.gap.effects.base"
 }
 # What each case is made of. Fit records are inputs of all jobs, hold-out records of
-# `gap_show` alone (and of the job that writes the twin's dataset).
+# `gap_check` and `gap_show` alone (and of the job that writes the twin's dataset).
 GAP_CASES = {}
 
 if TWIN:
@@ -85,6 +85,31 @@ wildcard_constraints:
     case="|".join(map(re.escape, GAP_CASES)) or "none",
     effect="|".join(EFFECTS),
     round="[1-9]",
+
+
+# Whether all files can be used, before a search is paid: it goes first, and where it
+# fails nothing else is started. What decides does not wait for it, so that no hold-out
+# file is upstream of that; and it tells nothing but that it passed.
+rule gap_check:
+    input:
+        dataset=of_case("dataset"),
+        fit=of_case("fit"),
+        hold_out=of_case("hold_out"),
+        model=model_of_case,
+        code=code("hystbench.commands.gap_check"),
+    output:
+        touch(f"{STAGES}/checked"),
+    log:
+        f"{RESULTS}/logs/gap/{{case}}/check.log",
+    benchmark:
+        f"{RESULTS}/logs/benchmarks/gap/{{case}}/check.tsv"
+    priority: 2
+    params:
+        model=of_case("model"),
+    message:
+        "files of {wildcards.case}"
+    shell:
+        "hystbench gap-check {input.dataset:q} --model {params.model:q} 2> {log:q}"
 
 
 # The base, read or identified, and the floor.
@@ -200,9 +225,10 @@ rule gap_decide:
         " {params.limits} {params.experiment} --out {params.folder:q} 2> {log:q}"
 
 
-# The one job that reads hold-out records: verdict, effects and model are written.
+# The one job that shows hold-out records: verdict, effects and model are written.
 rule gap_show:
     input:
+        checked=rules.gap_check.output,
         dataset=of_case("dataset"),
         fit=of_case("fit"),
         hold_out=of_case("hold_out"),

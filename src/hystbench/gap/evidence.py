@@ -5,21 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from hystbench.blocks.held import Hold
-from hystbench.dataset import Dataset, load_dataset
+from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
+from hystbench.gap.usable import check_usable
 from hystbench.model import Model
-from hystbench.record import Channel, FloatArray, Record, Use
+from hystbench.record import Channel, Record, Use
 from hystbench.units import check_same_unit
-
-STUCK = 0.05
-"""Share of a record, and of the input's range, over which no output stands still."""
-CLIPPED = 0.01
-"""The same share of the input's range at an end of the output, in many stretches."""
-COARSE = 3.0
-"""Steps of a digitized output that it may be off by in a motion: it shows less."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +90,9 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     fit = tuple(record for record in records if record.use == "fit")
     hold_out = tuple(record for record in records if record.use == "hold-out")
     for record in records:
-        _check_usable(dataset, record)
+        check_usable(
+            dataset.record_files[record.name], record, dataset.stands_still(record.name)
+        )
     about = dataset.about
     hold: Hold = about["input"].get("hold", "band-limited")
     named = about.get("identification")
@@ -133,139 +127,3 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
         whose = f"the {data_have.name} of {evidence.name}"
         where = f"{place}: {key}: unit"
         check_same_unit(where, model_has.unit, whose, data_have.unit)
-
-
-def _check_usable(dataset: Dataset, record: Record) -> None:
-    """Refuse a record one of whose channels stands still while the other moves."""
-    _check_input(dataset, record)
-    y, u = record.y, record.u
-    changes = np.flatnonzero(np.diff(y) != 0)
-    edges = np.concatenate([[0], changes + 1, [len(y)]])
-    ends = (y.min(), y.max())
-    # Stretches over which the input goes on, by far more than the output tells.
-    starts = edges[:-1]
-    went = np.maximum.reduceat(u, starts) - np.minimum.reduceat(u, starts)
-    went = went / max(float(np.ptp(u)), 1e-300)
-    told = COARSE * _quantum(y) / max(float(np.ptp(y)), 1e-300)
-    flat = {
-        (int(edges[k]), int(edges[k + 1])): float(went[k])
-        for k in np.flatnonzero(went > max(CLIPPED, told))
-    }
-    clipped = [part for part in flat if y[part[0]] in ends]
-    stuck = [[part] for part, far in flat.items() if far > STUCK]
-    for stretches in (*stuck, clipped):
-        if sum(last - first for first, last in stretches) <= STUCK * len(y):
-            continue
-        first, last = stretches[0]
-        file = dataset.record_files[record.name]
-        at_end = y[first] in ends
-        raise InputError(
-            f"{file}: row {first + 2}: {record.output.name} is {y[first]:g} "
-            f"{record.output.unit} for {last - first} samples while the input moves; "
-            f"expected a channel that is not {'clipped' if at_end else 'stuck'}"
-        )
-
-
-def _quantum(y: FloatArray) -> float:
-    """Give the smallest step of a channel: at least what it is digitized by."""
-    moves = np.abs(np.diff(y))
-    return float(moves[moves > 0].min(initial=np.inf))
-
-
-def _check_input(dataset: Dataset, record: Record) -> None:
-    """Refuse an input that stands still while the output goes on.
-
-    An input may rest, and the output then settles or rings. But an input that stops in
-    the middle of a motion, or stands from the first sample on, and jumps to where the
-    motion has come to meanwhile was stuck; and one that stops at its end every time,
-    while the output turns half way, was clipped.
-    """
-    u, y = record.u, record.y
-    file, name = dataset.record_files[record.name], record.input.name
-    flat = _flat(u)
-    said = f"{record.input.unit} for {{}} samples while the output goes on; expected"
-    reach = float(np.ptp(y))
-    for first, last in flat:
-        on = last < len(u) and _jumps(u, last) and _unmoved(y, last, last - first)
-        if on and _moves(y[first:last], reach):
-            raise InputError(
-                f"{file}: row {first + 2}: {name} is {u[first]:g} "
-                f"{said.format(last - first)} a channel that is not stuck"
-            )
-    for end in (u.min(), u.max()):
-        own = [y[a:b] for a, b in flat if u[a] == end and b < len(u)]
-        if len(own) > 1 and all(_turns_half_way(part, reach) for part in own):
-            first, last = next((a, b) for a, b in flat if u[a] == end)
-            raise InputError(
-                f"{file}: row {first + 2}: {name} is {end:g} "
-                f"{said.format(last - first)} a channel that is not clipped"
-            )
-
-
-APPROACH = 5
-"""Samples of motion before the input stops, or after it jumps."""
-JUMP = 10.0
-"""Of the median step: a larger one is a jump."""
-PARTS = 12
-"""That a stretch is cut into; their means are free of noise and of fast ringing."""
-MOVES = 0.1
-"""Of the output's range, that it goes meanwhile."""
-
-
-def _flat(u: FloatArray) -> list[tuple[int, int]]:
-    """Give the stretches, long enough to matter, where an input that moved is still."""
-    moves = np.abs(np.diff(u))
-    edges = np.concatenate([[0], np.flatnonzero(moves != 0) + 1, [len(u)]])
-    usual = JUMP * float(np.median(moves[moves != 0]))
-    long = np.flatnonzero(np.diff(edges) >= max(STUCK * len(u), 2 * PARTS))
-    found = []
-    for first, last in zip(edges[long].tolist(), edges[long + 1].tolist(), strict=True):
-        # The motion that stops; of a stretch from the start, the one that goes on.
-        beside = (
-            moves[last : last + APPROACH]
-            if not first
-            else (moves[max(first - APPROACH, 0) : first])
-        )
-        if len(beside) == APPROACH and beside.min() > 0 and beside.max() < usual:
-            found.append((first, last))
-    return found
-
-
-def _jumps(u: FloatArray, at: int) -> bool:
-    moves = np.abs(np.diff(u))
-    return bool(moves[at - 1] > JUMP * np.median(moves[moves != 0]))
-
-
-def _unmoved(y: FloatArray, at: int, span: int) -> bool:
-    """Tell whether an output goes on at its rate past a jump of the input."""
-    part = max(span // PARTS, 2)
-    before = y[at - 1] - y[max(at - 1 - part, 0)]
-    after = y[min(at + part, len(y) - 1)] - y[at]
-    return bool(abs(after - before) < 0.5 * abs(before))
-
-
-def _means(y: FloatArray) -> FloatArray:
-    return np.array([float(part.mean()) for part in np.array_split(y, PARTS)])
-
-
-def _moves(y: FloatArray, reach: float) -> bool:
-    """Tell whether an output goes far and is no slower in the end."""
-    means = _means(y)
-    steps, third = np.abs(np.diff(means)), PARTS // 3
-    settles = steps[-third:].mean() < steps[:third].mean() / 2
-    return bool(np.ptp(means) > MOVES * reach) and not settles
-
-
-def _turns_half_way(y: FloatArray, reach: float) -> bool:
-    """Tell whether an output turns once, in the middle, as far there as back."""
-    means = _means(y)
-    turn = int(np.argmax(np.abs(means - means[0])))
-    there, back = abs(means[turn] - means[0]), abs(means[-1] - means[turn])
-    steps = np.diff(means)
-    turns = np.count_nonzero(np.diff(np.sign(steps[np.abs(steps) > 0.02 * reach])))
-    middle = PARTS / 3 <= turn + 0.5 <= 2 * PARTS / 3
-    return (
-        middle
-        and min(there, back) > max(MOVES * reach, 0.5 * max(there, back))
-        and (turns == 1)
-    )

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
@@ -30,7 +29,7 @@ from hystbench.gap.shrink import (
     records_mapping,
     shrink,
 )
-from hystbench.gap.start import check_finite
+from hystbench.gap.start import run_base
 from hystbench.gap.state import State
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
@@ -80,7 +79,7 @@ def close_gap(
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder}: a file; expected a folder to write into")
     # Whether the base runs on the inputs held out is known before the search is paid.
-    _run_base(base.with_hold(evidence.hold), evidence.hold_out, evidence.hold)
+    run_base(base, evidence.hold_out, evidence.hold)
     finding = find(
         evidence.name,
         evidence.fit,
@@ -185,7 +184,7 @@ def show(
         finding stays: the record is told, and counts as nothing closed.
     """
     nuisance = what_is_new(state)
-    before = _run_base(base.with_hold(state.hold), records, state.hold)
+    before = run_base(base, records, state.hold)
     usual = reach(before, floor.rms)
     after, lost = _run(_name(base, state), state, records, usual)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
@@ -231,14 +230,6 @@ def what_is_new(state: State) -> Nuisance | None:
     outputs = Scene(state.chain, state.records, state.hold).output
     degree = degree_that_carries_on(state.records, outputs, tones)
     return path_and_mains(degree, tones)
-
-
-def _run_base(
-    base: Model, records: tuple[Record, ...], hold: Hold
-) -> tuple[FloatArray, ...]:
-    outputs = Scene(base.chain, records, hold).output
-    check_finite(base.name, records, outputs)
-    return outputs
 
 
 def _run(

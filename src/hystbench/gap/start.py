@@ -53,6 +53,32 @@ def start_state(
     return state, noise_floor(compared, declared)
 
 
+def run_base(
+    base: Model, records: tuple[Record, ...], hold: Hold
+) -> tuple[FloatArray, ...]:
+    """Simulate the base as it is shown, with plain steps.
+
+    Parameters
+    ----------
+    base : Model
+    records : tuple of Record
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n,) each
+
+    Raises
+    ------
+    InputError
+        If an output is not finite.
+    """
+    outputs = Scene(base.with_hold(hold).chain, records, hold).output
+    check_finite(base.name, records, outputs)
+    return outputs
+
+
 def check_finite(
     name: str, records: Sequence[Record], outputs: Sequence[FloatArray]
 ) -> None:

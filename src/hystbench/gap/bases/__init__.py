@@ -19,6 +19,7 @@ from hystbench.model import Model, load_model
 __all__ = [
     "Linear",
     "function_base",
+    "given_base",
     "identified_gpi",
     "identified_linear",
     "load_base",
@@ -26,7 +27,9 @@ __all__ = [
     "written_base",
 ]
 
-WORDS = ("gpi", "linear", "column")
+IDENTIFIED = ("gpi", "linear")
+"""Words for a base that is identified from the fit records."""
+WORDS = (*IDENTIFIED, "column")
 """What may stand in the place of a model file."""
 
 
@@ -62,11 +65,36 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
             if not isinstance(found.model.value(name), str)
         ]
         return replace(found.model, free=tuple(numbers)), found.note
+    model, note = given_base(text, evidence)
+    model, more = split_given(model, evidence)
+    return model, note + more
+
+
+def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
+    """Give a base that is not identified, as it is given.
+
+    Parameters
+    ----------
+    text : str
+        As for :func:`load_base`, but none of ``IDENTIFIED``.
+    evidence : Evidence
+
+    Returns
+    -------
+    Model
+    str
+        One sentence: where it comes from.
+
+    Raises
+    ------
+    InputError
+        If the text is no base, units differ, or the base cannot be had.
+    """
     if text == "column":
         return simulated_column(evidence)
     if Path(text).is_file() or text.endswith((".yaml", ".yml")):
-        model, more = split_given(written_base(Path(text), evidence), evidence)
-        return model, f"base {model.name} from {text}{more}"
+        model = written_base(Path(text), evidence)
+        return model, f"base {model.name} from {text}"
     if FORM.fullmatch(text):
         return function_base(text, evidence)
     files = [str(item) for item in Path(text).parent.glob("*.yaml")]
