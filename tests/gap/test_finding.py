@@ -80,8 +80,7 @@ def candidates_of(found, *names):
 def decided(alike, *names, base=None, limits=None):
     plain, start, floor, found = alike
     ranking = candidates_of(found, *names)
-    reasons = {names[0]: ranking}
-    named = Named(found[names[0]], (Round(start, 0.0, ranking, True),), reasons)
+    named = Named(found[names[0]], (Round(start, 0.0, ranking, True),))
     base = plain if base is None else base
     return decide("made", base, start, floor, named, limits=limits)
 

@@ -199,7 +199,8 @@ def decide(
             )
             for item in state.added
         ],
-        "fit": _fit(start, state, floor) | {"lone_share": lone, "unrepeated": differs},
+        "fit": _fit(start, state, floor)
+        | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
         "next_experiment": None if experiment is None else experiment.mapping(),

@@ -100,6 +100,9 @@ FIT = _object(
         "noise": NUMBER,
         "step_error": NUMBER,
         "floor": NUMBER,
+        # Share of the gap that no effect takes away; it lowers every confidence. Of the
+        # whole gap, or of what no wrong hysteresis could do, whichever is less.
+        "left": NUMBER,
         # Share of the power of what is left that stands in lone samples; and how much
         # of it differs between periods of the same input, above the noise's power and
         # in units of that. Null where no record repeats.
@@ -125,11 +128,22 @@ TESTED = _object(
     }
 )
 
+# A row of a ranking. `round` and `look` number the rankings: look 0 is the round
+# itself, 1 and on are the second looks after it.
 RANK = _object(
     {
         "round": {"type": "integer", "minimum": 1},
+        "look": {"type": "integer", "minimum": 0},
+        # The effect in whose place this one was tried; null in the round itself.
+        "instead_of": {"type": ["string", "null"]},
+        # The effects that were in the model beside which it was tried.
+        "beside": NAMES,
         "name": {"type": "string"},
         "place": {"type": "string"},
+        # Whether it is in the model by this ranking, added or kept.
+        "taken": {"type": "boolean"},
+        # Whether it was refitted with the whole model: only those can be a tie.
+        "refitted": {"type": "boolean"},
         # The gain on records held back from the fit, of the best of a round where it
         # had to decide whether that one is taken.
         "held_back": OPTIONAL,
