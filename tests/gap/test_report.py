@@ -140,12 +140,15 @@ GAP = {
         "existing_separation": 0.42,
         "pairs": [
             {
-                "names": ["creep", "drift"],
+                "of": "creep",
+                "names": ["creep", "thermal-drift"],
                 "separation": 6.21,
                 "existing_separation": 0.42,
+                "largest_separation": 7.53,
             }
         ],
-        "sentence": "Try steps with holds: it separates creep from drift.",
+        "left_out": [{"of": "creep", "name": "drift"}],
+        "sentence": "Try steps with holds: it separates creep from thermal-drift.",
     },
     "records": [
         {"name": "held-1", "before": 0.45, "after": 0.0987, "explained": 0.9931},

@@ -66,7 +66,7 @@ class Finding:
     curves : mapping
         What the pictures of where the gap is are drawn from.
     experiment : Experiment, optional
-        What would tell a set of likely effects apart.
+        What would tell likely effects apart best.
     rungs : tuple of Rung
         The models on the way from the base to the last effect.
     """

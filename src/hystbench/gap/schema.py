@@ -155,6 +155,47 @@ RANK = _object(
     variants={"type": "array", "items": TESTED},
 )
 
+# The excitation that tells the named effects from those that they cannot be told from
+# best, over all of them at once. Separations are in noise floors: of the pair that is
+# hardest, and of each pair.
+EXPERIMENT = _object(
+    {
+        "excitation": {"type": "string"},
+        "parameters": {
+            "type": "object",
+            "additionalProperties": _object(
+                {
+                    "value": {"type": ["number", "array"], "items": NUMBER},
+                    "unit": {"type": "string"},
+                }
+            ),
+        },
+        "sampling_interval_s": NUMBER,
+        "separation": NUMBER,
+        "existing_separation": NUMBER,
+        "pairs": {
+            "type": "array",
+            "items": _object(
+                {
+                    # The named effect in whose place both are, or which one of them is.
+                    "of": {"type": "string"},
+                    "names": NAMES | {"minItems": 2, "maxItems": 2},
+                    "separation": NUMBER,
+                    # By the existing record, and the excitation, best for this pair.
+                    "existing_separation": NUMBER,
+                    "largest_separation": NUMBER,
+                }
+            ),
+        },
+        # What is new in every record: no input brings it out.
+        "left_out": {
+            "type": "array",
+            "items": _object({"of": {"type": "string"}, "name": {"type": "string"}}),
+        },
+        "sentence": WORDS,
+    }
+) | {"type": ["object", "null"]}
+
 SCHEMA = _object(
     {
         "dataset": {"type": "string"},
@@ -166,7 +207,7 @@ SCHEMA = _object(
         "where": {"type": "array", "items": VIEW},
         "gap": GAP,
         "ranking": {"type": "array", "items": RANK},
-        "next_experiment": {"type": ["object", "null"]},
+        "next_experiment": EXPERIMENT,
     },
     records={"type": "array"},
     # The base, the base re-tuned within what it leaves free, then effect by effect.
