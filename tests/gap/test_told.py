@@ -27,6 +27,7 @@ from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import MODE, block, hysteresis, measured, state_of
 
 NOISE = 0.02
+MODE_BLOCK = block("resonance", **MODE)
 LEFT = Left(100.0, 1.0, 100.0, 1.0)
 
 
@@ -194,14 +195,25 @@ def through_a_file(content):
     return json.loads(json.dumps(content, allow_nan=False))
 
 
-@pytest.fixture(scope="module")
-def found():
-    """A lag before a hysteresis and a mode behind it; the base has neither."""
+def found_in(before, *behind):
+    """What is found of blocks around a hysteresis, from the hysteresis alone."""
     chain = (hysteresis(),)
-    lag = block("drive-lag", time_constant_s=0.004)
-    records = measured((lag, *chain, block("resonance", **MODE)), 0.05)
+    records = measured((before, *chain, *behind), 0.05)
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     return through_a_file(find("made", records, base, declared=0.05).content)
+
+
+@pytest.fixture(scope="module")
+def found():
+    """A lag before a hysteresis and a mode behind it."""
+    return found_in(block("drive-lag", time_constant_s=0.004), MODE_BLOCK)
+
+
+@pytest.fixture(scope="module")
+def swapped():
+    """Eddy currents, a mode and a lag: alone the lag of the drive does for two."""
+    eddy = block("eddy-diffusion", time_constant_s=0.01, geometry="slab")
+    return found_in(eddy, MODE_BLOCK, block("sensor-lag", time_constant_s=0.003))
 
 
 def test_a_second_look_is_seen_in_the_ranking(found):
@@ -229,7 +241,33 @@ def test_a_second_look_is_seen_in_the_ranking(found):
     assert gains[1] > gains[0] > 0
 
 
-def test_every_confidence_follows_from_what_gap_json_holds(found):
+def test_an_effect_that_no_round_took_is_seen_to_take_a_place(swapped):
+    """The three that were put in are named; one of them was the first of no round."""
+    names = [item["name"] for item in swapped["effects"]]
+    assert set(names) == {"eddy-diffusion", "resonance", "sensor-lag"}
+    rows = [row for row in swapped["ranking"] if row["taken"]]
+    by_rounds = {row["name"] for row in rows if not row["look"]}
+    ((gone, came),) = (
+        (row["instead_of"], row["name"])
+        for row in rows
+        if row["look"] and row["instead_of"] != row["name"]
+    )
+    assert came not in by_rounds
+    assert (by_rounds | {came}) - {gone} == set(names)
+    # The rows of that look say by how much.
+    (row,) = (x for x in rows if x["look"] and x["instead_of"] != x["name"])
+    key = ("round", "look")
+    old = next(
+        x
+        for x in swapped["ranking"]
+        if [x[k] for k in key] == [row[k] for k in key] and x["name"] == gone
+    )
+    assert "declined" in old or row["score"] < old["score"]
+
+
+@pytest.mark.parametrize("case", ["found", "swapped"])
+def test_every_confidence_follows_from_what_gap_json_holds(case, request):
+    found = request.getfixturevalue(case)
     for item in found["effects"]:
         sure, ties = told_by_rows(found, item["name"])
         assert item["confidence"] == pytest.approx(sure)
