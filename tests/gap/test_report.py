@@ -356,12 +356,12 @@ def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
 
 def test_second_looks_are_told_in_words(page):
     assert (
-        "After round 2 , beside creep, 2 effects were tried in the place of resonance, "
-        "which stays."
+        "After round 2 : resonance was tried again beside creep, with one rival in its "
+        "place: it stays."
     ) in page.said
     assert (
-        "in the place of creep, which could not be judged again (fits best at the end "
-        "of its range) and stays."
+        "creep was tried again beside resonance, with one rival in its place: it could "
+        "not be judged again (fits best at the end of its range) and stays."
     ) in page.said
     assert "The picture shows the first round alone" in page.said
 
@@ -374,7 +374,7 @@ def test_an_effect_that_gave_way_is_told_with_what_took_its_place(tmp_path):
     rounds = [item for item in GAP["ranking"] if not item["look"]]
     gap = {**GAP, "ranking": rounds + rows}
     said = read(write_report(write_folder(tmp_path, gap, False, False))).said
-    assert "of resonance, which gives way to stiffness-hardening." in said
+    assert "in its place: it gives way to stiffness-hardening." in said
     assert said.index("308") < said.index("306")  # best first
 
 

@@ -136,15 +136,23 @@ def _looks(gap: dict[str, Any]) -> list[dict[str, Any]]:
     for _, group in groupby(seconds, key=lambda item: (item["round"], item["look"])):
         rows = list(group)
         taken = [item["name"] for item in rows if item["taken"]]
-        about = {key: rows[0][key] for key in ("round", "instead_of", "beside")}
-        own = next(item for item in rows if item["name"] == about["instead_of"])
+        gone, beside = rows[0]["instead_of"], words.listed(rows[0]["beside"])
+        own = next(item for item in rows if item["name"] == gone)
         if not taken:
             came = f"could not be judged again ({_why_not(own)}) and stays"
-        elif taken == [own["name"]]:
+        elif taken == [gone]:
             came = "stays"
         else:
             came = f"gives way to {taken[0]}"
-        found.append(about | {"came": came, "tried": len(rows), "rows": _ranked(rows)})
+        rivals = {1: "no rival", 2: "one rival"}.get(
+            len(rows), f"{len(rows) - 1} rivals"
+        )
+        sentence = (
+            f"{gone} was tried again beside {beside}, with {rivals} in its place: it "
+            f"{came}."
+        )
+        about = {"round": rows[0]["round"], "sentence": sentence}
+        found.append(about | {"rows": _ranked(rows)})
     return found
 
 
