@@ -1,4 +1,5 @@
 import dataclasses
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -8,13 +9,12 @@ from hypothesis import strategies as st
 from hystbench.blocks import registry
 from hystbench.errors import InputError
 from hystbench.gap.excitations import candidates, write_experiment
-from hystbench.gap.experiment import (
-    next_experiment,
-    parameter_tangents,
-    separation,
-)
+from hystbench.gap.experiment import CLEAR, Experiment, next_experiment
 from hystbench.gap.limits import Limits
+from hystbench.gap.schema import EXPERIMENT
+from hystbench.gap.separation import Pair, Rival, parameter_tangents, separation
 from hystbench.model import Model
+from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
 
 LIMITS = Limits(-1.0, 1.0, 800.0, 100.0, 0.001, 4.0)
@@ -23,6 +23,11 @@ LIMITS = Limits(-1.0, 1.0, 800.0, 100.0, 0.001, 4.0)
 def model(name, *blocks):
     chain = tuple(registry()[kind](**values) for kind, values in blocks)
     return name, Model(name, CURRENT, DISPLACEMENT, chain)
+
+
+def one_set(*rivals):
+    """Rivals in the place of the first."""
+    return {rivals[0][0]: {name: Rival(model) for name, model in rivals}}
 
 
 GAIN = ("gain", {"value": 2.0})
@@ -42,7 +47,7 @@ def test_picks_the_sine_where_two_transfer_functions_differ_most():
         if item.kind == "sine" and item.parameters["amplitude"][0] > 0.99
     ]
     floor = 0.01
-    found = next_experiment(rivals, [record(sine(1))], floor, LIMITS, excitations=sines)
+    found = next_experiment(one_set(*rivals), [record(sine(1))], floor, LIMITS, sines)
     # In steady state a gain takes away what is in phase with the mean of the two.
     frequency = np.array([item.parameters["frequency_hz"][0] for item in sines])
     wn, s = 2 * np.pi * 35.0, 2j * np.pi * frequency
@@ -59,21 +64,12 @@ def test_picks_the_sine_where_two_transfer_functions_differ_most():
     assert "plain from mode" in found.sentence
 
 
-def test_a_gain_and_an_offset_separate_nothing():
-    u = sine(3)
-    assert separation(u, 1.7 * u + 3, 0.1) < 1e-9
-    # a sine beside a cosine: orthogonal to their mean, the difference stays whole
-    other = sine(3, phase=np.pi / 2)
-    assert separation(u, other, 0.1) == pytest.approx(1 / 0.1)
-    assert separation(u, other, 0.1, (u - other)[:, None]) < 1e-9
-
-
 def test_equivalent_models_are_said_to_be_so():
     rivals = [
         model("lag-first", ("drive-lag", {"time_constant_s": 0.002}), GAIN),
         model("lag-last", GAIN, ("drive-lag", {"time_constant_s": 0.002})),
     ]
-    found = next_experiment(rivals, [record(sine(1))], 0.001, LIMITS)
+    found = next_experiment(one_set(*rivals), [record(sine(1))], 0.001, LIMITS)
     assert found.separation < 1e-6
     assert found.sentence.startswith("No feasible excitation tells lag-first from")
 
@@ -81,16 +77,16 @@ def test_equivalent_models_are_said_to_be_so():
 def test_rate_and_amplitude_effects_need_other_excitations():
     creep = ("creep", {"magnitudes": [0.1], "time_constants_s": [1.0]})
     slow = next_experiment(
-        [model("plain", GAIN), model("creep", GAIN, creep)],
+        one_set(model("plain", GAIN), model("creep", GAIN, creep)),
         [record(sine(50, count=4000))],
         0.01,
         LIMITS,
     )
     fast = next_experiment(
-        [
+        one_set(
             model("plain", GAIN),
             model("lag", GAIN, ("drive-lag", {"time_constant_s": 0.0002})),
-        ],
+        ),
         [record(sine(1, count=4000))],
         0.01,
         LIMITS,
@@ -107,11 +103,15 @@ def test_rate_and_amplitude_effects_need_other_excitations():
 
 def test_mapping_holds_what_the_sentence_says():
     rivals = [model("plain", GAIN), model("mode", GAIN, MODE)]
-    found = next_experiment(rivals, [record(sine(1, count=4000))], 0.01, LIMITS)
+    sets = one_set(*rivals)
+    found = next_experiment(sets, [record(sine(1, count=4000))], 0.01, LIMITS)
     content = found.mapping()
+    check_against_schema(content, EXPERIMENT, "next_experiment")
     assert f"{content['separation']:.2g}" in content["sentence"]
     assert content["excitation"].replace("-", " ") in content["sentence"]
-    assert content["pairs"][0]["names"] == ["plain", "mode"]
+    (pair,) = content["pairs"]
+    assert (pair["of"], pair["names"]) == ("plain", ["plain", "mode"])
+    assert pair["largest_separation"] >= pair["separation"] == content["separation"]
     assert all(
         {"value", "unit"} == set(each) for each in content["parameters"].values()
     )
@@ -177,11 +177,17 @@ def test_the_signal_file_is_the_excitation(tmp_path):
     assert table[:, 1] == pytest.approx(item.u, abs=1e-8)
 
 
+TWO = one_set(model("a", GAIN), model("b", GAIN))
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (([model("plain", GAIN)], [record(sine(1))], 0.1), "1 rival models; "),
-        (([model("a", GAIN)] * 2, [record(sine(1))], 0.0), "noise floor: 0; "),
+        (
+            (one_set(model("a", GAIN)), [record(sine(1))], 0.1),
+            "next experiment: no set",
+        ),
+        ((TWO, [record(sine(1))], 0.0), "noise floor: 0; "),
     ],
 )
 def test_what_cannot_be_asked_is_one_clear_line(arguments, message):
@@ -206,12 +212,13 @@ def test_one_sine_tells_no_lag_from_a_delay_that_may_be_refitted():
     lag = ("drive-lag", {"time_constant_s": 0.001})
     diffusion = ("eddy-diffusion", {"time_constant_s": 0.003, "geometry": "slab"})
     rivals = [model("lag", lag, GAIN), model("diffusion", diffusion, GAIN)]
-    tangents = parameter_tangents(
-        [
-            (rivals[0][1], ["drive-lag.time_constant_s"]),
-            (rivals[1][1], ["eddy-diffusion.time_constant_s"]),
-        ]
-    )
+    free = ("drive-lag.time_constant_s", "eddy-diffusion.time_constant_s")
+    refitted = {
+        "lag": {
+            name: Rival(each, parameter_tangents(each, [own]))
+            for (name, each), own in zip(rivals, free, strict=True)
+        }
+    }
     records = [record(sine(1, count=4000))]
     of = {kind: [] for kind in ("sine", "chirp")}
     for item in candidates(LIMITS, "A"):
@@ -219,17 +226,137 @@ def test_one_sine_tells_no_lag_from_a_delay_that_may_be_refitted():
             of[item.kind].append(item)
     size = {}
     for kind, items in of.items():
-        for free in (None, tangents):
-            found = next_experiment(rivals, records, 1e-3, LIMITS, free, items)
-            size[kind, free is None] = found.separation
+        for fixed, sets in ((True, one_set(*rivals)), (False, refitted)):
+            found = next_experiment(sets, records, 1e-3, LIMITS, items)
+            size[kind, fixed] = found.separation
     # a sine has one phase, and a time constant takes it; a band has many
     assert size["sine", False] < 0.1 * size["sine", True]
     assert size["chirp", False] > 3 * size["sine", False]
 
 
-def test_a_word_is_no_parameter_to_refit():
-    rival = model(
-        "d", ("eddy-diffusion", {"time_constant_s": 0.003, "geometry": "rod"})
+LAG = ("drive-lag", {"time_constant_s": 0.002})
+CREEP = ("creep", {"magnitudes": [0.1], "time_constants_s": [1.0]})
+SLOW = ("creep", {"magnitudes": [0.1], "time_constants_s": [0.3]})
+BOTH = {
+    **one_set(model("lag", GAIN, LAG), model("mode", GAIN, MODE)),
+    # The name stands in both sets, for two models.
+    **one_set(model("creep", GAIN, CREEP), model("mode", GAIN, MODE, SLOW)),
+}
+
+
+@pytest.fixture(scope="module")
+def both():
+    records = [record(sine(1, count=4000))]
+    items = [x for x in candidates(LIMITS, "A") if x.parameters.get("amplitude")]
+    return records, items[::3], next_experiment(BOTH, records, 0.01, LIMITS, items[::3])
+
+
+def test_one_excitation_is_best_over_the_pairs_of_all_sets(both):
+    """Plainly: of all excitations, by what is capped at clear, then by the hardest."""
+    _, items, found = both
+    sizes = []
+    for item in items:
+        run = {
+            (of, name): rival.model.simulate(item.u, item.dt)
+            for of, members in BOTH.items()
+            for name, rival in members.items()
+        }
+        sizes.append(
+            (
+                separation(run["lag", "lag"], run["lag", "mode"], 0.01),
+                separation(run["creep", "creep"], run["creep", "mode"], 0.01),
+            )
+        )
+    merits = [(sum(min(x, CLEAR) for x in each), min(each)) for each in sizes]
+    best = merits.index(max(merits))
+    assert found.excitation is items[best]
+    pairs = Pair("lag", ("lag", "mode")), Pair("creep", ("creep", "mode"))
+    assert list(found.pairs) == list(pairs)
+    for k, pair in enumerate(pairs):
+        assert found.pairs[pair] == pytest.approx(sizes[best][k])
+        assert found.largest[pair] == pytest.approx(max(each[k] for each in sizes))
+
+
+def test_a_set_does_not_change_what_is_said_of_another(both):
+    records, _, found = both
+    for of, members in BOTH.items():
+        own = next_experiment({of: members}, records, 0.01, LIMITS, [found.excitation])
+        for pair in own.pairs:
+            assert found.pairs[pair] == own.pairs[pair]
+            assert found.existing[pair] == own.existing[pair]
+    told = {(item["of"], *item["names"]) for item in found.mapping()["pairs"]}
+    assert told == {("lag", "lag", "mode"), ("creep", "creep", "mode")}
+
+
+def test_a_rival_that_runs_away_rules_an_excitation_out_and_no_other():
+    class Bounded:
+        def simulate(self, u, dt):
+            return u**2 if np.abs(u).max() < 0.5 else np.full_like(u, np.nan)
+
+    sets = one_set(("plain", GAIN_MODEL), ("bounded", Bounded()))
+    items = candidates(LIMITS, "A")
+    found = next_experiment(sets, [record(sine(1))], 0.01, LIMITS, items)
+    assert np.abs(found.excitation.u).max() < 0.5
+    # The record goes beyond: it tells nothing of the pair.
+    assert found.existing_separation == 0.0
+    large = [item for item in items if np.abs(item.u).max() >= 0.5]
+    with pytest.raises(InputError, match=r"^next experiment: none of \d+ excitations"):
+        next_experiment(sets, [record(sine(1))], 0.01, LIMITS, large)
+
+
+_, GAIN_MODEL = model("plain", GAIN)
+SIZES = st.floats(0, 9)
+
+
+@settings(max_examples=200)
+@given(
+    st.lists(
+        st.tuples(st.sampled_from("XY"), SIZES, SIZES, SIZES), min_size=1, max_size=8
+    ),
+    st.booleans(),
+)
+def test_the_sentence_says_what_the_numbers_say(rows, left_out):
+    pairs = [Pair(of, (f"{of}{k}", f"b{k}")) for k, (of, *_) in enumerate(rows)]
+    here = {pair: row[1] for pair, row in zip(pairs, rows, strict=True)}
+    now = {pair: row[2] for pair, row in zip(pairs, rows, strict=True)}
+    most = {pair: max(row[1], row[3]) for pair, row in zip(pairs, rows, strict=True)}
+    if len(pairs) == 1:
+        most = here  # what is best for all pairs is best for the one
+    item = candidates(LIMITS, "A")[0]
+    away = (("X", "drift"),) if left_out else ()
+    said = Experiment(item, here, now, most, away).sentence
+    assert item.words in said
+    told = [pair for pair in pairs if here[pair] >= 1]
+    hidden = [pair for pair in pairs if max(here[pair], now[pair]) < 1]
+    never = [pair for pair in hidden if most[pair] < 1]
+    other = [pair for pair in hidden if most[pair] >= 1]
+    assert ("No feasible excitation" in said) == bool(never)
+    assert ("drift is new in every record" in said) == left_out
+    several = len({pair.of for pair in pairs}) > 1
+    assert ("in the place of" in said) == several
+    if len(pairs) > 1:
+        count = (
+            f"all {len(pairs)}"
+            if len(told) == len(pairs)
+            else (f"{len(told)} of {len(pairs)}")
+        )
+        assert (f"it separates {count} pairs" in said) == bool(told)
+        assert ("Another excitation would tell" in said) == bool(other)
+        known = [pair for pair in pairs if here[pair] < 1 <= now[pair]]
+        assert ("The existing records tell" in said) == bool(known)
+        assert ("and 1 more" in said) == (4 in map(len, (known, never, other)))
+    # It is not recommended where the records that are there do as well.
+    if all(now[pair] >= here[pair] for pair in pairs):
+        assert "Try " not in said
+    elif len(pairs) == 1 and told:
+        assert said.startswith(f"Try {item.words}: ")
+
+
+def test_a_large_set_is_told_in_a_sentence_that_ends():
+    pairs = [Pair("a", names) for names in combinations("abcdefg", 2)]
+    none = dict.fromkeys(pairs, 0.5)
+    item = candidates(LIMITS, "A")[0]
+    said = Experiment(item, none, none, none).sentence
+    assert said.endswith(
+        "No feasible excitation tells a from b, a from c, a from d and 18 more."
     )
-    with pytest.raises(InputError, match=r"^eddy-diffusion.geometry: 'rod' is no"):
-        parameter_tangents([(rival[1], ["eddy-diffusion.geometry"])])

@@ -10,13 +10,15 @@ from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import finding as finding_module
 from hystbench.gap import tell_apart
+from hystbench.gap.augmented import augmented
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import next_experiment
 from hystbench.gap.finding import _whole, decide, find
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, Round
+from hystbench.gap.rank import Candidate, Look, Round
+from hystbench.gap.separation import Pair
 from hystbench.gap.start import start_state
 from hystbench.gap.verdict import Left
 from hystbench.model import Model
@@ -77,11 +79,15 @@ def candidates_of(found, *names):
     )
 
 
+def rounds_of(start, found, *names):
+    """One round, that took the first."""
+    ranking = candidates_of(found, *names)
+    return Named(found[names[0]], (Round(start, 0.0, ranking, True),))
+
+
 def decided(alike, *names, base=None, limits=None):
     plain, start, floor, found = alike
-    ranking = candidates_of(found, *names)
-    reasons = {names[0]: ranking}
-    named = Named(found[names[0]], (Round(start, 0.0, ranking, True),), reasons)
+    named = rounds_of(start, found, *names)
     base = plain if base is None else base
     return decide("made", base, start, floor, named, limits=limits)
 
@@ -144,6 +150,74 @@ def test_why_there_is_no_experiment_is_told(alike, monkeypatch):
     alone = decided(alike, "drive-lag").content
     assert alone["next_experiment"] is None
     assert "no_experiment" not in alone
+
+
+def test_what_is_new_in_every_record_is_left_out_by_name(alike):
+    content = decided(alike, "drive-lag", "mains-pickup", "sensor-lag").content
+    found = content["next_experiment"]
+    (pair,) = found["pairs"]
+    assert (pair["of"], pair["names"]) == ("drive-lag", ["drive-lag", "sensor-lag"])
+    assert found["left_out"] == [{"of": "drive-lag", "name": "mains-pickup"}]
+    assert "mains-pickup is new in every record" in found["sentence"]
+    assert "no_experiment" not in content
+    # Where none is left for another reason too, both are told.
+    words = decided(alike, "drive-lag", "mains-pickup").content["no_experiment"]
+    assert words.startswith("mains-pickup is new in every record")
+
+
+def test_rivals_beside_what_is_new_in_every_record_are_told_apart_without_it(alike):
+    """The mains are in both models; of another record nobody knows their phase."""
+    base, start, floor, found = alike
+    lags = {
+        name: with_named(found["mains-pickup"], name, time_constant_s=0.004)
+        for name in ("drive-lag", "sensor-lag")
+    }
+    named = rounds_of(start, lags, "drive-lag", "sensor-lag")
+    beside = decide("made", base, start, floor, named).experiment
+    plain = decided(alike, "drive-lag", "sensor-lag").experiment
+    assert beside.left_out == ()
+    assert beside.excitation.words == plain.excitation.words
+    assert beside.pairs == pytest.approx(plain.pairs, abs=1e-6)
+
+
+def test_all_members_of_all_sets_are_told_apart_by_one_excitation(alike, monkeypatch):
+    """A second look at the lag: the model that is there is then in both sets."""
+    base, start, floor, found = alike
+    lag = found["drive-lag"]
+    whole = with_named(lag, "asymmetry", coefficient=1e-3)
+    other = with_named(found["sensor-lag"], "asymmetry", coefficient=1e-3)
+    curves = {
+        "asymmetry": whole,
+        "saturation": with_named(lag, "saturation", level=40.0, sharpness=2.0),
+        "calibration-error": with_named(lag, "calibration-error", gain=1.01),
+    }
+    lags = {"drive-lag": whole, "sensor-lag": other}
+    look = Look("drive-lag", ("asymmetry",), candidates_of(lags, *lags), "drive-lag")
+    rounds = (
+        Round(start, 0.0, candidates_of(found, *lags), True),
+        Round(lag, 0.0, candidates_of(curves, *curves), True, (look,)),
+    )
+    model = augmented(base, whole)
+    runs = []
+    simulate = Model.simulate
+
+    def counted(self, u, dt):
+        if self == model:
+            runs.append(id(u))
+        return simulate(self, u, dt)
+
+    monkeypatch.setattr(Model, "simulate", counted)
+    experiment, why = tell_apart.tell_apart(
+        base, Named(whole, rounds), start.records, floor.rms, None
+    )
+    assert not why
+    assert list(experiment.pairs) == [
+        Pair("drive-lag", ("drive-lag", "sensor-lag")),
+        Pair("asymmetry", ("asymmetry", "saturation")),
+        Pair("asymmetry", ("asymmetry", "calibration-error")),
+        Pair("asymmetry", ("saturation", "calibration-error")),
+    ]
+    assert [runs.count(id(record.u)) for record in start.records] == [1, 1]
 
 
 def test_what_the_simulation_misses_by_its_steps_is_measured():

@@ -1,13 +1,18 @@
 """An effect looked at again: what is kept of the second look."""
 
+from dataclasses import replace
+
 import pytest
 
 from hystbench.gap import reconsider
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.rank import Candidate, Round
+from hystbench.gap.fit import score_of
+from hystbench.gap.name import Named
+from hystbench.gap.rank import Candidate, Round, make_score, reasons
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.say import silent
+from hystbench.gap.told import ranking_rows
 from tests.gap.small import block, measured, state_of
 
 NOISE = 0.02
@@ -42,12 +47,70 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
         return (Candidate(name, "drive", score=0.0, gain=1.0, state=state),)
 
     monkeypatch.setattr(reconsider, "rank", looked)
-    kept, rankings = reconsidered(state, rounds, NOISE, silent)
+    kept, looks = reconsidered(state, rounds, NOISE, silent)
     assert kept is state
-    # What is not in here keeps the ranking by which the effect was taken.
-    assert set(rankings) == {"asymmetry"} | (set() if declined else {"drive-lag"})
+    # Every look is kept; where it could not judge, the effect stays by an earlier one.
+    assert [(look.instead_of, look.beside) for look in looks] == [
+        ("drive-lag", ("asymmetry",)),
+        ("asymmetry", ("drive-lag",)),
+    ]
+    assert [look.taken for look in looks] == [
+        None if declined else "drive-lag",
+        "asymmetry",
+    ]
+    by_effect = reasons([*rounds, replace(rounds[0], taken=False, looks=looks)])
+    last = rounds[0].ranking if declined else looks[0].ranking
+    assert by_effect["drive-lag"] is last
     # The model that is there scores better than what the second look came to.
-    ((own,),) = (rankings["asymmetry"],)
+    (own,) = by_effect["asymmetry"]
     assert own.state is state
     assert own.score < 0.0
     assert own.score + own.gain == pytest.approx(1.0)
+
+
+def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch):
+    """The sensor's lag does better in the place of the drive's: it takes it."""
+    state, rounds = two
+    other = rounds[0].before  # any model: the search is replaced
+
+    def looked(short, score, known):
+        assert {item.name for item in known} >= {"drive-lag", "sensor-lag"}
+        assert [item.effect for item in short.added] == ["asymmetry"]
+        best = Candidate("sensor-lag", "sensor", score=-1e6, gain=9.0, state=other)
+        old = Candidate("drive-lag", "drive", score=50.0, gain=1.0, state=state)
+        return (best, old)
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    after, (look,) = reconsidered(state, rounds, NOISE, silent, every=True)
+    assert after is other
+    assert (look.instead_of, look.taken) == ("drive-lag", "sensor-lag")
+    rows = ranking_rows(Named(after, (replace(rounds[0], looks=(look,)),)))
+    assert [
+        (row["look"], row["instead_of"], row["beside"], row["name"], row["taken"])
+        for row in rows
+    ] == [
+        (0, None, [], "drive-lag", True),
+        (1, "drive-lag", ["asymmetry"], "sensor-lag", True),
+        (1, "drive-lag", ["asymmetry"], "drive-lag", False),
+    ]
+    assert [row["score"] for row in rows] == [-100.0, -1e6, 50.0]
+
+
+def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch):
+    """A search from anew may end behind a rival that the model itself is ahead of."""
+    state, rounds = two
+    now = score_of(state, make_score(state, NOISE))
+
+    def looked(short, score, known):
+        rival = Candidate("creep", "mechanics", score=now + 1, gain=2.0, state=state)
+        return rival, *(
+            Candidate(x.name, x.place, score=now + 2, gain=1.0, state=state)
+            for x in known
+            if x.name in ("drive-lag", "asymmetry")
+        )
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    _, looks = reconsidered(state, rounds, NOISE, silent)
+    for look in looks:
+        assert [item.effect for item in look.ranking] == [look.instead_of, "creep"]
+        assert [item.score for item in look.ranking] == [now, now + 1]

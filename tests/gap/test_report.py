@@ -12,10 +12,26 @@ from hystbench.gap.schema import SCHEMA
 from hystbench.schema import check_against_schema
 
 
-def ranked(number, name, place="mechanics", held_back=None, **more):
+def ranked(number, name, place="mechanics", **more):
     return {
-        "round": number, "name": name, "place": place, "held_back": held_back, **more
-    }  # fmt: skip
+        "round": number,
+        "look": 0,
+        "instead_of": None,
+        "beside": ["resonance"] if number > 1 else [],
+        "name": name,
+        "place": place,
+        "taken": "held_back" in more,
+        "refitted": "score" in more,
+        "held_back": None,
+        **more,
+    }
+
+
+def looked(look, name, place="mechanics", *, taken=False, **more):
+    places = [("resonance", "creep"), ("creep", "resonance")]
+    instead_of, beside = places[look - 1]
+    about = {"look": look, "instead_of": instead_of, "beside": [beside]}
+    return ranked(2, name, place, **more) | about | {"taken": taken}
 
 
 VALUE = {"value": 69.7123, "standard_error": 0.0456, "unit": "Hz"}
@@ -94,25 +110,24 @@ GAP = {
         "noise": 0.0911,
         "step_error": 0.0173,
         "floor": 0.0927,
+        "left": 0.0239,
         "lone_share": 0.0,
         "unrepeated": 0.0213,
     },
     "ranking": [
-        {
-            "round": 1,
-            "name": "resonance",
-            "place": "mechanics",
-            "held_back": 288.25,
-            "form": "one mode",
-            "score": -812.5,
-            "gain": 301.5,
-        },
+        ranked(
+            1, "resonance", held_back=288.25, form="one mode", score=-812.5, gain=301.5
+        ),
         ranked(1, "creep", score=-620.1, gain=109.2),
         ranked(1, "drive-lag", place="drive", score=-500.3, gain=-10.4),
         ranked(1, "friction", declined="u does not reverse"),
         ranked(2, "creep", held_back=93.75, score=-915.5, gain=103.25),
         ranked(2, "drive-lag", place="drive", score=-810.1, gain=-2.4),
         ranked(2, "friction", declined="u does not reverse"),
+        looked(1, "resonance", score=-915.25, gain=305.75, taken=True),
+        looked(1, "stiffness-hardening", score=-702.5, gain=93.125),
+        looked(2, "creep", declined="fits best at the end of its range"),
+        looked(2, "thermal-drift", place="sensor", score=-913.5, gain=101.25),
     ],
     "next_experiment": {
         "excitation": "steps-with-holds",
@@ -125,12 +140,15 @@ GAP = {
         "existing_separation": 0.42,
         "pairs": [
             {
-                "names": ["creep", "drift"],
+                "of": "creep",
+                "names": ["creep", "thermal-drift"],
                 "separation": 6.21,
                 "existing_separation": 0.42,
+                "largest_separation": 7.53,
             }
         ],
-        "sentence": "Try steps with holds: it separates creep from drift.",
+        "left_out": [{"of": "creep", "name": "drift"}],
+        "sentence": "Try steps with holds: it separates creep from thermal-drift.",
     },
     "records": [
         {"name": "held-1", "before": 0.45, "after": 0.0987, "explained": 0.9931},
@@ -334,6 +352,30 @@ def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
     assert page.said.count("u does not reverse") == 1
     assert page.said.count("drive-lag") == 2  # a row of each round
     assert "ranked by the score on all fit records" in page.said
+
+
+def test_second_looks_are_told_in_words(page):
+    assert (
+        "After round 2 : resonance was tried again beside creep, with one rival in its "
+        "place: it stays."
+    ) in page.said
+    assert (
+        "creep was tried again beside resonance, with one rival in its place: it could "
+        "not be judged again (fits best at the end of its range) and stays."
+    ) in page.said
+    assert "The picture shows the first round alone" in page.said
+
+
+def test_an_effect_that_gave_way_is_told_with_what_took_its_place(tmp_path):
+    rows = [
+        looked(1, "stiffness-hardening", score=-917.5, gain=308.0, taken=True),
+        looked(1, "resonance", score=-915.25, gain=305.75),
+    ]
+    rounds = [item for item in GAP["ranking"] if not item["look"]]
+    gap = {**GAP, "ranking": rounds + rows}
+    said = read(write_report(write_folder(tmp_path, gap, False, False))).said
+    assert "in its place: it gives way to stiffness-hardening." in said
+    assert said.index("308") < said.index("306")  # best first
 
 
 def test_page_stands_alone(page):

@@ -12,10 +12,10 @@ from hystbench.errors import InputError
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.evidence import Evidence, load_evidence
 from hystbench.gap.finding import decide
 from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.kept import Restorer, state_mapping
+from hystbench.gap.kept import Restorer, progress_mapping, state_mapping
 from hystbench.gap.name import name
 from hystbench.gap.rank import make_score
 from hystbench.gap.search import Attempt, coarse
@@ -24,8 +24,10 @@ from hystbench.gap.start import start_state
 from hystbench.gap.thresholds import PAYS, PAYS_HELD_BACK
 from hystbench.gap.told import ranking_rows
 from hystbench.gap.work import Work
-from hystbench.model import load_model
+from hystbench.model import Model, load_model
 
+from .made import CURRENT, DISPLACEMENT
+from .small import MODE, block, hysteresis, measured
 from .tiny import LAG_S, write_tiny
 
 KEPT = ("effect", "place", "form", "score", "gain", "declined", "held_back")
@@ -209,3 +211,31 @@ def test_a_model_comes_back_from_its_file(tiny, added):
     assert restored.added == moved.added
     np.testing.assert_array_equal(restored.residual, moved.residual)
     np.testing.assert_array_equal(restored.beside_columns, moved.beside_columns)
+
+
+def test_second_looks_go_through_files_and_end_the_same():
+    """A lag and a mode: when the second is added both are looked at again."""
+    chain = (hysteresis(),)
+    lag, mode = block("drive-lag", time_constant_s=0.004), block("resonance", **MODE)
+    records = measured((lag, *chain, mode), 0.05)
+    base = Model("rig", CURRENT, DISPLACEMENT, chain)
+    evidence = Evidence("rig", records, (), "band-limited", 0.05)
+    progress = through_a_file(begin(evidence, base))
+    while not progress["done"]:
+        tried = {
+            effect: through_a_file(try_one(evidence, base, progress, effect))
+            for effect in effects()
+        }
+        progress = through_a_file(choose(evidence, base, progress, tried))
+    restored = Restorer(evidence.fit, base).progress(progress)
+    kept = {"floor": progress["floor"], **progress_mapping(restored)}
+    assert through_a_file(kept) == progress
+    start, floor = start_state(records, base, "band-limited", 0.05)
+    found, _ = named_by(evidence, base, progress, start)
+    whole = name(start, floor.rms)
+    assert [len(one.looks) for one in whole.rounds] == [0, 2]
+    both = [
+        json.dumps(decide("rig", base, start, floor, named).content)
+        for named in (found, whole)
+    ]
+    assert both[0] == both[1]

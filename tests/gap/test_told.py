@@ -1,26 +1,33 @@
 """What is told of the numbers of effects and of the base."""
 
+import json
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hystbench.gap.augmented import augmented
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
+from hystbench.gap.finding import find
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, Round
+from hystbench.gap.rank import Candidate, Look, Round, in_order
 from hystbench.gap.schema import RANK
 from hystbench.gap.start import start_state
+from hystbench.gap.state import Added
 from hystbench.gap.told import base_parameters, effect_mapping, ranking_rows
 from hystbench.gap.verdict import Left
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT
-from tests.gap.small import MODE, block, hysteresis, measured
+from tests.gap.small import MODE, block, hysteresis, measured, state_of
 
 NOISE = 0.02
+MODE_BLOCK = block("resonance", **MODE)
 LEFT = Left(100.0, 1.0, 100.0, 1.0)
 
 
@@ -103,6 +110,168 @@ def test_the_ranking_gives_every_round_and_keeps_its_order():
     assert [row.get("gain") for row in rows] == [80.0, 50.0, None, 5.0, None]
     for row in rows:
         check_against_schema(row, RANK, "ranking")
+        assert (row["look"], row["instead_of"], row["beside"]) == (0, None, [])
+    assert [row["taken"] for row in rows] == [True] + [False] * 4
+
+
+def told_by_rows(content, effect):
+    """Confidence and ties of an effect, from the numbers in gap.json and no other.
+
+    The last ranking that has it taken counts. A rival is e times less likely for every
+    four of score (2 % are kept for what is not in the vocabulary), and what is left of
+    the gap lowers all, down to none at 70 %. A tie is less than six apart.
+    """
+    rows = content["ranking"]
+    *_, (number, look) = (
+        (row["round"], row["look"])
+        for row in rows
+        if row["taken"] and row["name"] == effect
+    )
+    here = [row for row in rows if (row["round"], row["look"]) == (number, look)]
+    scores = {row["name"]: row["score"] for row in here if "score" in row}
+    own = scores.pop(effect)
+    odds = sum(math.exp(min((own - other) / 4, 100)) for other in scores.values())
+    refitted = [row["name"] for row in here if row["refitted"]]
+    ties = [name for name, x in scores.items() if name in refitted and x < own + 6]
+    trust = max(0.0, 1 - content["fit"]["left"] / 0.7)
+    return 0.98 * trust / (1 + odds), ties
+
+
+NAMES = ("drive-lag", "creep", "friction", "resonance", "backlash")
+
+
+ANY = state_of((block("gain", value=1.0),))
+
+
+@st.composite
+def rankings(draw, sure):
+    """A ranking, best first; the effect that is sure to be judged may be anywhere."""
+    found = [Candidate("drift", "sensor", declined="too short")]
+    for name in draw(st.permutations(NAMES)):
+        kind = draw(st.sampled_from(["refitted", "grid", "declined"]))
+        if name == sure or kind != "declined":
+            state = ANY if name == sure or kind == "refitted" else None
+            score = draw(st.floats(-50, 50))
+            found.append(Candidate(name, "drive", "", score, 1.0, state))
+    return tuple(in_order(found))
+
+
+@st.composite
+def histories(draw):
+    """Rounds that take effects, each followed by second looks at any of them."""
+    rounds, taken = [], []
+    for k in range(draw(st.integers(1, 3))):
+        ranking = draw(rankings(NAMES[k]))
+        own = next(item for item in ranking if item.effect == NAMES[k])
+        ranking = (own, *(item for item in ranking if item is not own))
+        taken.append(NAMES[k])
+        looks = []
+        for place in draw(st.lists(st.sampled_from(taken), max_size=3)):
+            again = draw(rankings(place))
+            # A look that cannot judge leaves the effect to an earlier ranking.
+            by = place if draw(st.booleans()) else None
+            looks.append(Look(place, (), again, by))
+        rounds.append(Round(ANY, 0.0, ranking, True, tuple(looks)))
+    return Named(ANY, tuple(rounds)), taken
+
+
+@settings(max_examples=60)
+@given(histories(), st.floats(0, 1))
+def test_how_sure_a_name_is_follows_from_the_rows_of_the_ranking(history, loose):
+    named, taken = history
+    left = Left(100.0, 100.0 * loose, 100.0, 100.0)
+    fit = {"left": left.loose}
+    content = through_a_file({"ranking": ranking_rows(named), "fit": fit})
+    for effect in taken:
+        item = Added(effect, "drive", "", (), {}, 1.0)
+        ranking = named.reasons[effect]
+        shown = effect_mapping(item, ANY, np.zeros(0), (), ranking, left)
+        sure, ties = told_by_rows(content, effect)
+        assert shown["confidence"] == pytest.approx(sure)
+        assert shown["cannot_be_told_from"] == ties
+
+
+def through_a_file(content):
+    return json.loads(json.dumps(content, allow_nan=False))
+
+
+def found_in(before, *behind):
+    """What is found of blocks around a hysteresis, from the hysteresis alone."""
+    chain = (hysteresis(),)
+    records = measured((before, *chain, *behind), 0.05)
+    base = Model("rig", CURRENT, DISPLACEMENT, chain)
+    return through_a_file(find("made", records, base, declared=0.05).content)
+
+
+@pytest.fixture(scope="module")
+def found():
+    """A lag before a hysteresis and a mode behind it."""
+    return found_in(block("drive-lag", time_constant_s=0.004), MODE_BLOCK)
+
+
+@pytest.fixture(scope="module")
+def swapped():
+    """Eddy currents, a mode and a lag: alone the lag of the drive does for two."""
+    eddy = block("eddy-diffusion", time_constant_s=0.01, geometry="slab")
+    return found_in(eddy, MODE_BLOCK, block("sensor-lag", time_constant_s=0.003))
+
+
+def test_a_second_look_is_seen_in_the_ranking(found):
+    """The lag was the best while the mode was missing; is it still?"""
+    names = [item["name"] for item in found["effects"]]
+    assert names == ["drive-lag", "resonance"]
+    looked = {}
+    for row in found["ranking"]:
+        check_against_schema(row, RANK, "ranking")
+        if row["look"]:
+            looked.setdefault((row["round"], row["instead_of"]), []).append(row)
+    assert list(looked) == [(2, "drive-lag"), (2, "resonance")]
+    for (_, effect), rows in looked.items():
+        assert [row["name"] for row in rows if row["taken"]] == [effect]
+        others = [name for name in names if name != effect]
+        assert all(row["beside"] == others for row in rows)
+    first = {row["name"]: row for row in found["ranking"] if row["round"] == 1}
+    assert all(row["beside"] == [] for row in first.values())
+    then = {row["name"]: row for row in looked[2, "drive-lag"]}
+    gains = [
+        rows["drive-lag"]["gain"] - rows["eddy-diffusion"]["gain"]
+        for rows in (first, then)
+    ]
+    # Of two likely lags the true one is clearer with the mode there.
+    assert gains[1] > gains[0] > 0
+
+
+def test_an_effect_that_no_round_took_is_seen_to_take_a_place(swapped):
+    """The three that were put in are named; one of them was the first of no round."""
+    names = [item["name"] for item in swapped["effects"]]
+    assert set(names) == {"eddy-diffusion", "resonance", "sensor-lag"}
+    rows = [row for row in swapped["ranking"] if row["taken"]]
+    by_rounds = {row["name"] for row in rows if not row["look"]}
+    ((gone, came),) = (
+        (row["instead_of"], row["name"])
+        for row in rows
+        if row["look"] and row["instead_of"] != row["name"]
+    )
+    assert came not in by_rounds
+    assert (by_rounds | {came}) - {gone} == set(names)
+    # The rows of that look say by how much.
+    (row,) = (x for x in rows if x["look"] and x["instead_of"] != x["name"])
+    key = ("round", "look")
+    old = next(
+        x
+        for x in swapped["ranking"]
+        if [x[k] for k in key] == [row[k] for k in key] and x["name"] == gone
+    )
+    assert "declined" in old or row["score"] < old["score"]
+
+
+@pytest.mark.parametrize("case", ["found", "swapped"])
+def test_every_confidence_follows_from_what_gap_json_holds(case, request):
+    found = request.getfixturevalue(case)
+    for item in found["effects"]:
+        sure, ties = told_by_rows(found, item["name"])
+        assert item["confidence"] == pytest.approx(sure)
+        assert item["cannot_be_told_from"] == ties
 
 
 def test_a_field_bias_is_told_as_one_and_its_model_runs(tmp_path):

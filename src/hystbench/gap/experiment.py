@@ -2,53 +2,47 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
-from typing import Any, Protocol
-
-import numpy as np
+from typing import Any
 
 from hystbench.errors import InputError
-from hystbench.gap.compared import rms
 from hystbench.gap.excitations import Excitation, candidates
 from hystbench.gap.limits import Limits
-from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.gap.separation import Pair, Sets, pairs_of, separations
+from hystbench.record import Record
 
 #: A pair that differs by so many floors is told apart: more of it helps no other pair.
 CLEAR = 3.0
-
-
-class Simulator(Protocol):
-    """What runs from an input: a model."""
-
-    def simulate(self, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the output from rest."""
-        ...
-
-
-#: Directions in which a refit may move the output: shape (n, m) from u and dt.
-Tangents = Callable[[FloatArray, float], FloatArray]
+#: A pair that differs by less is not told apart.
+TOLD = 1.0
+#: Pairs that a sentence names: all of them are in the table.
+NAMED = 3
+REFITTED = "after both are refitted"
 
 
 @dataclass(frozen=True, repr=False)
 class Experiment:
-    """The excitation that separates rivals best.
+    """The excitation that separates rivals best, those of all sets at once.
 
     Parameters
     ----------
     excitation : Excitation
-    pairs : dict of (str, str) to float
+    pairs : dict of Pair to float
         Separation of each pair of rivals, in noise floors.
-    existing : dict of (str, str) to float
+    existing : dict of Pair to float
         The same for the existing record that is best for the pair.
+    largest : dict of Pair to float
+        The same for the excitation that is best for the pair.
+    left_out : tuple of (str, str)
+        Members of sets that no input brings out, each with the effect whose set it is.
     """
 
     excitation: Excitation
-    pairs: dict[tuple[str, str], float]
-    existing: dict[tuple[str, str], float]
+    pairs: dict[Pair, float]
+    existing: dict[Pair, float]
+    largest: dict[Pair, float]
+    left_out: tuple[tuple[str, str], ...] = ()
 
     @property
     def separation(self) -> float:
@@ -63,26 +57,78 @@ class Experiment:
     @property
     def sentence(self) -> str:
         """What to do and what it gives, in words."""
-        hardest = min(self.pairs, key=lambda pair: self.pairs[pair])
-        names = " from ".join(hardest)
-        size, now = self.pairs[hardest], self.existing[hardest]
-        best = self.excitation.words
-        if size < 1:
+        told = self._of_one() if len(self.pairs) == 1 else self._of_many()
+        if not self.left_out:
+            return told
+        return f"{told} {new_in_every_record(self.left_out)}."
+
+    def _of_one(self) -> str:
+        ((pair, size),) = self.pairs.items()
+        names, now, best = self._words(pair), self.existing[pair], self.excitation.words
+        if now >= max(size, TOLD):
+            return (
+                f"The existing records tell {names} by {now:.2g} noise floors "
+                f"{REFITTED}; the best feasible excitation, {best}, reaches {size:.2g}."
+            )
+        if size < TOLD:
             return (
                 f"No feasible excitation tells {names}: the best, {best}, separates "
-                f"them by {size:.2g} noise floors after gain and offset are refitted."
-            )
-        if size <= now:
-            return (
-                f"The existing records tell {names} by {now:.2g} noise floors after "
-                f"gain and offset are refitted; the best feasible excitation, {best}, "
-                f"reaches {size:.2g}."
+                f"them by {size:.2g} noise floors {REFITTED}."
             )
         return (
-            f"Try {best}: it separates {names} by {size:.2g} noise floors after gain "
-            f"and offset are refitted; the best of the existing records reaches "
-            f"{now:.2g}."
+            f"Try {best}: it separates {names} by {size:.2g} noise floors {REFITTED}; "
+            f"the best of the existing records reaches {now:.2g}."
         )
+
+    def _of_many(self) -> str:
+        best, count = self.excitation.words, len(self.pairs)
+        told = [pair for pair, size in self.pairs.items() if size >= TOLD]
+        if told:
+            lead = f"Try {best}"
+            if _merit(self.existing) >= _merit(self.pairs):
+                lead = (
+                    "Over all pairs the existing records do as well as the best "
+                    f"feasible excitation, {best}"
+                )
+            many = f"all {count}" if len(told) == count else f"{len(told)} of {count}"
+            shown = min(told, key=lambda pair: self.pairs[pair])
+            found = [
+                f"{lead}: it separates {many} pairs by a noise floor or more "
+                f"{REFITTED}, {self._words(shown)} least, by {self.pairs[shown]:.2g}"
+            ]
+        else:
+            shown = max(self.pairs, key=lambda pair: self.pairs[pair])
+            found = [
+                f"The best excitation for all {count} pairs, {best}, tells none: it "
+                f"separates {self._words(shown)} most, by {self.pairs[shown]:.2g} "
+                f"noise floors {REFITTED}"
+            ]
+        now = self.existing[shown]
+        found[0] += f"; the best of the existing records reaches {now:.2g}."
+        rest = [pair for pair in self.pairs if pair not in told]
+        known = [pair for pair in rest if self.existing[pair] >= TOLD]
+        unknown = [pair for pair in rest if pair not in known]
+        never = [pair for pair in unknown if self.largest[pair] < TOLD]
+        other = [pair for pair in unknown if pair not in never]
+        if known:
+            found.append(f"The existing records tell {self._listed(known, 'and')}.")
+        if never:
+            found.append(f"No feasible excitation tells {self._listed(never)}.")
+        if other:
+            found.append(f"Another excitation would tell {self._listed(other)}.")
+        return " ".join(found)
+
+    def _words(self, pair: Pair) -> str:
+        several = len({each.of for each in self.pairs}) > 1
+        place = f" in the place of {pair.of}" if several else ""
+        return " from ".join(pair.names) + place
+
+    def _listed(self, pairs: Sequence[Pair], last: str = "or") -> str:
+        shown = [self._words(pair) for pair in pairs[:NAMED]]
+        more = len(pairs) - len(shown)
+        if more:
+            return f"{', '.join(shown)} and {more} more"
+        return f" {last} ".join(shown)
 
     def mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``next_experiment``."""
@@ -97,116 +143,48 @@ class Experiment:
             "existing_separation": self.existing_separation,
             "pairs": [
                 {
-                    "names": list(pair),
+                    "of": pair.of,
+                    "names": list(pair.names),
                     "separation": size,
                     "existing_separation": self.existing[pair],
+                    "largest_separation": self.largest[pair],
                 }
                 for pair, size in self.pairs.items()
             ],
+            "left_out": [{"of": of, "name": name} for of, name in self.left_out],
             "sentence": self.sentence,
         }
 
 
-def separation(
-    first: FloatArray,
-    second: FloatArray,
-    noise_floor: float,
-    tangents: FloatArray | None = None,
-) -> float:
-    """RMS difference of two outputs that no refit takes away, in noise floors.
-
-    The part of ``first - second`` orthogonal to an offset, to a gain (the mean of the
-    two outputs) and to the tangents that are given.
-
-    Parameters
-    ----------
-    first, second : ndarray, shape (n,)
-    noise_floor : float
-        RMS, in the outputs' unit.
-    tangents : ndarray, shape (n, m), optional
-
-    Returns
-    -------
-    float
-    """
-    columns = [np.ones_like(first), (first + second) / 2]
-    if tangents is not None:
-        columns += list(tangents.T)
-    basis = np.column_stack(columns)
-    size = np.sqrt(np.mean(np.square(basis), axis=0))
-    basis = basis / np.where(size > 0, size, 1.0)
-    difference = first - second
-    weights, *_ = np.linalg.lstsq(basis, difference, rcond=1e-9)
-    return rms(difference - basis @ weights) / noise_floor
-
-
-def parameter_tangents(
-    rivals: Sequence[tuple[Model, Sequence[str]]], step: float = 1e-3
-) -> Tangents:
-    """Directions in which a refit of named parameters moves the rivals' outputs.
-
-    Without them a single sine seems to tell a lag from a delay that another time
-    constant would imitate.
-
-    Parameters
-    ----------
-    rivals : sequence of (Model, sequence of str)
-        A model and the names of its parameters that a refit may change; numbers, or
-        lists of them that are changed together, by a common factor.
-    step : float
-        Relative change; of 0 an absolute one.
-    """
-
-    def beside(model: Model, name: str) -> Iterator[Model]:
-        value = model.value(name)
-        new: float | list[float]
-        if isinstance(value, str):
-            raise InputError(f"{name}: {value!r} is no number; expected one to refit")
-        if isinstance(value, tuple):
-            new = [item * (1 + step) for item in value]
-        else:
-            new = value * (1 + step) if value else step
-        # A zero that stands for "none" has no neighbour: the block refuses it.
-        with contextlib.suppress(InputError):
-            yield model.with_values({name: new})
-
-    moved = [
-        (model, [other for name in names for other in beside(model, name)])
-        for model, names in rivals
-    ]
-
-    def tangents(u: FloatArray, dt: float) -> FloatArray:
-        columns = []
-        for model, others in moved:
-            now = model.simulate(u, dt)
-            columns += [other.simulate(u, dt) - now for other in others]
-        return np.column_stack(columns) if columns else np.zeros((len(u), 0))
-
-    return tangents
+def new_in_every_record(left_out: Sequence[tuple[str, str]]) -> str:
+    """Say which members of sets no input brings out."""
+    names = list(dict.fromkeys(name for _, name in left_out))
+    are, them = ("is", "it") if len(names) == 1 else ("are", "them")
+    return (
+        f"{' and '.join(names)} {are} new in every record: no input brings {them} out"
+    )
 
 
 def next_experiment(
-    rivals: Sequence[tuple[str, Simulator]],
+    sets: Sets,
     records: Sequence[Record],
     noise_floor: float,
     limits: Limits | None = None,
-    tangents: Tangents | None = None,
     excitations: Sequence[Excitation] | None = None,
 ) -> Experiment:
     """Choose the excitation that tells rival models apart best.
 
     Parameters
     ----------
-    rivals : sequence of (str, model)
-        At least two, each fitted to the records.
+    sets : mapping of str to mapping of str to Rival
+        By the effect that they are rivals of, and by name; each fitted to the records.
+        Those of one set are to be told apart.
     records : sequence of Record
         The fit records: what they separate is the measure, and their inputs are the
         limits where none are given.
     noise_floor : float
         RMS in output units, above zero.
     limits : Limits, optional
-    tangents : callable, optional
-        What a refit may change besides gain and offset.
     excitations : sequence of Excitation, optional
         Instead of :func:`~hystbench.gap.excitations.candidates`.
 
@@ -219,53 +197,38 @@ def next_experiment(
     Raises
     ------
     InputError
-        If there are fewer than two rivals, no noise floor, or no excitation keeps
-        within the limits and lets every rival run.
+        If no set has two rivals, there is no noise floor, or no excitation keeps within
+        the limits and lets every rival run.
     """
-    if len(rivals) < 2:
-        raise InputError(f"{len(rivals)} rival models; expected at least two")
+    every = pairs_of(sets)
+    if not every:
+        raise InputError(
+            "next experiment: no set has two rival models; expected one that has"
+        )
     if not noise_floor > 0:
         raise InputError(f"noise floor: {noise_floor:g}; expected above 0")
     if excitations is None:
         limits = Limits.of(records) if limits is None else limits
         excitations = candidates(limits, records[0].input.unit)
     tried = [
-        (item, _pairs(rivals, item.u, item.dt, noise_floor, tangents))
-        for item in excitations
+        (item, separations(sets, item.u, item.dt, noise_floor)) for item in excitations
     ]
-    run = [(item, pairs) for item, pairs in tried if pairs is not None]
+    run = [(item, pairs) for item, pairs in tried if len(pairs) == len(every)]
     if not run:
         raise InputError(
             f"next experiment: none of {len(tried)} excitations keeps within the "
             "limits and gives finite outputs; expected wider limits"
         )
     excitation, pairs = max(run, key=lambda each: _merit(each[1]))
-    existing = dict.fromkeys(pairs, 0.0)
-    for record in records:
-        reached = _pairs(rivals, record.u, record.dt, noise_floor, tangents)
-        for pair, size in (reached or {}).items():
-            existing[pair] = max(existing[pair], size)
-    return Experiment(excitation, pairs, existing)
+    reached = [separations(sets, item.u, item.dt, noise_floor) for item in records]
+    return Experiment(
+        excitation,
+        pairs,
+        {pair: max(each.get(pair, 0.0) for each in reached) for pair in every},
+        {pair: max(each[pair] for _, each in run) for pair in every},
+    )
 
 
-def _merit(pairs: dict[tuple[str, str], float]) -> tuple[float, float]:
+def _merit(pairs: dict[Pair, float]) -> tuple[float, float]:
     sizes = list(pairs.values())
     return sum(min(size, CLEAR) for size in sizes), min(sizes)
-
-
-def _pairs(
-    rivals: Sequence[tuple[str, Simulator]],
-    u: FloatArray,
-    dt: float,
-    noise_floor: float,
-    tangents: Tangents | None,
-) -> dict[tuple[str, str], float] | None:
-    """Separation of each pair; None where a model does not run to the end."""
-    outputs = [(name, model.simulate(u, dt)) for name, model in rivals]
-    if not all(np.isfinite(output).all() for _, output in outputs):
-        return None
-    free = None if tangents is None else tangents(u, dt)
-    return {
-        (one, other): separation(first, second, noise_floor, free)
-        for (one, first), (other, second) in combinations(outputs, 2)
-    }

@@ -66,7 +66,7 @@ class Finding:
     curves : mapping
         What the pictures of where the gap is are drawn from.
     experiment : Experiment, optional
-        What would tell a set of likely effects apart.
+        What would tell likely effects apart best.
     rungs : tuple of Rung
         The models on the way from the base to the last effect.
     """
@@ -199,7 +199,8 @@ def decide(
             )
             for item in state.added
         ],
-        "fit": _fit(start, state, floor) | {"lone_share": lone, "unrepeated": differs},
+        "fit": _fit(start, state, floor)
+        | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
         "next_experiment": None if experiment is None else experiment.mapping(),

@@ -16,7 +16,7 @@ from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
 from hystbench.gap.name import Progress
-from hystbench.gap.rank import Candidate, Round, Tested
+from hystbench.gap.rank import Candidate, Look, Round, Tested
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Added, Free, State
@@ -104,10 +104,6 @@ class Restorer:
             content["gap"],
             tuple(self._round(item) for item in content["rounds"]),
             content["deferred"],
-            {
-                effect: tuple(self._candidate(item) for item in ranking)
-                for effect, ranking in content["reasons"].items()
-            },
             content["closed"],
         )
 
@@ -135,9 +131,21 @@ class Restorer:
         return Round(
             self.state(content["before"]),
             content["score"],
-            tuple(self._candidate(item) for item in content["ranking"]),
+            self._ranking(content),
+            content["taken"],
+            tuple(self._look(item) for item in content["looks"]),
+        )
+
+    def _look(self, content: Mapped) -> Look:
+        return Look(
+            content["instead_of"],
+            tuple(content["beside"]),
+            self._ranking(content),
             content["taken"],
         )
+
+    def _ranking(self, content: Mapped) -> tuple[Candidate, ...]:
+        return tuple(self._candidate(item) for item in content["ranking"])
 
     def _candidate(self, content: Mapped) -> Candidate:
         state = content["state"]
@@ -159,10 +167,6 @@ def progress_mapping(progress: Progress) -> Mapped:
         "gap": progress.gap,
         "deferred": progress.deferred,
         "closed": progress.closed,
-        "reasons": {
-            effect: [_candidate_mapping(item) for item in ranking]
-            for effect, ranking in progress.reasons.items()
-        },
         "state": state_mapping(progress.state),
         "rounds": [
             {
@@ -170,6 +174,7 @@ def progress_mapping(progress: Progress) -> Mapped:
                 "score": one.score,
                 "ranking": [_candidate_mapping(item) for item in one.ranking],
                 "taken": one.taken,
+                "looks": [_look_mapping(item) for item in one.looks],
             }
             for one in progress.rounds
         ],
@@ -184,6 +189,15 @@ def number(value: float) -> float | None:
 def limit(value: float | None, sign: int = 1) -> float:
     """Give a number back, and infinity for None."""
     return sign * float("inf") if value is None else value
+
+
+def _look_mapping(look: Look) -> Mapped:
+    return {
+        "instead_of": look.instead_of,
+        "beside": list(look.beside),
+        "ranking": [_candidate_mapping(item) for item in look.ranking],
+        "taken": look.taken,
+    }
 
 
 def _candidate_mapping(item: Candidate) -> Mapped:

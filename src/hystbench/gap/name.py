@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from hystbench.gap.fit import finished
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.known import without_unknown
 from hystbench.gap.rank import Candidate, Round, make_score, rank
+from hystbench.gap.rank import Candidate, Round, make_score, rank, reasons
 from hystbench.gap.reconsider import reconsidered, without_needless
 from hystbench.gap.say import Say, silent
 from hystbench.gap.state import State
@@ -36,17 +37,19 @@ class Named:
     state : State
         The model with all effects that were added.
     rounds : tuple of Round
-    reasons : dict of str to tuple of Candidate
-        The ranking by which each added effect was taken.
     """
 
     state: State
     rounds: tuple[Round, ...] = ()
-    reasons: dict[str, tuple[Candidate, ...]] = field(default_factory=dict)
+
+    @property
+    def reasons(self) -> dict[str, tuple[Candidate, ...]]:
+        """The last ranking by which each effect was taken, or kept."""
+        return reasons(self.rounds)
 
     def taken_back(self) -> Named:
         """Give the same with no effect named: the base as it was before the first."""
-        return replace(self, state=self.rounds[0].before, reasons={})
+        return replace(self, state=self.rounds[0].before)
 
 
 def name(state: State, floor_rms: float, say: Say = silent) -> Named:
@@ -65,15 +68,16 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, shape_first=True)
     state = without_needless(found.state, floor_rms, say)
-    reasons = found.reasons
-    if len(state.added) > 1 and _others_than_taken(state, found.rounds):
-        state, again = reconsidered(state, found.rounds, floor_rms, say, True)
-        reasons = reasons | again
+    rounds = found.rounds
+    if len(state.added) > 1 and _others_than_taken(state, rounds):
+        state, again = reconsidered(state, rounds, floor_rms, say, True)
+        last = replace(rounds[-1], looks=(*rounds[-1].looks, *again))
+        rounds = (*rounds[:-1], last)
     if state.added:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
     state = without_unknown(state, floor_rms, say)
-    return Named(state, found.rounds, reasons)
+    return Named(state, rounds)
 
 
 def _others_than_taken(state: State, rounds: Sequence[Round]) -> bool:
@@ -94,8 +98,6 @@ class Progress:
     rounds : tuple of Round
     deferred : bool
         Whether a shape that takes more of the gap was put off.
-    reasons : dict of str to tuple of Candidate
-        The ranking by which each added effect was taken.
     closed : bool
         Whether nothing is left that an effect could gain.
     """
@@ -104,7 +106,6 @@ class Progress:
     gap: float
     rounds: tuple[Round, ...] = ()
     deferred: bool = False
-    reasons: dict[str, tuple[Candidate, ...]] = field(default_factory=dict)
     closed: bool = False
 
     @classmethod
@@ -146,7 +147,6 @@ def advance(
         say("nothing is left that an effect could gain")
         return replace(progress, closed=True)
     ranking = rank(state, score, work=work)
-    reasons = dict(progress.reasons)
     deferred = progress.deferred
     if _shape_takes_more(ranking, state, floor):
         deferred = True
@@ -163,15 +163,14 @@ def advance(
         first = replace(first, held_back=held_back)
         ranking = (first, *ranking[1:])
     one = Round(state, first.score + first.gain, ranking, taken)
-    rounds = (*progress.rounds, one)
     if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)
         state = first.state
-        reasons[first.effect] = ranking
         if len(state.added) > 1:
-            state, again = reconsidered(state, rounds, floor_rms, say)
-            reasons |= again
-    return Progress(state, progress.gap, rounds, deferred, reasons)
+            rounds = (*progress.rounds, one)
+            state, looks = reconsidered(state, rounds, floor_rms, say)
+            one = replace(one, looks=looks)
+    return Progress(state, progress.gap, (*progress.rounds, one), deferred)
 
 
 def _shape_takes_more(

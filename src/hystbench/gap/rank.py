@@ -73,6 +73,29 @@ class Candidate:
 
 
 @dataclass(frozen=True)
+class Look:
+    """A second look: an effect and its rivals in its place, now that others are there.
+
+    Parameters
+    ----------
+    instead_of : str
+        The effect in whose place they were tried.
+    beside : tuple of str
+        The other effects, which stayed.
+    ranking : tuple of Candidate
+        Best first.
+    taken : str, optional
+        The effect that has the place by this ranking. None where the one that was
+        there could not be judged again: it stays by the ranking that took it before.
+    """
+
+    instead_of: str
+    beside: tuple[str, ...]
+    ranking: tuple[Candidate, ...]
+    taken: str | None
+
+
+@dataclass(frozen=True)
 class Round:
     """One round: the model before, every effect beside it, what was added.
 
@@ -85,12 +108,25 @@ class Round:
         Best first.
     taken : bool
         Whether the first of the ranking was added.
+    looks : tuple of Look
+        At the effects that were there when it was, in their order.
     """
 
     before: State
     score: float
     ranking: tuple[Candidate, ...]
     taken: bool
+    looks: tuple[Look, ...] = ()
+
+
+def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:
+    """Give the last ranking by which each effect was taken, or kept."""
+    found: dict[str, tuple[Candidate, ...]] = {}
+    for one in rounds:
+        if one.taken:
+            found[one.ranking[0].effect] = one.ranking
+        found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
+    return found
 
 
 def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
@@ -175,17 +211,17 @@ def rank(
     ]
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
     declined += [item for item in judged if item.declined]
-    candidates = _in_order(item for item in judged if not item.declined)
+    candidates = in_order(item for item in judged if not item.declined)
     candidates = [
         exactly(item, score, now, work)
         if place < EXACT and item.score < candidates[0].score + NEAR
         else item
         for place, item in enumerate(candidates)
     ]
-    return (*_in_order(candidates), *declined)
+    return (*in_order(candidates), *declined)
 
 
-def _in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
+def in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
     """Put finalists first, and what scores least first among them."""
     return sorted(candidates, key=lambda item: (item.state is None, item.score))
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import finished, score_of
-from hystbench.gap.rank import Candidate, Round, make_score, rank
+from hystbench.gap.rank import Look, Round, in_order, make_score, rank
 from hystbench.gap.say import Say
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import CLOSE, FURTHER, SHAPE, SWAP
@@ -20,7 +20,7 @@ def reconsidered(
     floor_rms: float,
     say: Say,
     every: bool = False,
-) -> tuple[State, dict[str, tuple[Candidate, ...]]]:
+) -> tuple[State, tuple[Look, ...]]:
     """Try the rivals of each effect in its place, now that others are there.
 
     The first effect was named while the others were missing: one like it may have
@@ -39,36 +39,39 @@ def reconsidered(
     Returns
     -------
     state : State
-    rankings : dict of str to tuple of Candidate
-        Of the effects that were looked at again, where they could be judged again.
+    looks : tuple of Look
+        At each effect in turn; the last one is that at which one gave way, if any did.
     """
-    rankings: dict[str, tuple[Candidate, ...]] = {}
+    looks: list[Look] = []
     for number, item in enumerate(state.added):
         if item.effect == SHAPE or not removable(state, number):
             continue
         score = make_score(state, floor_rms)
         now = score_of(state, score)
         short = without_effect(state, number)
-        have = {other.effect for other in short.added}
+        have = tuple(other.effect for other in short.added)
         names = set(effects()) if every else _rivals(item.effect, rounds)
-        known = [effects()[name] for name in sorted(names - have)]
+        known = [effects()[name] for name in sorted(names - set(have))]
         ranking = rank(short, score, known)
         best = ranking[0]
         other = best.state is not None and best.effect != item.effect
         if other and best.score < now - SWAP:
             gain = now - best.score
             say(f"{item.effect} gives way to {best.effect}: {gain:.1f}")
-            return best.state or state, {**rankings, best.effect: ranking}
+            looks.append(Look(item.effect, have, ranking, best.effect))
+            return best.state or state, tuple(looks)
         own = next((x for x in ranking if x.effect == item.effect), None)
-        if own is not None and own.state is not None:
+        kept = own is not None and own.state is not None
+        if own is not None and kept:
             # A search from anew may end worse than the model that is there.
             as_is = replace(
                 own, score=now, gain=own.gain + own.score - now, state=state
             )
-            rankings[item.effect] = tuple(
-                as_is if x is own and now < own.score else x for x in ranking
+            ranking = tuple(
+                in_order(as_is if x is own and now < own.score else x for x in ranking)
             )
-    return state, rankings
+        looks.append(Look(item.effect, have, ranking, item.effect if kept else None))
+    return state, tuple(looks)
 
 
 def without_needless(state: State, floor_rms: float, say: Say) -> State:

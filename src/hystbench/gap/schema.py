@@ -100,6 +100,9 @@ FIT = _object(
         "noise": NUMBER,
         "step_error": NUMBER,
         "floor": NUMBER,
+        # Share of the gap that no effect takes away; it lowers every confidence. Of the
+        # whole gap, or of what no wrong hysteresis could do, whichever is less.
+        "left": NUMBER,
         # Share of the power of what is left that stands in lone samples; and how much
         # of it differs between periods of the same input, above the noise's power and
         # in units of that. Null where no record repeats.
@@ -125,11 +128,22 @@ TESTED = _object(
     }
 )
 
+# A row of a ranking. `round` and `look` number the rankings: look 0 is the round
+# itself, 1 and on are the second looks after it.
 RANK = _object(
     {
         "round": {"type": "integer", "minimum": 1},
+        "look": {"type": "integer", "minimum": 0},
+        # The effect in whose place this one was tried; null in the round itself.
+        "instead_of": {"type": ["string", "null"]},
+        # The effects that were in the model beside which it was tried.
+        "beside": NAMES,
         "name": {"type": "string"},
         "place": {"type": "string"},
+        # Whether it is in the model by this ranking, added or kept.
+        "taken": {"type": "boolean"},
+        # Whether it was refitted with the whole model: only those can be a tie.
+        "refitted": {"type": "boolean"},
         # The gain on records held back from the fit, of the best of a round where it
         # had to decide whether that one is taken.
         "held_back": OPTIONAL,
@@ -140,6 +154,47 @@ RANK = _object(
     declined={"type": "string"},
     variants={"type": "array", "items": TESTED},
 )
+
+# The excitation that tells the named effects from those that they cannot be told from
+# best, over all of them at once. Separations are in noise floors: of the pair that is
+# hardest, and of each pair.
+EXPERIMENT = _object(
+    {
+        "excitation": {"type": "string"},
+        "parameters": {
+            "type": "object",
+            "additionalProperties": _object(
+                {
+                    "value": {"type": ["number", "array"], "items": NUMBER},
+                    "unit": {"type": "string"},
+                }
+            ),
+        },
+        "sampling_interval_s": NUMBER,
+        "separation": NUMBER,
+        "existing_separation": NUMBER,
+        "pairs": {
+            "type": "array",
+            "items": _object(
+                {
+                    # The named effect in whose place both are, or which one of them is.
+                    "of": {"type": "string"},
+                    "names": NAMES | {"minItems": 2, "maxItems": 2},
+                    "separation": NUMBER,
+                    # By the existing record, and the excitation, best for this pair.
+                    "existing_separation": NUMBER,
+                    "largest_separation": NUMBER,
+                }
+            ),
+        },
+        # What is new in every record: no input brings it out.
+        "left_out": {
+            "type": "array",
+            "items": _object({"of": {"type": "string"}, "name": {"type": "string"}}),
+        },
+        "sentence": WORDS,
+    }
+) | {"type": ["object", "null"]}
 
 SCHEMA = _object(
     {
@@ -152,7 +207,7 @@ SCHEMA = _object(
         "where": {"type": "array", "items": VIEW},
         "gap": GAP,
         "ranking": {"type": "array", "items": RANK},
-        "next_experiment": {"type": ["object", "null"]},
+        "next_experiment": EXPERIMENT,
     },
     records={"type": "array"},
     # The base, the base re-tuned within what it leaves free, then effect by effect.

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from hystbench.errors import InputError
 from hystbench.gap.augmented import augmented
-from hystbench.gap.experiment import Experiment, next_experiment, parameter_tangents
+from hystbench.gap.experiment import Experiment, new_in_every_record, next_experiment
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import Named
 from hystbench.gap.rank import Candidate, near
+from hystbench.gap.separation import Rival, pairs_of, parameter_tangents
+from hystbench.gap.state import State
 from hystbench.model import Model
 from hystbench.record import Record
 
 ELSEWHERE = (
     "the base holds the output of a simulator that ran elsewhere, which answers to no "
     "other input"
-)
-NEW_IN_EVERY_RECORD = (
-    "one of those that cannot be told apart is new in every record, and no input "
-    "brings it out"
 )
 """Why no experiment is computed."""
 
@@ -31,7 +30,10 @@ def tell_apart(
     floor_rms: float,
     limits: Limits | None,
 ) -> tuple[Experiment | None, str]:
-    """Look for the excitation that tells a set of likely effects apart.
+    """Look for the one excitation that tells all sets of likely effects apart.
+
+    A set is a named effect and those that it cannot be told from, each as it was fitted
+    beside the same other effects.
 
     Parameters
     ----------
@@ -49,30 +51,73 @@ def tell_apart(
     str
         Why there is none though effects cannot be told apart; else empty.
     """
-    why = ""
-    for effect in (item.effect for item in named.state.added):
-        ranking = named.reasons.get(effect, ())
-        rivals = _rivals(effect, ranking)
-        if not rivals:
-            continue
-        if not all(block.reruns for block in base.chain):
-            return None, ELSEWHERE
-        usable = [x for x in rivals if x.state is not None and not x.state.beside]
-        if len(usable) < 2:
-            why = NEW_IN_EVERY_RECORD
-            continue
-        models = [(x.effect, augmented(base, x.state)) for x in usable[:3] if x.state]
-        tangents = parameter_tangents([(model, model.free) for _, model in models])
-        try:
-            found = next_experiment(models, records, floor_rms, limits, tangents)
-        except InputError as error:
-            return None, str(error)
-        return found, ""
-    return None, why
+    alike = {
+        item.effect: members
+        for item in named.state.added
+        if (members := _alike(item.effect, named.reasons.get(item.effect, ())))
+    }
+    if not alike:
+        return None, ""
+    if not all(block.reruns for block in base.chain):
+        return None, ELSEWHERE
+    left_out = tuple(
+        (of, name)
+        for of, members in alike.items()
+        for name, state in members.items()
+        if _is_beside(name, state)
+    )
+    rivals = _Rivals(base)
+    sets = {
+        of: {
+            name: rivals.of(state)
+            for name, state in members.items()
+            if (of, name) not in left_out
+        }
+        for of, members in alike.items()
+    }
+    unseen = new_in_every_record(left_out) if left_out else ""
+    if not pairs_of(sets):
+        return None, unseen
+    try:
+        found = next_experiment(sets, records, floor_rms, limits)
+    except InputError as error:
+        return None, "; ".join(filter(None, [str(error), unseen]))
+    return replace(found, left_out=left_out), ""
 
 
-def _rivals(effect: str, ranking: Sequence[Candidate]) -> list[Candidate]:
+def _alike(effect: str, ranking: Sequence[Candidate]) -> dict[str, State]:
     """Give an effect and those that cannot be told from it, if there are any."""
     own = next((x for x in ranking if x.effect == effect), None)
     names = () if own is None else near(own, ranking)
-    return [x for x in ranking if names and x.effect in (effect, *names) and x.state]
+    if not names:
+        return {}
+    return {
+        x.effect: x.state
+        for x in ranking
+        if x.effect in (effect, *names) and x.state is not None
+    }
+
+
+def _is_beside(effect: str, state: State) -> bool:
+    """Tell whether an effect is a signal of each record, which no input brings out."""
+    return any(beside.effect == effect for beside, _ in state.beside)
+
+
+class _Rivals:
+    """Gives states as rivals, the same one for the same model: it runs once then.
+
+    What other effects put beside the chain is left out, as it is new in every record.
+    """
+
+    def __init__(self, base: Model) -> None:
+        self._base = base
+        self._known: list[tuple[Model, Rival]] = []
+
+    def of(self, state: State) -> Rival:
+        model = augmented(self._base, replace(state, beside=()))
+        for known, rival in self._known:
+            if known == model:
+                return rival
+        rival = Rival(model, parameter_tangents(model, model.free))
+        self._known.append((model, rival))
+        return rival

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -167,19 +167,34 @@ def _unit(text: str, state: State) -> str:
 
 
 def ranking_rows(named: Named) -> list[dict[str, Any]]:
-    """Give every candidate of every round, best first."""
-    return [
-        _ranking_row(number, item)
-        for number, one in enumerate(named.rounds, start=1)
-        for item in one.ranking
-    ]
+    """Give every candidate of every round and of the second looks after it.
+
+    Rankings stand in the order in which they were made, each with the best first.
+    """
+    rows = []
+    for number, one in enumerate(named.rounds, start=1):
+        beside = [item.effect for item in one.before.added]
+        about = {"round": number, "look": 0, "instead_of": None, "beside": beside}
+        best = one.ranking[0].effect if one.taken else None
+        rows += _rows(about, one.ranking, best)
+        for k, look in enumerate(one.looks, start=1):
+            where = {"instead_of": look.instead_of, "beside": list(look.beside)}
+            rows += _rows(about | {"look": k} | where, look.ranking, look.taken)
+    return rows
 
 
-def _ranking_row(number: int, item: Candidate) -> dict[str, Any]:
+def _rows(
+    about: Mapping[str, Any], ranking: Sequence[Candidate], taken: str | None
+) -> list[dict[str, Any]]:
+    return [{**about, **_candidate_row(x, x.effect == taken)} for x in ranking]
+
+
+def _candidate_row(item: Candidate, taken: bool) -> dict[str, Any]:
     row: dict[str, Any] = {
-        "round": number,
         "name": item.effect,
         "place": item.place,
+        "taken": taken,
+        "refitted": item.state is not None,
         "held_back": item.held_back,
     }
     if item.form:

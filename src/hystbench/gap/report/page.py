@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from itertools import groupby
 from typing import Any
 
 from hystbench.figures.style import unit_text
@@ -72,10 +73,8 @@ def page(content: Content) -> str:
         shares=_shares(gap),
         ladder=_ladder(gap),
         ranking=_ranking(gap),
-        ranked=sorted(
-            (item for item in gap["ranking"] if "declined" not in item),
-            key=lambda item: (item["round"], -item.get("gain", float("-inf"))),
-        ),
+        ranked=_ranked(item for item in gap["ranking"] if not item["look"]),
+        looks=_looks(gap),
         declined=_declined(gap),
         series=_series(content),
         drawn=min(len(content.hold_out), pictures.RECORDS),
@@ -102,7 +101,7 @@ def _shares(gap: dict[str, Any]) -> Picture | None:
 
 
 def _ranking(gap: dict[str, Any]) -> Picture | None:
-    first = [item for item in gap["ranking"] if item["round"] == 1]
+    first = [x for x in gap["ranking"] if x["round"] == 1 and not x["look"]]
     ranked = [item for item in first if "gain" in item]
     ranked = sorted(ranked, key=lambda item: -item["gain"])[: pictures.BARS]
     if not ranked:
@@ -122,12 +121,51 @@ def _ranking(gap: dict[str, Any]) -> Picture | None:
     )
 
 
+def _ranked(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Give the rows that have a score, round by round, the largest gain first."""
+    return sorted(
+        (item for item in rows if "declined" not in item),
+        key=lambda item: (item["round"], -item.get("gain", float("-inf"))),
+    )
+
+
+def _looks(gap: dict[str, Any]) -> list[dict[str, Any]]:
+    """Give the second looks, each with what came of it and its rows."""
+    found = []
+    seconds = (item for item in gap["ranking"] if item["look"])
+    for _, group in groupby(seconds, key=lambda item: (item["round"], item["look"])):
+        rows = list(group)
+        taken = [item["name"] for item in rows if item["taken"]]
+        gone, beside = rows[0]["instead_of"], words.listed(rows[0]["beside"])
+        own = next(item for item in rows if item["name"] == gone)
+        if not taken:
+            came = f"could not be judged again ({_why_not(own)}) and stays"
+        elif taken == [gone]:
+            came = "stays"
+        else:
+            came = f"gives way to {taken[0]}"
+        rivals = {1: "no rival", 2: "one rival"}.get(
+            len(rows), f"{len(rows) - 1} rivals"
+        )
+        sentence = (
+            f"{gone} was tried again beside {beside}, with {rivals} in its place: it "
+            f"{came}."
+        )
+        about = {"round": rows[0]["round"], "sentence": sentence}
+        found.append(about | {"rows": _ranked(rows)})
+    return found
+
+
+def _why_not(item: dict[str, Any]) -> str:
+    return str(item.get("declined", "it was not refitted there"))
+
+
 def _declined(gap: dict[str, Any]) -> list[dict[str, Any]]:
     """Give what declined, each reason once though it may hold in every round."""
     found = {
         (item["name"], item["place"], item["declined"]): item
         for item in reversed(gap["ranking"])
-        if "declined" in item
+        if "declined" in item and not item["look"]
     }
     return list(reversed(found.values()))
 

@@ -42,25 +42,6 @@ OPEN_PARTS: dict[str, Any] = {
                 ),
             }
         },
-        "next_experiment": {
-            "properties": {
-                "excitation": WORD,
-                "sentence": WORD,
-                "sampling_interval_s": NUMBER,
-                "separation": NUMBER,
-                "existing_separation": NUMBER,
-                "parameters": {
-                    "type": "object",
-                    "additionalProperties": {
-                        "type": "object",
-                        "required": ["value", "unit"],
-                    },
-                },
-                "pairs": _items(
-                    names=NAMES, separation=NUMBER, existing_separation=NUMBER
-                ),
-            }
-        },
     }
 }
 
