@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from hystbench.gap.fit import finished
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.known import without_unknown
-from hystbench.gap.rank import Candidate, Round, make_score, rank
 from hystbench.gap.rank import Candidate, Round, make_score, rank, reasons
 from hystbench.gap.reconsider import reconsidered, without_needless
 from hystbench.gap.say import Say, silent
