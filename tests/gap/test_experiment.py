@@ -252,7 +252,7 @@ def both():
 
 
 def test_one_excitation_is_best_over_the_pairs_of_all_sets(both):
-    """Plainly: of all excitations, by what is capped at clear, then by the hardest."""
+    """By pairs that are told, by what is capped at clear, then by the hardest."""
     _, items, found = both
     sizes = []
     for item in items:
@@ -267,7 +267,10 @@ def test_one_excitation_is_best_over_the_pairs_of_all_sets(both):
                 separation(run["creep", "creep"], run["creep", "mode"], 0.01),
             )
         )
-    merits = [(sum(min(x, CLEAR) for x in each), min(each)) for each in sizes]
+    merits = [
+        (sum(x >= 1 for x in each), sum(min(x, CLEAR) for x in each), min(each))
+        for each in sizes
+    ]
     best = merits.index(max(merits))
     assert found.excitation is items[best]
     pairs = Pair("lag", ("lag", "mode")), Pair("creep", ("creep", "mode"))
@@ -288,9 +291,39 @@ def test_a_set_does_not_change_what_is_said_of_another(both):
     assert told == {("lag", "lag", "mode"), ("creep", "creep", "mode")}
 
 
-def test_a_rival_that_runs_away_rules_an_excitation_out_and_no_other():
+def test_a_pair_that_is_told_counts_more_than_many_that_are_not():
+    time = np.arange(1000) / 1000
+    base, beside = (np.sin(2 * np.pi * k * time) for k in (1, 2))
+
+    class Off:
+        def __init__(self, by):
+            self.by = by
+
+        def simulate(self, u, dt):
+            return base + np.sqrt(2) * self.by.get(u[0], 0.0) * beside
+
+    nearly = {f"near{k}": Off({1.0: 0.9, 2.0: 0.0}) for k in range(4)}
+    clearly = {"clear": Off({1.0: 0.0, 2.0: 9.0})}
+    sets = {
+        name: {name: Rival(other), "plain": Rival(Off({1.0: 0.0, 2.0: 0.0}))}
+        for name, other in (nearly | clearly).items()
+    }
+    items = [
+        dataclasses.replace(candidates(LIMITS, "A")[0], u=np.full(1000, level))
+        for level in (1.0, 2.0)
+    ]
+    made = record(np.zeros(1000))
+    found = next_experiment(sets, [made], 1.0, LIMITS, items)
+    assert found.excitation is items[1]
+    assert max(found.pairs.values()) == pytest.approx(9.0, rel=0.02)
+
+
+@pytest.mark.parametrize("refuses", [False, True])
+def test_a_rival_that_runs_away_rules_an_excitation_out_and_no_other(refuses):
     class Bounded:
         def simulate(self, u, dt):
+            if refuses and np.abs(u).max() >= 0.5:
+                raise InputError("a function of somebody's: too much")
             return u**2 if np.abs(u).max() < 0.5 else np.full_like(u, np.nan)
 
     sets = one_set(("plain", GAIN_MODEL), ("bounded", Bounded()))

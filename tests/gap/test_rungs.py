@@ -51,7 +51,15 @@ def test_an_effect_that_takes_the_place_of_another_is_named_with_what_was_added(
     start, one = with_names(), with_names("lag")
     final = with_names("delay", "drift")
     found = rungs(start, named(final, start, one))
-    assert [item.name for item in found] == [BASE, "lag", "delay + drift"]
+    assert [item.name for item in found] == [BASE, "delay + drift"]
+
+
+def test_an_effect_that_went_out_again_lends_its_name_to_no_other_model():
+    start, one, two = (with_names(*names) for names in ((), ("lag",), ("lag", "creep")))
+    final = with_names("lag")
+    found = rungs(start, named(final, start, one, two))
+    assert [item.name for item in found] == [BASE, "lag"]
+    assert found[-1].state is final
 
 
 def test_effects_that_were_all_taken_back_have_no_rung():

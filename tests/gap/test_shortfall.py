@@ -39,6 +39,9 @@ def test_an_effect_that_widens_the_gap_is_told_though_all_together_shrink_it():
     assert found["sentence"] == (
         "On the hold-out records creep widens the gap, from 1 to 1.2 um."
     )
+    found = shortfall(content(fit=0.5, held=None, ladder=steps))
+    assert found["hold_out"] is None  # of a base at the floor nothing can go
+    assert "creep widens the gap" in found["sentence"]
     steps[1]["rms"] = 1.001  # no more than rounding is worth
     assert shortfall(content(fit=0.5, held=0.9, ladder=steps)) is None
     steps[1]["rms"] = None  # one that runs away is told elsewhere

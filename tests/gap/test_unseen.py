@@ -39,12 +39,31 @@ def lagging(u, dt):
 def bent(u, dt):
     return np.tanh(lagging(u, dt))
 
+def slow(u, dt):
+    pole = np.exp(-dt / 0.6)  # of the longest record 0.4
+    return lfilter([1 - pole], [1.0, -pole], u)
+
+def ringing(u, dt):
+    w = 2 * np.pi * 5 * dt
+    a = [1.0, -2 * np.exp(-0.01 * w) * np.cos(w), np.exp(-0.02 * w)]
+    return lfilter([sum(a)], a, u)
+
 def loose(u, dt):
     y, value = np.zeros(len(u)), 0.0
     for k, now in enumerate(u):
         value = max(now - 0.1, min(now + 0.1, value))
         y[k] = value
     return bent(y, dt)
+
+def shy(u, dt):
+    if abs(u[0]) > 0.1 or np.abs(u).max() > 0.9:
+        raise ValueError("starts from rest, and not so far")
+    return loose(u, dt)
+
+def refuses(u, dt):
+    if len(u) > 2000:
+        raise ValueError("no more")
+    return lagging(u, dt)
 """
 
 
@@ -115,7 +134,7 @@ def test_a_curve_of_the_material_lies_behind_its_loop(seen):
     assert (effect["name"], effect["place"]) == ("saturation", "material")
 
 
-@pytest.mark.parametrize("kind", ["lagging", "bent"])
+@pytest.mark.parametrize("kind", ["lagging", "bent", "slow", "ringing"])
 def test_a_simulator_that_forgets_has_no_hysteresis(kind, module):
     chain = (External(function=f"{module(FUNCTIONS)}:{kind}"),)
     scene = Scene(chain, records())
@@ -125,12 +144,14 @@ def test_a_simulator_that_forgets_has_no_hysteresis(kind, module):
     assert Scene((hysteresis(), *chain), records()).loop == 0
 
 
-def test_a_simulator_that_remembers_may_be_of_a_wrong_shape(module):
-    chain = (External(function=f"{module(FUNCTIONS)}:loose"),)
+@pytest.mark.parametrize("kind", ["loose", "shy", "refuses"])
+def test_a_simulator_that_remembers_may_be_of_a_wrong_shape(kind, module):
+    """Or one that refuses to be asked; the way to ask begins where the records do."""
+    chain = (External(function=f"{module(FUNCTIONS)}:{kind}"),)
     scene = Scene(chain, records())
     assert (scene.loop, scene.behind_hysteresis) == (0, 1)
     assert reshapings(scene, Sample.of(records(), 50)).shape[1] > 0
-    assert Scene((block("gain", value=2.0), *chain), records()).loop == 1
+    assert Scene((block("gain", value=1.0), *chain), records()).loop == 1
     with pytest.raises(Declined, match="has a hysteresis already"):
         next(effects()["hysteresis"].variants(scene))
 

@@ -191,8 +191,8 @@ def next_experiment(
     Returns
     -------
     Experiment
-        Of the excitations with the most pairs told apart, the one that separates the
-        hardest pair most.
+        Of the excitations that tell most pairs apart, the one that separates all pairs
+        most, each counted up to ``CLEAR``; of equals, the hardest pair decides.
 
     Raises
     ------
@@ -229,6 +229,8 @@ def next_experiment(
     )
 
 
-def _merit(pairs: dict[Pair, float]) -> tuple[float, float]:
+def _merit(pairs: dict[Pair, float]) -> tuple[int, float, float]:
+    """Rank by pairs told apart, then by how clearly, then by the hardest."""
     sizes = list(pairs.values())
-    return sum(min(size, CLEAR) for size in sizes), min(sizes)
+    told = sum(size >= TOLD for size in sizes)
+    return told, sum(min(size, CLEAR) for size in sizes), min(sizes)

@@ -67,6 +67,7 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, shape_first=True)
     state = without_needless(found.state, floor_rms, say)
+    state = without_unknown(state, floor_rms, say)
     rounds = found.rounds
     if len(state.added) > 1 and _others_than_taken(state, rounds):
         state, again = reconsidered(state, rounds, floor_rms, say, True)
@@ -75,7 +76,6 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     if state.added:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
-    state = without_unknown(state, floor_rms, say)
     return Named(state, rounds)
 
 

@@ -22,8 +22,8 @@ def rungs(start: State, named: Named) -> tuple[Rung, ...]:
     """Give the base, the base re-tuned where it is free, then effect by effect.
 
     Each rung is the model as it was fitted with the effects that it has: the last one
-    without an effect would be no model that anybody fitted. Effects that were all taken
-    back have no rung.
+    without an effect would be no model that anybody fitted. An effect that went out
+    again has no rung.
 
     Parameters
     ----------
@@ -36,9 +36,10 @@ def rungs(start: State, named: Named) -> tuple[Rung, ...]:
     if start.free:
         found.append(Rung(RETUNED, states[0] if states else named.state))
     last: list[str] = []
+    kept = {item.effect for item in named.state.added}
     for state in (*states[1:], named.state) if named.state.added else ():
         names = [item.effect for item in state.added]
-        new = [name for name in names if name not in last]
+        new = [name for name in names if name in kept and name not in last]
         if new:
             found.append(Rung(" + ".join(new), state))
         last = names

@@ -13,6 +13,7 @@ from hystbench.blocks.band_limited import finer
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
+from hystbench.gap.unseen import may_hold
 from hystbench.record import FloatArray, Record
 
 Signals = tuple[FloatArray, ...]
@@ -99,33 +100,12 @@ class Scene:
     @cached_property
     def loop(self) -> int | None:
         """Place of what makes the loop: the hysteresis, or what may hold one unseen."""
-        held = [k for k, block in enumerate(self.chain) if self._may_hold(block, k)]
+        held = [
+            k for k, block in enumerate(self.chain) if may_hold(block, self.records)
+        ]
         if self.hysteresis is not None:
             held.append(self.hysteresis)
         return max(held, default=None)
-
-    def _may_hold(self, block: Block, place: int) -> bool:
-        """Tell whether a simulator whose inside is not seen may hold a hysteresis.
-
-        Of a stored output it is not known. A function is asked: its input goes to one
-        end of its range and back to the middle, or to the other end and back, and
-        stays there. Without a hysteresis it comes to rest at the same output.
-        """
-        if block.seen:
-            return False
-        if not block.reruns:
-            return True
-        low = min(float(z.min()) for z in self.before[place])
-        high = max(float(z.max()) for z in self.before[place])
-        record = max(self.records, key=lambda item: item.dt * len(item))
-        way = np.interp(np.linspace(0, 4, len(record)), [0, 1, 2], [0.0, 0.5, 0.0])
-        middle, span = (low + high) / 2, high - low
-        up, down = (
-            block.simulate(middle + side * span * way, record.u, record.dt)
-            for side in (1, -1)
-        )
-        reach = max(float(np.ptp(up)), float(np.ptp(down)))
-        return bool(abs(up[-1] - down[-1]) > REMAINS * reach)
 
     @cached_property
     def behind_hysteresis(self) -> int:
@@ -198,8 +178,6 @@ def _quick(block: Block) -> Block:
     return replace(block, hold="linear") if block.holding == LIMITED else block
 
 
-REMAINS = 0.01
-"""Of the output's range: where it comes to rest by another way is a hysteresis."""
 LIMITED = "band-limited"
 FINER = 8
 """Steps through the hysteresis in a sampling interval, where exact."""

@@ -113,7 +113,9 @@ FIT = _object(
 
 # Where the hold-out records show far less than the fit records promised: both shares
 # of the power above the floor that are gone, and what the reader is told.
-SHORTFALL = _object({"fit": NUMBER, "hold_out": NUMBER, "sentence": {"type": "string"}})
+SHORTFALL = _object(
+    {"fit": OPTIONAL, "hold_out": OPTIONAL, "sentence": {"type": "string"}}
+)
 
 # Null where the model of a rung runs away on a hold-out record.
 RUNG = _object({"name": {"type": "string"}, "rms": OPTIONAL})

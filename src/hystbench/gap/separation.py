@@ -136,12 +136,18 @@ class _Ran(NamedTuple):
 
 
 def _run(rival: Rival, u: FloatArray, dt: float) -> _Ran | None:
-    """Simulate a rival and its tangents; None where they do not run to the end."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        output = rival.model.simulate(u, dt)
-        tangents = np.zeros((len(u), 0))
-        if rival.tangents is not None and np.isfinite(output).all():
-            tangents = rival.tangents(u, dt, output)
+    """Simulate a rival and its tangents; None where they do not run to the end.
+
+    As where a simulator of somebody's own refuses an input.
+    """
+    tangents = np.zeros((len(u), 0))
+    try:
+        with np.errstate(over="ignore", invalid="ignore"):
+            output = rival.model.simulate(u, dt)
+            if rival.tangents is not None and np.isfinite(output).all():
+                tangents = rival.tangents(u, dt, output)
+    except InputError:
+        return None
     whole = np.isfinite(output).all() and np.isfinite(tangents).all()
     return _Ran(output, tangents) if whole else None
 

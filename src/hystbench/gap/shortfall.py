@@ -30,23 +30,23 @@ def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
     -------
     dict or None
         ``fit`` and ``hold_out``, the shares of the power above the floor that are
-        gone, and a ``sentence``; None where the hold-out records keep the promise and
-        no effect widens the gap there.
+        gone (None where there was none), and a ``sentence``; None where the hold-out
+        records keep the promise and no effect widens the gap there.
     """
     promised, kept = content["fit"]["explained"], content["gap"]["explained"]
     if not isinstance(kept, int | float) and kept is not None:
         kept = max(kept)  # a range keeps the promise if it may
-    if promised is None or kept is None:
-        return None
     sentences = [_less(content, promised, kept), *_widens(content)]
     told = " ".join(sentence for sentence in sentences if sentence)
     return {"fit": promised, "hold_out": kept, "sentence": told} if told else None
 
 
-def _less(content: Mapping[str, Any], promised: float, kept: float) -> str:
+def _less(
+    content: Mapping[str, Any], promised: float | None, kept: float | None
+) -> str:
     """Say by how much less is gone than was promised, and why."""
     names = [item["name"] for item in content["effects"]]
-    if not names or promised - kept < MATTERS:
+    if not names or promised is None or kept is None or promised - kept < MATTERS:
         return ""
     sentence = (
         f"On the fit records {100 * promised:.0f} % of the gap's power is gone, on "

@@ -6,8 +6,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import norm, t
 
+from hystbench.gap.change import without_effect
 from hystbench.gap.sample import Sample
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
@@ -57,16 +59,9 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     """
     if not state.free:
         return np.zeros(0)
-    residual = state.residual
     columns = np.hstack([state.tangents, state.beside_columns])
-    beta = np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
-    beta[: len(state.free)] = 0.0
-    residual = residual - columns @ beta
-    _, inside = score.split(residual)
-    filled = float(inside @ inside) / max(len(inside), 1)
-    share = max(0.0, 1.0 - score.floor / max(filled, score.floor))
-    columns = columns - share * (score.directions @ (score.directions.T @ columns))
-    residual = residual - share * (score.directions @ inside)
+    residual = _cleaned(state, columns)
+    columns, residual = _beyond_shape(columns, residual, score)
     scale = np.sqrt(np.mean(columns**2, axis=0))
     # What the output shows of a number must be more than rounding.
     values = np.array([abs(state.value(free)) for free in state.free])
@@ -77,13 +72,71 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     output = np.sqrt(np.mean((state.measured - state.residual) ** 2))
     moved = own * np.abs(state.steps) > ROUNDING * output
     usable[: len(values)] |= (values == 0) & moved
-    columns = columns[:, usable] / scale[usable]
-    pieces = by_record(columns, residual, state, score.floor)
+    return _errors(columns, residual, usable, state, score)[: len(state.free)]
+
+
+def error_of_size(state: State, score: Score, number: int) -> float:
+    """Estimate the standard error of an added effect's size, as a share of it.
+
+    Of all its numbers together: they may stand in for each other, and none of them be
+    known where what they do is. What it adds to the output is one column here, beside
+    those of all other numbers.
+
+    Parameters
+    ----------
+    state : State
+    score : Score
+    number : int
+        Place of the effect among those that were added.
+    """
+    own = state.added[number].blocks
+    rest = [k for k, free in enumerate(state.free) if free.block not in own]
+    without = without_effect(state, number).settled()
+    columns = np.hstack(
+        [
+            (without.residual - state.residual)[:, None],
+            state.tangents[:, rest],
+            state.beside_columns,
+        ]
+    )
+    residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
+    columns, residual = _beyond_shape(columns, residual, score)
+    usable = np.mean(columns**2, axis=0) > SHOWN**2 * score.floor
+    return float(_errors(columns, residual, usable, state, score)[0])
+
+
+def _cleaned(state: State, columns: FloatArray) -> FloatArray:
+    """Give the residual without what is solved for beside the free numbers."""
+    beta = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
+    beta[: len(state.free)] = 0.0
+    return np.asarray(state.residual - columns @ beta)
+
+
+def _beyond_shape(
+    columns: FloatArray, residual: FloatArray, score: Score
+) -> tuple[FloatArray, FloatArray]:
+    """Take off what a wrong shape may do, as far as the residual fills it."""
+    _, inside = score.split(residual)
+    filled = float(inside @ inside) / max(len(inside), 1)
+    share = max(0.0, 1.0 - score.floor / max(filled, score.floor))
+    columns = columns - share * (score.directions @ (score.directions.T @ columns))
+    return columns, residual - share * (score.directions @ inside)
+
+
+def _errors(
+    columns: FloatArray,
+    residual: FloatArray,
+    usable: NDArray[np.bool_],
+    state: State,
+    score: Score,
+) -> FloatArray:
+    """Give robust standard errors of the amplitudes of columns; NaN of those unused."""
+    scale = np.sqrt(np.mean(columns[:, usable] ** 2, axis=0))
+    pieces = by_record(columns[:, usable] / scale, residual, state, score.floor)
     variance = np.maximum(np.diag(between_stretches(pieces)), between_records(pieces))
     errors = np.full(len(usable), np.nan)
-    errors[usable] = np.sqrt(np.maximum(variance, 0.0)) / scale[usable]
-    found: FloatArray = errors[: len(state.free)]
-    return found
+    errors[usable] = np.sqrt(np.maximum(variance, 0.0)) / scale
+    return errors
 
 
 class Pieces(NamedTuple):
