@@ -300,13 +300,17 @@ def test_a_pair_that_is_told_counts_more_than_many_that_are_not():
             self.by = by
 
         def simulate(self, u, dt):
-            return base + np.sqrt(2) * self.by.get(u[0], 0.0) * beside
+            return base + self.by.get(u[0], 0.0) / np.sqrt(2) * beside
 
-    nearly = {f"near{k}": Off({1.0: 0.9, 2.0: 0.0}) for k in range(4)}
-    clearly = {"clear": Off({1.0: 0.0, 2.0: 9.0})}
+    # By so much each pair differs on the first excitation and on the second, rms:
+    # half to each side, so that no gain takes a part of it away.
+    apart = {f"near{k}": {1.0: 0.9} for k in range(4)} | {"clear": {2.0: 9.0}}
     sets = {
-        name: {name: Rival(other), "plain": Rival(Off({1.0: 0.0, 2.0: 0.0}))}
-        for name, other in (nearly | clearly).items()
+        name: {
+            side: Rival(Off({level: sign * size for level, size in by.items()}))
+            for side, sign in (("one", 1), ("other", -1))
+        }
+        for name, by in apart.items()
     }
     items = [
         dataclasses.replace(candidates(LIMITS, "A")[0], u=np.full(1000, level))
