@@ -129,6 +129,9 @@ GAP = {
         looked(2, "creep", declined="fits best at the end of its range"),
         looked(2, "thermal-drift", place="sensor", score=-913.5, gain=101.25),
     ],
+    "taken_out": [
+        {"name": "backlash", "reason": "the standard error of its size is 71% of it"}
+    ],
     "next_experiment": {
         "excitation": "steps-with-holds",
         "parameters": {

@@ -19,7 +19,7 @@ from hystbench.gap.folds import make_folds
 from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.lone import lone_share
-from hystbench.gap.name import Named, name
+from hystbench.gap.name import LITTLE, Named, name
 from hystbench.gap.rank import make_score
 from hystbench.gap.repeats import unrepeated
 from hystbench.gap.rungs import Rung, rungs
@@ -148,9 +148,7 @@ def decide(
     """
     left = what_is_left(start, named.state, floor.rms)
     if named.state.added and left.little_named:
-        say(
-            "what the effects leave of a slightly wrong shape is most of it: none named"
-        )
+        say(f"{LITTLE}: none named")
         named = named.taken_back()
         left = what_is_left(start, named.state, floor.rms)
     records, state = start.records, named.state
@@ -203,6 +201,7 @@ def decide(
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
+        "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": base_parameters(base, state),
         "black_box": {"explained_on_folds": box.explained_on_folds},

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 from hystbench.gap.fit import finished
 from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.known import without_unknown
 from hystbench.gap.rank import Candidate, Round, make_score, rank, reasons
-from hystbench.gap.reconsider import reconsidered, without_needless
+from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.say import Say, silent
 from hystbench.gap.state import State
 from hystbench.gap.steps import above_floor
+from hystbench.gap.taken_out import TakenOut, without_what_goes
 from hystbench.gap.thresholds import (
     BESIDE_SHAPE,
     CERTAIN,
@@ -26,6 +26,8 @@ from hystbench.gap.thresholds import (
 )
 from hystbench.gap.work import IN_PROCESS, Work
 
+LITTLE = "what the effects leave of a slightly wrong shape is most of it"
+
 
 @dataclass(frozen=True)
 class Named:
@@ -36,10 +38,13 @@ class Named:
     state : State
         The model with all effects that were added.
     rounds : tuple of Round
+    gone : tuple of TakenOut
+        Effects that were added and went out again.
     """
 
     state: State
     rounds: tuple[Round, ...] = ()
+    gone: tuple[TakenOut, ...] = ()
 
     @property
     def reasons(self) -> dict[str, tuple[Candidate, ...]]:
@@ -48,7 +53,8 @@ class Named:
 
     def taken_back(self) -> Named:
         """Give the same with no effect named: the base as it was before the first."""
-        return replace(self, state=self.rounds[0].before)
+        gone = [TakenOut(item.effect, LITTLE) for item in self.state.added]
+        return replace(self, state=self.rounds[0].before, gone=(*self.gone, *gone))
 
 
 def name(state: State, floor_rms: float, say: Say = silent) -> Named:
@@ -66,8 +72,7 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     if found.deferred and any(item.effect == SHAPE for item in found.state.added):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, shape_first=True)
-    state = without_needless(found.state, floor_rms, say)
-    state = without_unknown(state, floor_rms, say)
+    state, gone = without_what_goes(found.state, floor_rms, say)
     rounds = found.rounds
     if len(state.added) > 1 and _others_than_taken(state, rounds):
         state, again = reconsidered(state, rounds, floor_rms, say, True)
@@ -76,7 +81,7 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     if state.added:
         # Its own numbers are found without what other forms of it could do.
         state, _ = finished(state, make_score(state, floor_rms, forms=False))
-    return Named(state, rounds)
+    return Named(state, rounds, gone)
 
 
 def _others_than_taken(state: State, rounds: Sequence[Round]) -> bool:

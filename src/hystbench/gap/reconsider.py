@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import finished, score_of
+from hystbench.gap.fit import score_of
 from hystbench.gap.rank import Look, Round, in_order, make_score, rank
 from hystbench.gap.say import Say
 from hystbench.gap.state import State
-from hystbench.gap.thresholds import CLOSE, FURTHER, SHAPE, SWAP
+from hystbench.gap.thresholds import CLOSE, SHAPE, SWAP
 
 
 def reconsidered(
@@ -72,25 +72,6 @@ def reconsidered(
             )
         looks.append(Look(item.effect, have, ranking, item.effect if kept else None))
     return state, tuple(looks)
-
-
-def without_needless(state: State, floor_rms: float, say: Say) -> State:
-    """Take effects out again that gain too little beside those that were added later.
-
-    An effect is judged by what can be reshaped without it: other forms of itself would
-    stand in for it.
-    """
-    for number, item in enumerate(state.added if len(state.added) > 1 else ()):
-        if not removable(state, number):
-            continue
-        short = without_effect(state, number)
-        score = make_score(short, floor_rms)
-        short, value = finished(short, score)
-        gain = value - score_of(state, score)
-        if gain < FURTHER:
-            say(f"{item.effect} is needless beside the others: gain {gain:.1f}")
-            return without_needless(short, floor_rms, say)
-    return state
 
 
 def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:

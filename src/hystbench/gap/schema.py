@@ -130,6 +130,9 @@ TESTED = _object(
     }
 )
 
+# An effect that was added and went out again.
+TAKEN_OUT = _object({"name": {"type": "string"}, "reason": {"type": "string"}})
+
 # A row of a ranking. `round` and `look` number the rankings: look 0 is the round
 # itself, 1 and on are the second looks after it.
 RANK = _object(
@@ -216,6 +219,7 @@ SCHEMA = _object(
     ladder={"type": "array", "items": RUNG},
     fit=FIT,
     runs_away={"type": "array", "items": AWAY},
+    taken_out={"type": "array", "items": TAKEN_OUT},
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},

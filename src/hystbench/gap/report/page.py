@@ -19,6 +19,7 @@ OPTIONAL: dict[str, Any] = {
     "ladder": [],
     "black_box": None,
     "base_parameters": {},
+    "taken_out": [],
     "shortfall": None,
     "no_experiment": "",
     "runs_away": [],

@@ -1,15 +1,16 @@
-"""A further effect stays only where the records know its size."""
+"""Effects go out again that are needless, or whose size the records do not know."""
 
 import numpy as np
 import pytest
 
-from hystbench.gap import known
+from hystbench.gap import taken_out
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import refit
-from hystbench.gap.known import without_unknown
-from hystbench.gap.rank import make_score
+from hystbench.gap.name import LITTLE, Named
+from hystbench.gap.rank import Round, make_score
 from hystbench.gap.say import silent
+from hystbench.gap.taken_out import TakenOut, unknown, without_what_goes
 from hystbench.gap.uncertainty import (
     error_of_size,
     on_more_samples,
@@ -48,14 +49,11 @@ def names(state):
 
 
 def test_a_curve_that_is_there_stays_and_one_that_is_not_goes():
-    bent = with_two(BEND)
-    assert without_unknown(bent, NOISE, silent) is bent
-    said = []
-    short = without_unknown(with_two(0.0), NOISE, said.append)
+    assert unknown(with_two(BEND), NOISE) is None
+    gone, short = unknown(with_two(0.0), NOISE)
+    assert gone == TakenOut("asymmetry", "the records show nothing of it")
     assert names(short) == ["drive-lag"]
     assert [block.name for block in short.chain] == ["drive-lag", "gain"]
-    (line,) = said
-    assert line.startswith("asymmetry goes: the standard error of its size is")
 
 
 @pytest.mark.parametrize(
@@ -64,11 +62,13 @@ def test_a_curve_that_is_there_stays_and_one_that_is_not_goes():
         (0.4, ["drive-lag", "asymmetry"]),
         (0.6, ["drive-lag"]),  # the first effect is not asked
         (np.inf, ["drive-lag"]),
+        (np.nan, ["drive-lag"]),
     ],
 )
 def test_an_error_of_more_than_half_the_size_decides(error, kept, monkeypatch):
-    monkeypatch.setattr(known, "error_of_size", lambda *given: error)
-    assert names(without_unknown(with_two(BEND), NOISE, silent)) == kept
+    monkeypatch.setattr(taken_out, "error_of_size", lambda *given: error)
+    found = unknown(with_two(BEND), NOISE)
+    assert names(with_two(BEND) if found is None else found.state) == kept
 
 
 def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
@@ -94,13 +94,25 @@ def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
     alone = [abs(finer.value(finer.free[k])) / errors[k] for k in own]
     assert np.nanmin(alone) < 1.0
     assert error_of_size(finer, score, 1) < 0.2
-    assert without_unknown(state, NOISE, silent) is state
+    assert unknown(state, NOISE) is None
 
 
-def test_one_effect_alone_is_not_looked_at(monkeypatch):
-    monkeypatch.delattr(known, "error_of_size")
+def test_one_effect_alone_is_not_looked_at():
     gain = block("gain", value=12.0)
     state = state_of((gain,), measured((gain,), NOISE))
     variant = next(iter(effects()["asymmetry"].variants(state.scene)))
     state = with_effect(state, variant, {"coefficient": 0.0})
-    assert without_unknown(state, NOISE, silent) is state
+    assert without_what_goes(state, NOISE, silent) == (state, ())
+
+
+def test_what_went_is_told_with_the_reason():
+    """The lag gains much, the curve of no size nothing: it is needless before all."""
+    said = []
+    state, gone = without_what_goes(with_two(0.0), NOISE, said.append)
+    assert names(state) == ["drive-lag"]
+    (curve,) = gone
+    assert curve.name == "asymmetry"
+    assert curve.reason.startswith("needless beside the others")
+    assert said == [f"asymmetry goes: {curve.reason}"]
+    all_of_it = Named(state, (Round(state, 0.0, (), True),), gone).taken_back()
+    assert all_of_it.gone == (curve, TakenOut("drive-lag", LITTLE))

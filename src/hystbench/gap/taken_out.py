@@ -1,0 +1,101 @@
+"""Effects that were added and go out again, and why."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.gap.change import removable, without_effect
+from hystbench.gap.fit import finished, score_of
+from hystbench.gap.rank import make_score
+from hystbench.gap.say import Say
+from hystbench.gap.state import Added, State
+from hystbench.gap.thresholds import FURTHER
+from hystbench.gap.uncertainty import error_of_size, on_more_samples
+
+UNKNOWN = 0.5
+"""Standard error of an effect's size, as a share of it: two of them reach nothing."""
+
+
+class TakenOut(NamedTuple):
+    """An effect that went out again."""
+
+    name: str
+    reason: str
+
+
+class Without(NamedTuple):
+    """A model without one of its effects."""
+
+    gone: TakenOut
+    state: State
+
+
+def without_what_goes(
+    state: State, floor_rms: float, say: Say
+) -> tuple[State, tuple[TakenOut, ...]]:
+    """Take out what is needless, then what is not known, while two effects are there.
+
+    Returns
+    -------
+    state : State
+    gone : tuple of TakenOut
+        In the order in which they went.
+    """
+    gone: tuple[TakenOut, ...] = ()
+    for look in (needless, unknown):
+        while len(state.added) > 1 and (found := look(state, floor_rms)) is not None:
+            say(f"{found.gone.name} goes: {found.gone.reason}")
+            gone, state = (*gone, found.gone), found.state
+    return state, gone
+
+
+def needless(state: State, floor_rms: float) -> Without | None:
+    """Find an effect that gains too little beside those that were added later.
+
+    An effect is judged by what can be reshaped without it: other forms of itself would
+    stand in for it.
+    """
+    for number, item in enumerate(state.added):
+        if not removable(state, number):
+            continue
+        short = without_effect(state, number)
+        score = make_score(short, floor_rms)
+        short, value = finished(short, score)
+        gain = value - score_of(state, score)
+        if gain < FURTHER:
+            reason = f"needless beside the others, its gain is {gain:.1f}"
+            return Without(TakenOut(item.effect, reason), short)
+    return None
+
+
+def unknown(state: State, floor_rms: float) -> Without | None:
+    """Find a further effect whose size the records do not know.
+
+    Where its standard error is more than half of it, the records do not agree on the
+    effect: it takes away what another one leaves in some of them. The first effect
+    stays, as do those that are new in every record, and a hysteresis, which is judged
+    as what others reshape.
+    """
+    finer = on_more_samples(state)
+    score = make_score(finer, floor_rms, forms=False)
+    for number in reversed(range(1, len(state.added))):
+        item = state.added[number]
+        if not _is_judged(item, state) or not removable(state, number):
+            continue
+        error = error_of_size(finer, score, number)
+        if error <= UNKNOWN:
+            continue
+        short = without_effect(state, number)
+        short, _ = finished(short, make_score(short, floor_rms))
+        reason = f"the standard error of its size is {error:.0%} of it"
+        if np.isnan(error):
+            reason = "the records show nothing of it"
+        return Without(TakenOut(item.effect, reason), short)
+    return None
+
+
+def _is_judged(item: Added, state: State) -> bool:
+    blocks = [state.chain[k] for k in item.blocks]
+    return bool(blocks) and not any(block.hysteretic for block in blocks)
