@@ -42,8 +42,10 @@ class Fitted:
     Parameters
     ----------
     effect : str
+    output : ndarray, shape (n,)
+        With the effect, over all samples of all records, one after the other.
     mean_square : float
-        Of the residual, over all samples of all records.
+        Of the residual, over the same.
     freedom : int
         Parameters fitted.
     values : dict of str to float
@@ -54,6 +56,7 @@ class Fitted:
     """
 
     effect: str
+    output: FloatArray
     mean_square: float
     freedom: int
     values: dict[str, float]
@@ -402,6 +405,7 @@ def _search(
     model = Model("fitted", task.model.input, task.model.output, chain)
     return Fitted(
         effect,
+        residual(best.x) + task.measured,
         2.0 * float(best.cost) / len(task.measured),
         len(names),
         chosen,
@@ -477,6 +481,7 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
     weights = np.linalg.lstsq(design, missing)[0]
     return Fitted(
         effect,
+        task.base + design @ weights,
         float(np.mean((missing - design @ weights) ** 2)),
         design.shape[1],
         {},
@@ -493,18 +498,19 @@ def _fit_beside(
     columns: Callable[[Record, float], FloatArray],
 ) -> Fitted:
     """Add to each record a signal of its own that the input does not explain."""
-    total, freedom, start = 0.0, 0, 0
+    parts, freedom, start = [], 0, 0
     for record in task.records:
         stop = start + len(record)
         missing = record.y - task.base[start:stop]
         design = columns(record, value)
-        weights = np.linalg.lstsq(design, missing)[0]
-        total += float(np.sum((missing - design @ weights) ** 2))
+        parts.append(design @ np.linalg.lstsq(design, missing)[0])
         freedom += design.shape[1]
         start = stop
+    output = task.base + np.concatenate(parts)
     return Fitted(
         effect,
-        total / len(task.measured),
+        output,
+        float(np.mean((output - task.measured) ** 2)),
         freedom + (value != 0.0),
         {"frequency_hz": value} if value else {},
         lambda record: task.model.simulate(record.u, record.dt),

@@ -44,11 +44,44 @@ def solved(module, folder, out):
     return gap
 
 
+@pytest.fixture
+def few_effects(monkeypatch):
+    """Fit a handful of effects alone: all of them take a minute."""
+    few = ("thermal-drift", "drive-lag", "saturation", "calibration-error", "drift")
+    assert set(few) < set(effects())
+    monkeypatch.setattr(naive, "effects", lambda: few)
+
+
+@pytest.mark.usefixtures("few_effects")
 def test_the_naive_ranker_names_a_strong_effect(folder, tmp_path):
     gap = solved(naive, folder, tmp_path)
     assert gap["verdict"] == "named"
     assert gap["effects"][0]["name"] == "thermal-drift"
     assert gap["gap"]["after"] < 0.5 * gap["gap"]["before"]
+
+
+@pytest.mark.usefixtures("few_effects")
+def test_the_naive_ranker_goes_on_with_what_is_left(tmp_path):
+    hidden = ("drive-lag", "drift")
+    write_folder(make_case(CaseSpec(150_005, "pair", hidden, "gpi", 20.0)), tmp_path)
+    gap = solved(naive, tmp_path, tmp_path / "out")
+    names = [item["name"] for item in gap["effects"]]
+    assert set(hidden) <= set(names)
+    assert len(set(names)) == len(names) <= naive.MOST
+    # the drift of a record that was not fitted is not known: what the lag did is gone
+    assert gap["gap"]["after"] < gap["gap"]["before"]
+
+
+def test_what_an_effect_explains_is_taken_off(folder):
+    given = read(folder / "dataset", folder / "model.yaml")
+    task = Task(given.model, given.fit)
+    for name in ("calibration-error", "drift", "hysteresis-shape"):
+        found = fit(task, name)
+        left = naive.without(task, found)
+        error = found.output - task.measured
+        np.testing.assert_allclose(left.base - left.measured, error, atol=1e-9)
+        assert found.mean_square == pytest.approx(np.mean(error**2))
+        assert task.records[0].y is not left.records[0].y
 
 
 def test_the_random_namer_says_the_same_each_time(folder, tmp_path):

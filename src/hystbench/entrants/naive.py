@@ -1,22 +1,36 @@
 """The naive ranker: every effect by plain least squares, an information criterion.
 
 For each effect a bounded fit on the fit records; the least of squared error over the
-noise's power plus ``k log(n)`` is named first. The base is never reshaped, every sample
-counts, and one effect is named: what a careful beginner would do.
+noise's power plus ``k log(n)`` is named. What it explains is taken off the records, and
+the same is done with what is left, as long as the criterion falls. The base is never
+reshaped and every sample counts: what a careful beginner would do.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from hystbench.entrants.task import Named, noise_rms, read, write
+from hystbench.record import FloatArray, Record
 from hystbench.refit import Fitted, Task, effects, fit
+
+MOST = 4
+"""Effects that are named, at most."""
+
+
+class Taken(NamedTuple):
+    """An effect that was named, and its fit to what was left then."""
+
+    named: Named
+    fitted: Fitted
 
 
 def solve(dataset: Path, model: Path, out: Path) -> None:
-    """Name the effect of the least criterion, if it is below the base's own.
+    """Name effects of the least criterion, one after the other, while it falls.
 
     Parameters
     ----------
@@ -24,22 +38,51 @@ def solve(dataset: Path, model: Path, out: Path) -> None:
         As every solver's.
     """
     given = read(dataset, model)
-    task = Task(given.model, given.fit)
-    noise = noise_rms(given)
-    found = [item for name in effects() if (item := fit(task, name)) is not None]
+    task, noise = Task(given.model, given.fit), noise_rms(given)
+    taken: list[Taken] = []
+    while len(taken) < MOST:
+        found = best(task, noise, {item.named.name for item in taken})
+        if found is None:
+            break
+        taken.append(found)
+        task = without(task, found.fitted)
+
+    def predict(record: Record) -> FloatArray:
+        base = given.base(record)
+        return base + sum(item.fitted.predict(record) - base for item in taken)
+
+    names = [item.named for item in taken]
+    if names:
+        write(given, names, "named", "Least criterion.", predict, out)
+    else:
+        write(given, [], "no-gap", "No effect pays.", given.base, out)
+
+
+def best(task: Task, noise: float, known: set[str]) -> Taken | None:
+    """Fit every effect that is not named yet; none where the base alone does better."""
+    names = [name for name in effects() if name not in known]
+    found = [item for name in names if (item := fit(task, name)) is not None]
     scored = sorted((criterion(item, task, noise), item.effect) for item in found)
     samples = len(task.measured)
     base = samples * float(np.mean((task.base - task.measured) ** 2)) / noise**2
-    least, best = scored[0]
+    least, name = scored[0]
     if least >= base:
-        write(given, [], "no-gap", "No effect pays.", given.base, out)
-        return
-    chosen = next(item for item in found if item.effect == best)
+        return None
+    chosen = next(item for item in found if item.effect == name)
     # differences of the criterion as log-odds, as is usually done
     weights = np.exp(-0.5 * (np.array([score for score, _ in scored]) - least))
     ties = tuple(name for score, name in scored[1:] if score - least < np.log(samples))
-    named = Named(best, float(weights[0] / weights.sum()), ties)
-    write(given, [named], "named", "Least criterion.", chosen.predict, out)
+    return Taken(Named(name, float(weights[0] / weights.sum()), ties), chosen)
+
+
+def without(task: Task, found: Fitted) -> Task:
+    """Take what an effect explains off the records."""
+    ends = np.cumsum([len(record) for record in task.records])[:-1]
+    parts = np.split(task.measured - (found.output - task.base), ends)
+    records = [
+        replace(record, y=y) for record, y in zip(task.records, parts, strict=True)
+    ]
+    return Task(task.model, records)
 
 
 def criterion(found: Fitted, task: Task, noise: float) -> float:
