@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap import taken_out
-from hystbench.gap.change import with_effect
+from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import refit
 from hystbench.gap.name import LITTLE, Named
@@ -16,7 +16,7 @@ from hystbench.gap.uncertainty import (
     on_more_samples,
     standard_errors,
 )
-from tests.gap.small import block, measured, state_of
+from tests.gap.small import block, hysteresis, measured, state_of
 
 NOISE = 0.02
 LAG_S, BEND = 0.004, 0.2
@@ -116,3 +116,29 @@ def test_what_went_is_told_with_the_reason():
     assert said == [f"asymmetry goes: {curve.reason}"]
     all_of_it = Named(state, (Round(state, 0.0, (), True),), gone).taken_back()
     assert all_of_it.gone == (curve, TakenOut("drive-lag", LITTLE))
+
+
+def test_what_a_wrong_shape_could_do_as_well_has_a_size_all_the_same():
+    """A gain lies among the directions of reshaping, and every record shows it."""
+    chain = (hysteresis(),)
+    lag, gain = (
+        block("drive-lag", time_constant_s=LAG_S),
+        block("calibration-error", gain=1.1, offset=0.0),
+    )
+    state = state_of(chain, measured((lag, *chain, gain), NOISE))
+    for name, values in (
+        ("drive-lag", {"time_constant_s": LAG_S}),
+        ("calibration-error", {"gain": 0.1}),  # beside one
+    ):
+        offered = effects()[name].variants(state.scene)
+        variant = next(
+            item for item in offered if set(values) == {*item.grids, *item.unit}
+        )
+        state = with_effect(state, variant, values).settled()
+    finer = on_more_samples(state)
+    score = make_score(finer, NOISE, forms=False)
+    added = without_effect(finer, 1).settled().residual - finer.residual
+    inside = score.directions @ (score.directions.T @ added)
+    assert np.std(added - inside) < 0.1 * np.std(added)
+    assert error_of_size(finer, score, 1) < 0.1
+    assert unknown(state, NOISE) is None

@@ -80,7 +80,8 @@ def error_of_size(state: State, score: Score, number: int) -> float:
 
     Of all its numbers together: they may stand in for each other, and none of them be
     known where what they do is. What it adds to the output is one column here, beside
-    those of all other numbers.
+    those of all other numbers. Directions of a wrong shape are not taken off: a gain or
+    a static curve would have no size beside them, however alike all records show it.
 
     Parameters
     ----------
@@ -100,7 +101,6 @@ def error_of_size(state: State, score: Score, number: int) -> float:
         ]
     )
     residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
-    columns, residual = _beyond_shape(columns, residual, score)
     usable = np.mean(columns**2, axis=0) > SHOWN**2 * score.floor
     return float(_errors(columns, residual, usable, state, score)[0])
 
