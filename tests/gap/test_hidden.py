@@ -4,7 +4,7 @@ Every effect of the vocabulary once, at 20 dB of gap to noise. To save time only
 first half of each record is used. Seeds were not chosen: all cases are of seed 1.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import pytest
@@ -21,6 +21,7 @@ from hystbench.gap.start import start_state
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS, TIE
 from hystbench.gap.verdict import LONE, judge, what_is_left
+from tests.gap.halved import first_halves
 
 SEED = 1
 NEXT = 1
@@ -34,17 +35,7 @@ def hidden(names, family):
     if any(item not in effects() for item in names):
         kind = "unlisted"
     case = make_case(CaseSpec(SEED, kind, names, family, 20.0))
-    half = tuple(
-        replace(
-            item,
-            u=item.u[: len(item) // 2].copy(),
-            y=item.y[: len(item) // 2].copy(),
-            period_samples=case.period_samples.get(item.name),
-        )
-        for item in case.records
-        if item.use == "fit"
-    )
-    return half, case.model
+    return first_halves(case), case.model
 
 
 @dataclass(frozen=True)

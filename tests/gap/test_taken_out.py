@@ -93,7 +93,7 @@ def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
     ]
     alone = [abs(finer.value(finer.free[k])) / errors[k] for k in own]
     assert np.nanmin(alone) < 1.0
-    assert error_of_size(finer, score, 1) < 0.2
+    assert error_of_size(finer, NOISE**2, 1) < 0.2
     assert unknown(state, NOISE) is None
 
 
@@ -140,5 +140,5 @@ def test_what_a_wrong_shape_could_do_as_well_has_a_size_all_the_same():
     added = without_effect(finer, 1).settled().residual - finer.residual
     inside = score.directions @ (score.directions.T @ added)
     assert np.std(added - inside) < 0.1 * np.std(added)
-    assert error_of_size(finer, score, 1) < 0.1
+    assert error_of_size(finer, NOISE**2, 1) < 0.1
     assert unknown(state, NOISE) is None

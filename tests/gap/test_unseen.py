@@ -21,6 +21,7 @@ from hystbench.gap.finding import find
 from hystbench.gap.reshape import reshapings
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
+from tests.gap.halved import first_halves
 from tests.gap.made import record, sine
 from tests.gap.small import block, hysteresis, records
 
@@ -89,16 +90,7 @@ def seen(module, tmp_path):
             CaseSpec(SEED, "single" if names else "none", names, "jiles-atherton", 20.0)
         )
         model = case.model.with_hold("band-limited")
-        fit = tuple(
-            replace(
-                item,
-                u=item.u[: len(item) // 2].copy(),
-                y=item.y[: len(item) // 2].copy(),
-                period_samples=case.period_samples.get(item.name),
-            )
-            for item in case.records
-            if item.use == "fit"
-        )
+        fit = first_halves(case)
         if kind == "column":
             fit = tuple(
                 replace(item, simulated=model.simulate(item.u, item.dt)) for item in fit

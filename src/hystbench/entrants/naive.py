@@ -51,11 +51,10 @@ def solve(dataset: Path, model: Path, out: Path) -> None:
         base = given.base(record)
         return base + sum(item.fitted.predict(record) - base for item in taken)
 
-    names = [item.named for item in taken]
-    if names:
-        write(given, names, "named", "Least criterion.", predict, out)
-    else:
-        write(given, [], "no-gap", "No effect pays.", given.base, out)
+    verdict, reason = (
+        ("named", "Least criterion.") if taken else ("no-gap", "No effect pays.")
+    )
+    write(given, [item.named for item in taken], verdict, reason, predict, out)
 
 
 def best(task: Task, noise: float, known: set[str]) -> Taken | None:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from hystbench.errors import InputError
+from hystbench.gap.compared import rms
 from hystbench.gap.folds import Mask
 from hystbench.record import FloatArray, Record
 
@@ -147,7 +148,7 @@ def degree_that_carries_on(
                 for record, output in zip(records, simulated, strict=True)
             )
         ]
-        size = float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
+        size = rms(np.concatenate(left))
         if size < CLEARLY * least:
             best, least = degree, size
     return best

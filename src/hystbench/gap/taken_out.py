@@ -79,12 +79,11 @@ def unknown(state: State, floor_rms: float) -> Without | None:
     as what others reshape.
     """
     finer = on_more_samples(state)
-    score = make_score(finer, floor_rms, forms=False)
     for number in reversed(range(1, len(state.added))):
         item = state.added[number]
         if not _is_judged(item, state) or not removable(state, number):
             continue
-        error = error_of_size(finer, score, number)
+        error = error_of_size(finer, floor_rms**2, number)
         if error <= UNKNOWN:
             continue
         short = without_effect(state, number)

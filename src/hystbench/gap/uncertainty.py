@@ -72,10 +72,10 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     output = np.sqrt(np.mean((state.measured - state.residual) ** 2))
     moved = own * np.abs(state.steps) > ROUNDING * output
     usable[: len(values)] |= (values == 0) & moved
-    return _errors(columns, residual, usable, state, score)[: len(state.free)]
+    return _errors(columns, residual, usable, state, score.floor)[: len(state.free)]
 
 
-def error_of_size(state: State, score: Score, number: int) -> float:
+def error_of_size(state: State, floor: float, number: int) -> float:
     """Estimate the standard error of an added effect's size, as a share of it.
 
     Of all its numbers together: they may stand in for each other, and none of them be
@@ -86,7 +86,8 @@ def error_of_size(state: State, score: Score, number: int) -> float:
     Parameters
     ----------
     state : State
-    score : Score
+    floor : float
+        Mean square of what no model explains, in squared output units.
     number : int
         Place of the effect among those that were added.
     """
@@ -101,8 +102,8 @@ def error_of_size(state: State, score: Score, number: int) -> float:
         ]
     )
     residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
-    usable = np.mean(columns**2, axis=0) > SHOWN**2 * score.floor
-    return float(_errors(columns, residual, usable, state, score)[0])
+    usable = np.mean(columns**2, axis=0) > SHOWN**2 * floor
+    return float(_errors(columns, residual, usable, state, floor)[0])
 
 
 def _cleaned(state: State, columns: FloatArray) -> FloatArray:
@@ -128,11 +129,11 @@ def _errors(
     residual: FloatArray,
     usable: NDArray[np.bool_],
     state: State,
-    score: Score,
+    floor: float,
 ) -> FloatArray:
     """Give robust standard errors of the amplitudes of columns; NaN of those unused."""
     scale = np.sqrt(np.mean(columns[:, usable] ** 2, axis=0))
-    pieces = by_record(columns[:, usable] / scale, residual, state, score.floor)
+    pieces = by_record(columns[:, usable] / scale, residual, state, floor)
     variance = np.maximum(np.diag(between_stretches(pieces)), between_records(pieces))
     errors = np.full(len(usable), np.nan)
     errors[usable] = np.sqrt(np.maximum(variance, 0.0)) / scale

@@ -40,8 +40,8 @@ class Drift(Effect):
         return {"slope": float(np.mean(amplitudes[:, 0]))}
 
 
-RAMP, PATH, WINDING = "ramp", "path", "winding path"
-FORMS = {RAMP: 1, PATH: 4, WINDING: 10}
+PATH, WINDING = "path", "winding path"
+FORMS = {"ramp": 1, PATH: 4, WINDING: 10}
 """Degree of the polynomial that is tried in each record."""
 
 
