@@ -1,12 +1,21 @@
 """Standard errors beside plain weighted least squares, and how often they hold."""
 
+import statistics
+
 import numpy as np
 import pytest
+import scipy.stats
 
 from hystbench.gap.sample import Sample
 from hystbench.gap.score import Score
 from hystbench.gap.state import Free, State
-from hystbench.gap.uncertainty import SAMPLES, on_more_samples, standard_errors
+from hystbench.gap.uncertainty import (
+    SAMPLES,
+    Pieces,
+    between_records,
+    on_more_samples,
+    standard_errors,
+)
 from tests.gap.made import record
 from tests.gap.small import block, chains, plain_score, state_of
 
@@ -142,3 +151,61 @@ def test_a_zero_of_which_the_records_say_nothing_has_none():
     nothing, something = standard_errors(state, plain_score(state, 1e-9))
     assert np.isnan(nothing)
     assert np.isfinite(something)
+
+
+def pieces_of(records):
+    """Each record a pair of columns and what they are fitted to, all of weight one."""
+    whole = [np.concatenate(each) for each in zip(*records, strict=True)]
+    sizes = np.linalg.lstsq(*whole, rcond=None)[0]
+    records = [(columns, target - columns @ sizes) for columns, target in records]
+    return Pieces(
+        [columns.T @ columns for columns, _ in records],
+        [columns * residual[:, None] for columns, residual in records],
+    )
+
+
+def alike_but(told, off):
+    """Six records of two columns, alike in all but `told`; in `off` of another size."""
+    rng = np.random.default_rng(3)
+    made = []
+    for number in range(6):
+        one, other = rng.normal(size=(2, 200))
+        other = other if number in told else one + 2e-4 * other
+        residual = 0.05 * rng.normal(size=200) + off.get(number, 0.0) * one
+        made.append((np.column_stack([one, other]), residual))
+    return pieces_of(made)
+
+
+def test_the_only_record_that_tells_two_effects_apart_does_not_disagree():
+    pieces = alike_but(told={2}, off={})
+    assert np.sqrt(between_records(pieces)[0]) > 0.5
+    assert np.sqrt(between_records(pieces, uncounted=1)[0]) < 0.5
+    # two that disagree are one more than is forgiven
+    pieces = alike_but(told=set(range(6)), off={1: 4.0, 4: -4.0})
+    assert np.sqrt(between_records(pieces, uncounted=1)[0]) > 0.5
+
+
+def test_records_left_uncounted_are_those_that_move_a_number_most():
+    rng = np.random.default_rng(5)
+    records = [(rng.normal(size=(50, 2)), rng.normal(size=50)) for _ in range(7)]
+    refitted = []
+    for left in range(7):
+        rest = [item for k, item in enumerate(records) if k != left]
+        columns = np.vstack([item[0] for item in rest])
+        target = np.concatenate([item[1] for item in rest])
+        refitted.append(np.linalg.lstsq(columns, target, rcond=None)[0])
+    for k in (0, 1):
+        values = [each[k] for each in refitted]
+        middle = statistics.median(values)
+        kept = sorted(values, key=lambda value: abs(value - middle))[:5]
+        wider = scipy.stats.t.ppf(0.975, 4) / scipy.stats.norm.ppf(0.975)
+        wanted = 4 * statistics.pvariance(kept) * wider**2
+        found = between_records(pieces_of(records), uncounted=2)[k]
+        assert found == pytest.approx(wanted, rel=1e-6)
+
+
+def test_too_few_records_that_count_tell_nothing_of_how_they_differ():
+    pieces = alike_but(told=set(range(6)), off={1: 2.0})
+    few = Pieces(pieces.normals[:4], pieces.pushes[:4])
+    assert between_records(few).min() > 0
+    assert between_records(few, uncounted=1).tolist() == [0.0, 0.0]

@@ -82,6 +82,8 @@ def error_of_size(state: State, floor: float, number: int) -> float:
     known where what they do is. What it adds to the output is one column here, beside
     those of all other numbers. Directions of a wrong shape are not taken off: a gain or
     a static curve would have no size beside them, however alike all records show it.
+    The record that moves the size most by being left out is not counted: it may be the
+    only one that tells the effect from another, which is not to disagree with the rest.
 
     Parameters
     ----------
@@ -103,7 +105,7 @@ def error_of_size(state: State, floor: float, number: int) -> float:
     )
     residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
     usable = np.mean(columns**2, axis=0) > SHOWN**2 * floor
-    return float(_errors(columns, residual, usable, state, floor)[0])
+    return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
 
 
 def _cleaned(state: State, columns: FloatArray) -> FloatArray:
@@ -130,11 +132,13 @@ def _errors(
     usable: NDArray[np.bool_],
     state: State,
     floor: float,
+    uncounted: int = 0,
 ) -> FloatArray:
     """Give robust standard errors of the amplitudes of columns; NaN of those unused."""
     scale = np.sqrt(np.mean(columns[:, usable] ** 2, axis=0))
     pieces = by_record(columns[:, usable] / scale, residual, state, floor)
-    variance = np.maximum(np.diag(between_stretches(pieces)), between_records(pieces))
+    between = between_records(pieces, uncounted)
+    variance = np.maximum(np.diag(between_stretches(pieces)), between)
     errors = np.full(len(usable), np.nan)
     errors[usable] = np.sqrt(np.maximum(variance, 0.0)) / scale
     return errors
@@ -173,13 +177,14 @@ def between_stretches(pieces: Pieces) -> FloatArray:
     return np.asarray(bread @ meat @ bread)
 
 
-def between_records(pieces: Pieces) -> FloatArray:
+def between_records(pieces: Pieces, uncounted: int = 0) -> FloatArray:
     """Variances, shape (k,), by leaving out one record after the other (jackknife).
 
     What a model's form misses is alike within a record and differs between them. With
-    few records the interval is as wide as Student's t distribution makes it.
+    few records the interval is as wide as Student's t distribution makes it. Of each
+    number the records that move it most are left uncounted, as many as asked.
     """
-    count = len(pieces.normals)
+    count = len(pieces.normals) - uncounted
     if count < FEW:
         return np.zeros(len(pieces.normals[0]))
     whole = sum(pieces.normals)
@@ -189,6 +194,8 @@ def between_records(pieces: Pieces) -> FloatArray:
             for normal, push in zip(*pieces, strict=True)
         ]
     )
+    far = np.argsort(np.abs(moved - np.median(moved, axis=0)), axis=0)
+    moved = np.take_along_axis(moved, far[:count], axis=0)
     spread: FloatArray = (count - 1) * np.var(moved, axis=0)
     wider = t.ppf(0.975, count - 1) / norm.ppf(0.975)
     return spread * float(wider) ** 2
