@@ -9,6 +9,7 @@ from hystbench.gap.rank import Candidate, near
 from hystbench.gap.thresholds import TIE
 from hystbench.gap.verdict import (
     ABOVE,
+    BOX,
     HALF,
     LONE,
     LOOSE,
@@ -210,3 +211,20 @@ def test_what_is_left_of_a_gap_is_counted_in_floors():
     assert abs(found.after) < 0.2
     assert found.before <= found.all_before
     assert found.loose < 0.05
+
+
+@given(st.floats(0.001, 0.26), st.none() | SHARES)
+def test_a_black_box_that_alone_closes_clearly_more_undoes_the_names(stays, box):
+    """Even where it finds little in what they leave: they may have fitted its noise."""
+    found = left(1000 * stays, 1000.0)
+    word, reason = judge(found, True, 0.0, gap_explained_by_box=box)
+    told = (box or 0.0) - (1 - stays) > BOX
+    assert word == ("unnamed" if told else "named")
+    assert ("alone it takes" in reason) == told
+
+
+def test_what_a_wrong_shape_could_leave_is_none_of_the_black_boxs_lead():
+    # It is 38 % of the gap ahead, of which 10 % lie beyond reshaping.
+    found = Left(100.0, 10.0, 100.0, 40.0, 10.0)
+    assert not found.slight
+    assert judge(found, True, 0.0, gap_explained_by_box=0.98)[0] == "named"

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -24,7 +24,7 @@ class Asymmetry(Block):
     place: ClassVar = "material"
     reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
 
-    coefficient: float = number("1/Y", "weight of the square", -1e3, 1e3)
+    coefficient: float = number("1/Y", "weight of the square", -HUGE, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial."""

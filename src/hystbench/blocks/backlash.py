@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
@@ -27,7 +27,7 @@ class Backlash(Block):
     place: ClassVar = "mechanics"
     reference: ClassVar = "Krasnosel'skii, Pokrovskii, Systems with Hysteresis, 1989"
 
-    half_width: float = number("Y", "half of the gap", 0.0, 1e9)
+    half_width: float = number("Y", "half of the gap", 0.0, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at the edges of the gap."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -24,7 +24,7 @@ class CalibrationError(Block):
     reference: ClassVar = "JCGM 200:2012, International vocabulary of metrology"
 
     gain: float = number("-", "ratio of read to true output", 0.1, 10.0)
-    offset: float = number("Y", "reading at zero", -1e6, 1e6, default=0.0)
+    offset: float = number("Y", "reading at zero", -HUGE, HUGE, default=0.0)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the reading."""

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -28,7 +28,7 @@ class DeadZone(Block):
     place: ClassVar = "drive"
     reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
 
-    half_width: float = number("U", "command at which motion starts", 0.0, 1e9)
+    half_width: float = number("U", "command at which motion starts", 0.0, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Take off the dead zone."""

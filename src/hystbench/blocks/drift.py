@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number, numbers
+from hystbench.blocks.parameter import HUGE, number, numbers
 from hystbench.record import FloatArray
 
 
@@ -30,12 +30,12 @@ class Drift(Block):
     place: ClassVar = "sensor"
     reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
 
-    slope: float = number("Y/s", "steady rate", -1e9, 1e9)
+    slope: float = number("Y/s", "steady rate", -HUGE, HUGE)
     path: tuple[float, ...] = numbers(
         "Y",
         "values at evenly spaced times, the last at the end",
-        -1e9,
-        1e9,
+        -HUGE,
+        HUGE,
         optional=True,
     )
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, TINY, number
 from hystbench.record import FloatArray
 
 
@@ -26,7 +26,7 @@ class DriveSaturation(Block):
     place: ClassVar = "drive"
     reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
 
-    limit: float = number("U", "largest current either way", 1e-9, 1e9)
+    limit: float = number("U", "largest current either way", TINY, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Clip the current."""

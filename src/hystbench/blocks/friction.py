@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, TINY, number
 from hystbench.record import FloatArray
 
 
@@ -32,9 +32,9 @@ class Friction(Block):
         "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994)"
     )
 
-    coulomb: float = number("Y", "force at high velocity", -1e9, 1e9)
+    coulomb: float = number("Y", "force at high velocity", -HUGE, HUGE)
     velocity_scale: float = number(
-        "U/s", "velocity at which 76 % of it are there", 1e-12, 1e12
+        "U/s", "velocity at which 76 % of it are there", TINY, HUGE
     )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:

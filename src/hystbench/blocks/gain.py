@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -23,8 +23,8 @@ class Gain(Block):
     place: ClassVar = "base"
     reference: ClassVar = "by definition"
 
-    value: float = number("Y/U", "static gain", -1e9, 1e9)
-    offset: float = number("Y", "output at zero", -1e9, 1e9, default=0.0)
+    value: float = number("Y/U", "static gain", -HUGE, HUGE)
+    offset: float = number("Y", "output at zero", -HUGE, HUGE, default=0.0)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the straight line."""

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Place
-from hystbench.blocks.parameter import choice, numbers
+from hystbench.blocks.parameter import HUGE, choice, numbers
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
@@ -47,14 +47,14 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     envelope: tuple[float, ...] = numbers(
         "-, 1/U, -, -",
         "a0 to a7 of Eqs. 5 and 6",
-        -1e9,
-        1e9,
+        -HUGE,
+        HUGE,
         names=("a0", "a1", "a2", "a3", "a4", "a5", "a6", "a7"),
     )
     thresholds: tuple[float, ...] = numbers(
-        "-", "r_i, in the unit of the envelope functions", 0.0, 1e9
+        "-", "r_i, in the unit of the envelope functions", 0.0, HUGE
     )
-    weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -1e9, 1e9)
+    weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -HUGE, HUGE)
     start: str = choice("operators before the first sample", STARTS, "rest")
 
     def check(self) -> None:

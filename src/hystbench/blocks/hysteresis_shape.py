@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.parameter import numbers
+from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.operators import growing_play, play
@@ -35,13 +35,13 @@ class HysteresisShape(WrappingBlock):
     place: ClassVar = "material"
     reference: ClassVar = "Kuhnen, European Journal of Control 9 (2003) 407-418"
 
-    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, 1e9)
-    weights: tuple[float, ...] = numbers("Y/U", "w_i, one a threshold", -1e9, 1e9)
+    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
+    weights: tuple[float, ...] = numbers("Y/U", "w_i, one a threshold", -HUGE, HUGE)
     square_weights: tuple[float, ...] = numbers(
-        "Y/U^2", "s_i, one a threshold or none", -1e9, 1e9, optional=True
+        "Y/U^2", "s_i, one a threshold or none", -HUGE, HUGE, optional=True
     )
     powers: tuple[float, ...] = numbers(
-        "Y/U^k", "c_k, from k = 1 on", -1e9, 1e9, optional=True
+        "Y/U^k", "c_k, from k = 1 on", -HUGE, HUGE, optional=True
     )
 
     def check(self) -> None:

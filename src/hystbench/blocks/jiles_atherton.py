@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, TINY, number
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -54,12 +54,12 @@ class JilesAtherton(HystereticBlock):
     place: ClassVar = "material"
     reference: ClassVar = "Jiles, Atherton, J. Magn. Magn. Mater. 61 (1986) 48-60"
 
-    saturation: float = number("Y", "output that m = 1 stands for, Ms", -1e9, 1e9)
-    shape: float = number("U", "a, width of the anhysteretic curve", 1e-9, 1e9)
-    coupling: float = number("U", "alpha Ms, field of the domains' own", 0.0, 1e9)
-    pinning: float = number("U", "k, field that frees a domain wall", 1e-9, 1e9)
+    saturation: float = number("Y", "output that m = 1 stands for, Ms", -HUGE, HUGE)
+    shape: float = number("U", "a, width of the anhysteretic curve", TINY, HUGE)
+    coupling: float = number("U", "alpha Ms, field of the domains' own", 0.0, HUGE)
+    pinning: float = number("U", "k, field that frees a domain wall", TINY, HUGE)
     reversibility: float = number("-", "c, share of reversible motion", 0.0, 1.0)
-    bias: float = number("U", "constant field", -1e9, 1e9, default=0.0)
+    bias: float = number("U", "constant field", -HUGE, HUGE, default=0.0)
 
     def check(self) -> None:
         """Refuse a coupling at which the anhysteretic curve turns vertical."""

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number, numbers
+from hystbench.blocks.parameter import HUGE, number, numbers
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -29,7 +29,7 @@ class MainsPickup(Block):
     reference: ClassVar = "Ott, Electromagnetic Compatibility Engineering, 2009"
 
     frequency_hz: float = number("Hz", "f, of the fundamental", 1e-3, 1e6)
-    amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic", -1e9, 1e9)
+    amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic", -HUGE, HUGE)
     phases: tuple[float, ...] = numbers("rad", "one a harmonic", -1e3, 1e3)
 
     def check(self) -> None:

@@ -12,6 +12,10 @@ from hystbench.errors import InputError, nearest
 Kind = Literal["number", "numbers", "choice", "text"]
 Value = float | tuple[float, ...] | str
 
+HUGE, TINY = 1e30, 1e-30
+"""Bounds of what has the unit of an input or output, which may be any: a narrower one
+would let the choice of micrometres or metres decide what a record can mean."""
+
 
 @dataclass(frozen=True)
 class Parameter:

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.parameter import number, numbers
+from hystbench.blocks.parameter import HUGE, TINY, number, numbers
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -41,18 +41,18 @@ class Preisach(HystereticBlock):
     place: ClassVar = "material"
     reference: ClassVar = "Mayergoyz, Mathematical Models of Hysteresis, 1991"
 
-    limit: float = number("U", "largest input at which a relay switches", 1e-9, 1e9)
-    reversible: float = number("Y/U", "slope of the reversible part", -1e9, 1e9)
+    limit: float = number("U", "largest input at which a relay switches", TINY, HUGE)
+    reversible: float = number("Y/U", "slope of the reversible part", -HUGE, HUGE)
     weights: tuple[float, ...] = numbers(
-        "Y", "swing of the output by each cluster of relays", 0.0, 1e9
+        "Y", "swing of the output by each cluster of relays", 0.0, HUGE
     )
-    centres: tuple[float, ...] = numbers("U", "mean of (a + b) / 2", -1e9, 1e9)
+    centres: tuple[float, ...] = numbers("U", "mean of (a + b) / 2", -HUGE, HUGE)
     centre_spreads: tuple[float, ...] = numbers(
-        "U", "standard deviation of (a + b) / 2", 1e-9, 1e9
+        "U", "standard deviation of (a + b) / 2", TINY, HUGE
     )
-    half_widths: tuple[float, ...] = numbers("U", "mean of (a - b) / 2", 0.0, 1e9)
+    half_widths: tuple[float, ...] = numbers("U", "mean of (a - b) / 2", 0.0, HUGE)
     half_width_spreads: tuple[float, ...] = numbers(
-        "U", "standard deviation of (a - b) / 2", 1e-9, 1e9
+        "U", "standard deviation of (a - b) / 2", TINY, HUGE
     )
     cells: float = number("-", "cells of the grid along each axis", 2, 1000, 128.0)
 

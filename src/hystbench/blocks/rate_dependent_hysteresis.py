@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.blocks.band_limited import finer
 from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
@@ -52,7 +52,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         "(s/U)^exponent",
         "growth at a rate of one; in U (s/U)^exponent for excess-field",
         0.0,
-        1e9,
+        HUGE,
     )
     exponent: float = number("-", "power of the rate", 0.01, 10.0)
     form: str = choice("what the rate changes", FORMS, FORMS[0])

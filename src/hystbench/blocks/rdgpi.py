@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
-from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.rdgpi.model import STARTS, RateDependentGPI
@@ -32,15 +32,15 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
 
     alpha1: float = number("-", "scale of the thresholds' spacing", -1e3, 1e3)
     beta1: float = number("-", "spacing at rest, inside the logarithm", 1.0, 1e3)
-    lambda1: float = number("s/U", "growth of the spacing with the rate", 0.0, 1e3)
+    lambda1: float = number("s/U", "growth of the spacing with the rate", 0.0, HUGE)
     alpha2: float = number("-", "loss of weight with the rate", -1e3, 1e3)
     beta2: float = number("-", "weight at rest, inside the logarithm", 1e-9, 1e3)
-    lambda2: float = number("s/U", "growth of the loss with the rate", 0.0, 1e3)
-    c: float = number("U", "second scale of the thresholds' spacing", -1e3, 1e3)
-    rho: float = number("Y/U", "weight of the first operator times N + 1", -1e6, 1e6)
-    tau: float = number("1/U", "decay of the weights over the thresholds", -1e3, 1e3)
+    lambda2: float = number("s/U", "growth of the loss with the rate", 0.0, HUGE)
+    c: float = number("U", "second scale of the thresholds' spacing", -HUGE, HUGE)
+    rho: float = number("Y/U", "weight of the first operator times N + 1", -HUGE, HUGE)
+    tau: float = number("1/U", "decay of the weights over the thresholds", -HUGE, HUGE)
     envelope_gain: float = number("-", "the paper's xi", -1e6, 1e6)
-    envelope_offset: float = number("U", "the paper's mu", -1e6, 1e6)
+    envelope_offset: float = number("U", "the paper's mu", -HUGE, HUGE)
     order: float = number("-", "N, one less than the operators", 0, 1000, default=30.0)
     start: str = choice("operators before the first sample", STARTS, "rest")
 

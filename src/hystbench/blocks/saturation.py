@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, TINY, number
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -30,7 +30,7 @@ class Saturation(Block):
     place: ClassVar = "material"
     reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
 
-    level: float = number("Y", "output that is never reached", 1e-9, 1e9)
+    level: float = number("Y", "output that is never reached", TINY, HUGE)
 
     sharpness: float = number(
         "-",

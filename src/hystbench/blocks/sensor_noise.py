@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import RandomBlock
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -28,7 +28,7 @@ class SensorNoise(RandomBlock):
     place: ClassVar = "sensor"
     reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
 
-    rms: float = number("Y", "standard deviation of a sample", 0.0, 1e6)
+    rms: float = number("Y", "standard deviation of a sample", 0.0, HUGE)
 
     def draw(self, n: int, dt: float, rng: np.random.Generator) -> FloatArray:
         """Draw independent normal samples."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -25,8 +25,8 @@ class SensorNonlinearity(Block):
     place: ClassVar = "sensor"
     reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
 
-    quadratic: float = number("1/Y", "weight of the square", -1e3, 1e3)
-    cubic: float = number("1/Y^2", "weight of the cube", -1e3, 1e3)
+    quadratic: float = number("1/Y", "weight of the square", -HUGE, HUGE)
+    cubic: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, TINY, number
 from hystbench.record import FloatArray
 
 
@@ -31,7 +31,7 @@ class SlewLimit(Block):
     place: ClassVar = "drive"
     reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
 
-    rate: float = number("U/s", "largest rate of the output", 1e-9, 1e12)
+    rate: float = number("U/s", "largest rate of the output", TINY, HUGE)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Follow the input at a limited rate."""

@@ -10,7 +10,7 @@ import numpy as np
 from hystbench import kernels
 from hystbench.blocks.band_limited import straight_lines
 from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -36,7 +36,7 @@ class StiffnessHardening(HeldBlock):
     place: ClassVar = "mechanics"
     reference: ClassVar = "Kovacic, Brennan, The Duffing Equation, 2011"
 
-    coefficient: float = number("1/Y^2", "weight of the cube", -1e9, 1e9)
+    coefficient: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
     frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)
     damping_ratio: float = number("-", "zeta, share of critical damping", 1e-5, 10.0)
     participation: float = number(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hystbench.blocks import registry
-from hystbench.blocks.parameter import Parameter
+from hystbench.blocks.parameter import HUGE, Parameter
 
 HEADER = """\
 | block | place | parameter | unit | values | meaning |
@@ -28,9 +28,17 @@ def _values(about: Parameter) -> str:
         return ", ".join(f"`{option}`" for option in about.options)
     if about.kind == "text":
         return "text"
-    bounds = f"{about.low:g} to {about.high:g}"
+    bounds = _bounds(about)
     if about.kind == "number":
         return bounds
     if about.names:
-        return f"`{about.names[0]}` to `{about.names[-1]}` of {bounds}"
-    return f"list of {bounds}" + (", or none" if about.may_be_empty else "")
+        return f"`{about.names[0]}` to `{about.names[-1]}`, each {bounds}"
+    return f"list, each {bounds}" + (", or none" if about.may_be_empty else "")
+
+
+def _bounds(about: Parameter) -> str:
+    if about.high < HUGE:
+        return f"{about.low:g} to {about.high:g}"
+    if about.low <= -HUGE:
+        return "any number"
+    return "more than 0" if about.low > 0 else "0 or more"

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import lag, respond
-from hystbench.blocks.parameter import number
+from hystbench.blocks.parameter import HUGE, number
 from hystbench.record import FloatArray
 
 
@@ -28,7 +28,7 @@ class ThermalDrift(Block):
     place: ClassVar = "mechanics"
     reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
 
-    coefficient: float = number("Y/U^2", "expansion at a steady input", -1e9, 1e9)
+    coefficient: float = number("Y/U^2", "expansion at a steady input", -HUGE, HUGE)
     time_constant_s: float = number("s", "tau of the warming", 1e-6, 1e6)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:

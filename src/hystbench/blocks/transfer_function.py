@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from hystbench.blocks.linear import LinearBlock, StateSpace
-from hystbench.blocks.parameter import choice, numbers
+from hystbench.blocks.parameter import HUGE, choice, numbers
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -36,10 +36,10 @@ class TransferFunction(LinearBlock):
     reference: ClassVar = "Kailath, Linear Systems, 1980"
 
     numerator: tuple[float, ...] = numbers(
-        "powers of s", "n_0 to n_m, descending", -1e30, 1e30
+        "powers of s", "n_0 to n_m, descending", -HUGE, HUGE
     )
     denominator: tuple[float, ...] = numbers(
-        "powers of s", "d_0 to d_k, descending", -1e30, 1e30
+        "powers of s", "d_0 to d_k, descending", -HUGE, HUGE
     )
     start: str = choice("state before the first sample", STARTS, "rest")
 

@@ -175,6 +175,7 @@ def decide(
         floor.method == "upper-bound",
         lone,
         differs,
+        box.explained_on_folds,
     )
     reason += _whole(left) if state.added else ""
     say(f"{verdict}: {reason}")
@@ -224,11 +225,10 @@ def decide(
 
 def _whole(left: Left) -> str:
     """Tell what stays of the whole gap, where that is far more than the reason says."""
-    whole = max(left.all_after, 0.0) / max(left.all_before, left.all_after, 1e-9)
-    if whole - left.loose < SAID:
+    if left.whole - left.loose < SAID:
         return ""
     also = "; with what a wrong shape of the base could leave as well"
-    return f"{also}, {100 * whole:.0f} %"
+    return f"{also}, {100 * left.whole:.0f} %"
 
 
 SAID = 0.1

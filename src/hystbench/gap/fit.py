@@ -72,7 +72,7 @@ def sizes(state: State) -> FloatArray:
     moved = np.sqrt(np.mean(state.tangents**2, axis=0))
     tenth = 0.1 * np.sqrt(np.mean(output**2)) / np.maximum(moved, 1e-300)
     values = np.array([abs(state.value(free)) for free in state.free])
-    return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, 1e6))
+    return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, 1e100))
 
 
 def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:

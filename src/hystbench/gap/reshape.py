@@ -25,6 +25,8 @@ from hystbench.record import FloatArray
 POWERS = 5
 OPERATORS = 10
 OPERATOR_POWERS = 3
+SLOPES = (1, 5)
+"""Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input."""
 SMALL = 1e-3
 """Size of a change beside the signal that it changes."""
 SMALLEST = 1e-3
@@ -124,9 +126,11 @@ def _own(
         weights[group] = 1.0
         ways.append(scene.run((replace(block, weights=tuple(weights.tolist())),), v))
     now = scene.run((block,), v)
+    slope = 1.0 / (max(float(np.abs(z).max()) for z in v) or 1.0)
     for k, value in enumerate(block.envelope):
         moved = list(block.envelope)
-        moved[k] = value + 1e-3 * max(abs(value), 0.1)
+        least = 0.1 * (slope if k in SLOPES else 1.0)
+        moved[k] = value + SMALL * max(abs(value), least)
         other = scene.run((replace(block, envelope=tuple(moved)),), v)
         ways.append(tuple(a - b for a, b in zip(other, now, strict=True)))
     return ways

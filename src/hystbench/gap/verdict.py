@@ -104,8 +104,12 @@ class Left:
         that looks like one.
         """
         beyond = max(self.after, 0.0) / max(self.before, self.after, 1e-9)
-        whole = max(self.all_after, 0.0) / max(self.all_before, self.all_after, 1e-9)
-        return min(beyond, whole)
+        return min(beyond, self.whole)
+
+    @property
+    def whole(self) -> float:
+        """Share of the gap that stays of the whole residual."""
+        return max(self.all_after, 0.0) / max(self.all_before, self.all_after, 1e-9)
 
 
 def what_is_left(base: State, state: State, floor_rms: float) -> Left:
@@ -134,6 +138,7 @@ def judge(
     bound: bool = False,
     lone: float = 0.0,
     unrepeated: float | None = None,
+    gap_explained_by_box: float | None = None,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -155,8 +160,10 @@ def judge(
     unrepeated : float or None
         Power of what is left that differs between periods of the same input, above the
         floor and in floors; none where no record repeats.
+    gap_explained_by_box : float or None
+        Share of what the base leaves, above the floor, that a black box takes away
+        alone, on the same folds.
     """
-    box = explained_by_box or 0.0
     foreign = _foreign(left, lone, unrepeated)
     if not named:
         if left.slight and foreign:
@@ -183,11 +190,14 @@ def judge(
             f"a gap of {left.after:.2g} times the noise power is there and no effect "
             f"of the vocabulary pays; {_box_words(explained_by_box, 'it')}"
         )
-    much = left.loose > LOOSE or box * left.loose > BOX
+    more = (explained_by_box or 0.0) * left.loose
+    ahead = min(left.loose, (gap_explained_by_box or 0.0) - (1.0 - left.whole))
+    much = left.loose > LOOSE or max(more, ahead) > BOX
     if left.loose > HALF or (much and not left.slight):
+        alone = f"; alone it takes {100 * (gap_explained_by_box or 0.0):.0f} % away"
         return "unnamed", (
             f"{100 * left.loose:.0f} % of the gap stays with the best named effects; "
-            f"{_box_words(explained_by_box, 'that')}"
+            f"{_box_words(explained_by_box, 'that')}" + (alone if ahead > BOX else "")
         )
     if foreign:
         return "unnamed", foreign
