@@ -2,10 +2,16 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from hystbench.blocks import registry
+from hystbench.gap.change import with_effect
+from hystbench.gap.effects.base import Variant
 from hystbench.gap.rank import make_score, rank
+from hystbench.gap.told import effect_mapping
+from hystbench.gap.units import unit_behind
+from hystbench.gap.verdict import Left
 from tests.gap.small import ENVELOPE, GPI, block, hysteresis, measured, state_of
 
 INPUT, OUTPUT = 2.0**10, 2.0**-20
@@ -75,3 +81,59 @@ def test_the_blocks_are_the_same_in_both_units():
     )
     for one, other in zip(measured((loop(),)), wide, strict=True):
         assert (other.y / OUTPUT).tolist() == pytest.approx(one.y.tolist(), rel=1e-12)
+
+
+LAG, LOOP = block("sensor-lag", time_constant_s=0.01), hysteresis()
+GAIN = gain()
+FILTER = block("transfer-function", numerator=[12.0], denominator=[0.01, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("chain", "place", "unit"),
+    [
+        ((GAIN,), 0, "1/A"),  # before the gain a square is of the current
+        ((GAIN,), 1, "1/um"),
+        ((GAIN, FILTER), 1, "1/um"),  # the gain has given the unit already
+        ((FILTER, GAIN), 1, "1/A"),
+        ((FILTER, GAIN), 2, "1/um"),
+        ((FILTER, FILTER), 1, "1/A"),
+        ((FILTER, FILTER), 2, "1/um"),
+        ((LAG, LOOP), 1, "1/A"),
+        ((LAG, LOOP), 2, "1/um"),
+        ((LAG,), 1, "1/um"),
+    ],
+)
+def test_a_number_has_the_unit_of_the_signal_at_its_place(chain, place, unit):
+    start = state_of(chain)
+    variant = Variant(
+        effect="asymmetry",
+        place="material",
+        form="square",
+        start=place,
+        build=lambda given: (block("asymmetry", **given), *chain[place:]),
+        positions=(0,),
+        unit={"coefficient": 1e-3},
+        free=("coefficient",),
+    )
+    state = with_effect(start, variant, {"coefficient": 0.1})
+    (item,) = state.added
+    told = effect_mapping(item, state, np.zeros(1), (), (), Left(1.0, 0.0, 1.0, 0.0))
+    assert told["parameters"]["coefficient"]["unit"] == unit
+
+
+def test_what_stands_for_the_whole_base_has_the_outputs_unit():
+    start = state_of((FILTER,))
+    hard = {"frequency_hz": 60.0, "damping_ratio": 0.05, "participation": 1.0}
+    variant = Variant(
+        effect="stiffness-hardening",
+        place="mechanics",
+        form="",
+        start=0,
+        build=lambda given: (FILTER, block("stiffness-hardening", **given, **hard)),
+        positions=(0, 1),
+        replaces=True,
+        unit={"coefficient": 1e-3},
+        free=("coefficient",),
+    )
+    state = with_effect(start, variant, {"coefficient": 0.1})
+    assert unit_behind(1, state) == "um"

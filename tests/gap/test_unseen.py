@@ -21,9 +21,10 @@ from hystbench.gap.finding import find
 from hystbench.gap.reshape import reshapings
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
+from hystbench.gap.wanted import write_wanted
 from tests.gap.halved import first_halves
-from tests.gap.made import record, sine
-from tests.gap.small import block, hysteresis, records
+from tests.gap.made import CURRENT, record, sine
+from tests.gap.small import block, hysteresis, measured, records
 
 SEED = 1
 
@@ -116,6 +117,8 @@ def test_a_loop_of_the_wrong_shape_is_no_effect(seen):
     fit, base = seen((), "column")
     content = find("hidden", fit, base).content
     assert (content["verdict"], content["effects"]) == ("no-gap", [])
+    assert "not tried" not in content["reason"]  # there is no name to doubt
+    assert {"drive-lag", "dead-zone"} <= set(content["not_tried"])
 
 
 def test_a_curve_of_the_material_lies_behind_its_loop(seen):
@@ -124,6 +127,24 @@ def test_a_curve_of_the_material_lies_behind_its_loop(seen):
     assert content["verdict"] == "named"
     (effect,) = content["effects"]
     assert (effect["name"], effect["place"]) == ("saturation", "material")
+    assert content["not_tried"] == []
+
+
+def test_beside_a_name_stands_what_a_stored_output_did_not_let_be_tried(tmp_path):
+    """The drive's lag would do as well as the sensor's, but has to act before."""
+    gain = block("gain", value=12.0)
+    lagging = measured((gain, block("sensor-lag", time_constant_s=0.004)), 0.02)
+    fit = tuple(replace(item, simulated=12.0 * item.u) for item in lagging)
+    base, _ = simulated_column(Evidence("rig", fit, (), simulated_column="s"))
+    finding = find("rig", fit, base, declared=0.02)
+    assert finding.content["effects"][0]["name"] == "sensor-lag"
+    assert "drive-lag" in finding.content["not_tried"]
+    assert (
+        "not tried, as the simulator cannot be run again: "
+        in (finding.content["reason"])
+    )
+    told = write_wanted(finding, CURRENT, tmp_path / "next.csv")
+    assert told.endswith("no effects that were tried need to be told apart")
 
 
 @pytest.mark.parametrize("kind", ["lagging", "bent", "slow", "ringing"])

@@ -32,6 +32,7 @@ from hystbench.gap.tell_apart import tell_apart
 from hystbench.gap.told import (
     base_parameters,
     effect_mapping,
+    not_tried,
     ranking_rows,
 )
 from hystbench.gap.uncertainty import on_more_samples, standard_errors
@@ -177,7 +178,9 @@ def decide(
         differs,
         box.explained_on_folds,
     )
+    untried = not_tried(named)
     reason += _whole(left) if state.added else ""
+    reason += _untried(untried) if state.added else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -202,6 +205,7 @@ def decide(
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
+        "not_tried": untried,
         "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": base_parameters(base, state),
@@ -229,6 +233,13 @@ def _whole(left: Left) -> str:
         return ""
     also = "; with what a wrong shape of the base could leave as well"
     return f"{also}, {100 * left.whole:.0f} %"
+
+
+def _untried(names: Sequence[str]) -> str:
+    """Tell which effects a name was not held against."""
+    if not names:
+        return ""
+    return f"; not tried, as the simulator cannot be run again: {', '.join(names)}"
 
 
 SAID = 0.1

@@ -219,6 +219,8 @@ SCHEMA = _object(
     ladder={"type": "array", "items": RUNG},
     fit=FIT,
     runs_away={"type": "array", "items": AWAY},
+    # Effects that need a simulator that can be run again, where it cannot.
+    not_tried={"type": "array", "items": {"type": "string"}},
     taken_out={"type": "array", "items": TAKEN_OUT},
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.files import write_csv
+from hystbench.gap.units import written
 from hystbench.model import Model
 
 Content = Mapping[str, Any]
@@ -59,13 +60,12 @@ def write_adds(model: Model, path: Path) -> None:
 
     Beside what was named on the model's records it shows which of it was found.
     """
-    units = {"U": model.input.unit, "Y": model.output.unit}
     rows = [
         [
             label,
             name,
             _any(about.plain(getattr(block, name))),
-            units.get(about.unit, about.unit),
+            written(about.unit, model.input.unit, model.output.unit),
         ]
         for label, block in model.labelled()
         if not block.hysteretic

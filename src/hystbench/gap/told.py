@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,15 +9,14 @@ import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.beside_errors import Errors
 from hystbench.gap.effects import effects
 from hystbench.gap.name import Named
 from hystbench.gap.rank import Candidate, near
 from hystbench.gap.state import Added, State, beside_count
-from hystbench.gap.verdict import (
-    Left,
-    confidence,
-)
+from hystbench.gap.units import unit_behind, written
+from hystbench.gap.verdict import Left, confidence
 from hystbench.model import Model
 from hystbench.record import FloatArray
 
@@ -101,6 +99,7 @@ def _parameters(
     item: Added, state: State, errors: FloatArray, of_beside: Sequence[Errors]
 ) -> dict[str, Any]:
     found: dict[str, Any] = {}
+    record = state.records[0]
     if not item.blocks:
         blocks = {beside.effect: k for k, (beside, _) in enumerate(state.beside)}
         if item.effect not in blocks:
@@ -113,7 +112,7 @@ def _parameters(
                 found[key] = {
                     "value": value,
                     "standard_error": known.get(key),
-                    "unit": _unit(about.unit, state),
+                    "unit": written(about.unit, record.input.unit, record.output.unit),
                 }
         return found
     offsets = effects()[item.effect].offsets.get(item.form, ())
@@ -123,7 +122,7 @@ def _parameters(
             found[label] = {
                 "value": value,
                 "standard_error": _errors_of(place, OFFSET, value, state, errors),
-                "unit": _unit(unit, state),
+                "unit": _unit(unit, place, state),
             }
         return found
     for place in item.blocks:
@@ -139,9 +138,13 @@ def _parameters(
             found[label] = {
                 "value": list(value) if isinstance(value, tuple) else value,
                 "standard_error": error,
-                "unit": _unit(about.unit, state),
+                "unit": _unit(about.unit, place, state),
             }
     return found
+
+
+def _unit(unit: str, place: int, state: State) -> str:
+    return written(unit, state.records[0].input.unit, unit_behind(place, state))
 
 
 def _errors_of(
@@ -158,12 +161,14 @@ def _errors_of(
     return own.get(None)
 
 
-def _unit(text: str, state: State) -> str:
-    """Write the model's units for U and Y."""
-    record = state.records[0]
-    units = {"U": record.input.unit, "Y": record.output.unit}
-    words = re.findall(r"[A-Za-z]+|[^A-Za-z]+", text)
-    return "".join(units.get(word, word) for word in words)
+def not_tried(named: Named) -> list[str]:
+    """Name the effects that no fit could try, as the simulator cannot be run again."""
+    return [
+        item.effect
+        for one in named.rounds[:1]
+        for item in one.ranking
+        if item.declined == NEEDS_RERUN
+    ]
 
 
 def ranking_rows(named: Named) -> list[dict[str, Any]]:

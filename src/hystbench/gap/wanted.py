@@ -26,7 +26,8 @@ def write_wanted(finding: Finding, channel: Channel, path: Path) -> str:
         A line that tells what was done.
     """
     if finding.experiment is None:
-        why = finding.content.get("no_experiment", "no effects need to be told apart")
+        needless = "no effects that were tried need to be told apart"
+        why = finding.content.get("no_experiment", needless)
         return f"{path}: not written: {why}"
     write_experiment(finding.experiment.excitation, channel, path)
     return f"{path}: {finding.experiment.sentence}"

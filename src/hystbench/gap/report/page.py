@@ -22,6 +22,7 @@ OPTIONAL: dict[str, Any] = {
     "taken_out": [],
     "shortfall": None,
     "no_experiment": "",
+    "not_tried": [],
     "runs_away": [],
     "fit": None,
 }
