@@ -1,5 +1,7 @@
 """What the gap workflow reads, and what it refuses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import yaml
@@ -279,3 +281,19 @@ def test_another_unit_is_refused(tmp_path, unit_in, unit_out, expected):
     said = message(lambda: check_units(found, model, "m.yaml"))
     for part in expected:
         assert part in said
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "least"), [("a.csv", 99, 100), ("b.csv", 33, 34)]
+)
+def test_a_record_too_short_for_its_role_is_refused_before_any_search(
+    tmp_path, name, count, least
+):
+    def cut(item, length):
+        return replace(item, u=item.u[:length].copy(), y=item.y[:length].copy())
+
+    long = [cut(item, {"a": 100, "b": 34}[item.name]) for item in pair()]
+    assert len(load_evidence(write_folder(tmp_path / "long", long)).fit) == 1
+    short = [cut(x, count) if f"{x.name}.csv" == name else x for x in long]
+    said = message(lambda: load_evidence(write_folder(tmp_path / "short", short)))
+    assert f"{name}: {count} samples; expected at least {least}" in said

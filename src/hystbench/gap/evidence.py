@@ -8,6 +8,7 @@ from pathlib import Path
 from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
+from hystbench.gap import folds, nuisance
 from hystbench.gap.usable import check_usable
 from hystbench.model import Model
 from hystbench.record import Channel, Record, Use
@@ -90,9 +91,9 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     fit = tuple(record for record in records if record.use == "fit")
     hold_out = tuple(record for record in records if record.use == "hold-out")
     for record in records:
-        check_usable(
-            dataset.record_files[record.name], record, dataset.stands_still(record.name)
-        )
+        file = dataset.record_files[record.name]
+        _check_length(file, record)
+        check_usable(file, record, dataset.stands_still(record.name))
     about = dataset.about
     hold: Hold = about["input"].get("hold", "band-limited")
     named = about.get("identification")
@@ -110,6 +111,18 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         named,
         dataset.simulated_column,
     )
+
+
+def _check_length(file: Path, record: Record) -> None:
+    """Refuse a record that is too short for its role, whatever will be named."""
+    least, why = {
+        "fit": (folds.LEAST, "blocks of it judge what was fitted to the others"),
+        "hold-out": (nuisance.LEAST, "its first 30 % give what is new in it"),
+    }[record.use]
+    if len(record) < least:
+        raise InputError(
+            f"{file}: {len(record)} samples; expected at least {least}, as {why}"
+        )
 
 
 def check_units(evidence: Evidence, model: Model, place: str) -> None:

@@ -26,6 +26,8 @@ BLOCKS = 4
 GUARD = 0.1
 #: Samples without which a block says nothing.
 SHORTEST = 25
+#: Samples of a record that can be cut into blocks.
+LEAST = SHORTEST * BLOCKS
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ def make_folds(
         whole = len(records) >= RECORDS
     if whole and len(records) < 2:
         raise InputError("1 fit record; expected at least 2 to hold out a whole one")
-    shortest = SHORTEST if whole else SHORTEST * BLOCKS
+    shortest = SHORTEST if whole else LEAST
     for record in records:
         if len(record) < shortest:
             raise InputError(

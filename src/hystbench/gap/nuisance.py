@@ -6,6 +6,7 @@ then not scored.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -19,6 +20,8 @@ from hystbench.record import FloatArray, Record
 FIRST = 0.3
 #: Samples without which the first part estimates nothing.
 SHORTEST = 10
+#: Samples of a record that has such a part.
+LEAST = math.ceil(SHORTEST / FIRST)
 #: Regressors of what is new in a record: shape (n, m) from the record; m may be 0.
 Nuisance = Callable[[Record], FloatArray]
 
@@ -32,7 +35,7 @@ def split_first(record: Record, part: float = FIRST) -> Mask:
         If the record is too short to divide.
     """
     first = round(part * len(record))
-    if first < SHORTEST:
+    if len(record) * part < SHORTEST:
         raise InputError(
             f"record {record.name}: {len(record)} samples; expected enough for a "
             f"first {part:.0%} that estimates and a rest that is scored"
