@@ -1,5 +1,7 @@
 """The ladder of the gap: the base, the base re-tuned, then effect by effect."""
 
+from itertools import pairwise
+
 import pytest
 
 from hystbench.gap.finding import find
@@ -60,6 +62,21 @@ def test_an_effect_that_went_out_again_lends_its_name_to_no_other_model():
     found = rungs(start, named(final, start, one, two))
     assert [item.name for item in found] == [BASE, "lag"]
     assert found[-1].state is final
+
+
+def test_an_effect_that_went_and_came_again_has_one_rung():
+    """Between them stood another in its place, and one that is gone at the end."""
+    steps = [(), ("gain",), ("bend", "creep"), ("drift", "creep"), ("drift",)]
+    befores = [with_names(*names) for names in steps]
+    final = with_names("drift", "gain")
+    found = rungs(befores[0], named(final, *befores))
+    assert [item.name for item in found] == [BASE, "gain", "drift"]
+    assert found[1].state is befores[1]
+    # Each rung has all of the one before, and is called by what it has more.
+    for one, other in pairwise(found):
+        had, has = ({x.effect for x in each.state.added} for each in (one, other))
+        assert has - had == set(other.name.split(" + "))
+        assert had < has
 
 
 def test_effects_that_were_all_taken_back_have_no_rung():

@@ -21,7 +21,7 @@ from hystbench.gap.start import start_state
 from hystbench.gap.state import Added
 from hystbench.gap.told import base_parameters, effect_mapping, ranking_rows
 from hystbench.gap.verdict import Left
-from hystbench.model import Model, load_model
+from hystbench.model import Model, Provenance, load_model
 from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import MODE, block, hysteresis, measured, state_of
@@ -288,3 +288,37 @@ def test_a_field_bias_is_told_as_one_and_its_model_runs(tmp_path):
     shifted = base.simulate(u + 0.1, 1e-3) - 1.5
     model = load_model(tmp_path / "model.yaml")
     assert model.simulate(u, 1e-3) == pytest.approx(shifted, abs=1e-9)
+
+
+def test_the_augmented_model_keeps_limits_and_where_numbers_came_from():
+    """Also where an effect puts blocks of the same kind before the base's own."""
+    chain = (hysteresis(), block("gain", value=1.0, offset=0.5), MODE_BLOCK)
+    printed, fitted = Provenance("published", "a"), Provenance("calibrated", "b")
+    base = Model(
+        "base",
+        CURRENT,
+        DISPLACEMENT,
+        chain,
+        free=("gain.value", "gain.offset", "resonance.damping_ratio"),
+        tolerances={"gain.value": 0.1, "resonance.damping_ratio": 0.5},
+        provenance={"gain.value": fitted, "gain.offset": printed},
+    )
+    state, _ = start_state(measured(chain, NOISE), base, declared=NOISE)
+    after = with_named(state, "asymmetry", "bias", bias=0.1, zero=-1.5)
+    (place,) = (k for k, x in enumerate(after.chain) if x == chain[1])
+    tuned = replace(chain[1], value=1.05)
+    after = after.with_chain(
+        tuple(tuned if k == place else x for k, x in enumerate(after.chain))
+    )
+    model = augmented(base, after)
+    assert model.value("gain#3.value") == 1.05
+    assert dict(model.tolerances) == {
+        "gain#3.value": 0.1,
+        "resonance.damping_ratio": 0.5,
+    }
+    # the value was re-tuned, the offset not
+    assert dict(model.provenance) == {"gain#3.offset": printed}
+    hard = with_named(state, "stiffness-hardening", coefficient=1e-3)
+    model = augmented(base, hard)
+    assert dict(model.tolerances) == {"gain.value": 0.1}
+    assert set(model.provenance) == {"gain.value", "gain.offset"}

@@ -30,20 +30,22 @@ def base_parameters(base: Model, state: State) -> dict[str, Any]:
     None after, where an effect stands for the block: the number is then the effect's.
     """
     labels = (label for label, _ in base.labelled())
-    blocks = dict(zip(labels, _blocks_of_base(state), strict=True))
+    places = dict(zip(labels, places_of_base(state), strict=True))
     found: dict[str, Any] = {}
     for name in base.free:
         label, _, parameter = name.rpartition(".")
-        before, block = base.value(name), blocks[label]
+        before, place = base.value(name), places[label]
         if isinstance(before, str):
             continue
-        after = None if block is None else _plain(getattr(block, parameter))
+        after = None
+        if place is not None:
+            after = _plain(getattr(state.chain[place], parameter))
         found[name] = {"before": _plain(before), "after": after}
     return found
 
 
-def _blocks_of_base(state: State) -> list[Block | None]:
-    """Find the base's blocks, in their order; None where an effect stands for one."""
+def places_of_base(state: State) -> list[int | None]:
+    """Find where the base's blocks stand; None where an effect stands for one."""
     beside = {item.effect for item, _ in state.beside}
     # An effect without a block lost it to a later one, which then stands for no block
     # of the base.
@@ -51,8 +53,8 @@ def _blocks_of_base(state: State) -> list[Block | None]:
     own = {k for item in state.added for k in item.blocks}
     instead = {item.blocks[0] for item in state.added if item.replaced and item.blocks}
     return [
-        None if k in own else block
-        for k, block in enumerate(state.chain)
+        None if k in own else k
+        for k in range(len(state.chain))
         if k not in own or (k in instead and not lost)
     ]
 
