@@ -1,7 +1,9 @@
+import errno
 import sys
 
 import pytest
 
+from hystbench import cli
 from hystbench.cli import COMMANDS, LazyGroup
 from hystbench.options import SettingsType
 from tests.conftest import run_hystbench
@@ -57,3 +59,23 @@ def test_settings_are_a_json_object():
     for text in ["{", "[1]"]:
         with pytest.raises(Exception, match="JSON"):
             kind.convert(text, None, None)
+
+
+def test_what_the_system_refuses_is_one_line(monkeypatch, capsys):
+    def refuse(prog_name):
+        raise NotADirectoryError(errno.ENOTDIR, "Not a directory", "taken/x")
+
+    monkeypatch.setattr(cli, "cli", refuse)
+    with pytest.raises(SystemExit) as stopped:
+        cli.main()
+    assert stopped.value.code == 2
+    assert capsys.readouterr().err == "hystbench: taken/x: Not a directory\n"
+
+
+def test_an_error_of_our_own_is_not_told_as_the_users(monkeypatch):
+    def broken(prog_name):
+        raise OSError("no file has to do with it")
+
+    monkeypatch.setattr(cli, "cli", broken)
+    with pytest.raises(OSError, match="no file"):
+        cli.main()

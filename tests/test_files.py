@@ -1,11 +1,12 @@
 """Folders are written whole or not at all."""
 
+import os
 from pathlib import Path
 
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.files import whole_folder
+from hystbench.files import check_writable, whole_folder
 
 OURS = ("result.txt", "page.txt", "parts/*.csv")
 
@@ -94,3 +95,17 @@ def test_what_stands_in_the_way_is_named_and_stays(tmp_path, there, told):
     with pytest.raises(InputError, match=told), whole_folder(tmp_path, OURS) as folder:
         write(folder, NEW)
     assert tree(tmp_path) == {there: "mine"}
+
+
+def test_a_place_that_cannot_be_written_is_refused_and_nothing_is_made(
+    tmp_path, monkeypatch
+):
+    check_writable(tmp_path / "new" / "folder")
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "taken").write_text("mine")
+    for inside in ("taken", "taken/deep/er"):
+        with pytest.raises(InputError, match=r"taken: a file; expected a folder"):
+            check_writable(tmp_path / inside)
+    monkeypatch.setattr(os, "access", lambda place, mode: place != tmp_path)
+    with pytest.raises(InputError, match=f"{tmp_path.name}: not writable"):
+        check_writable(tmp_path / "new")

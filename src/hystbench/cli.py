@@ -104,3 +104,8 @@ def main() -> None:
     except InputError as error:
         print(f"hystbench: {error}", file=sys.stderr)
         sys.exit(2)
+    except OSError as error:
+        if error.filename is None:
+            raise
+        print(f"hystbench: {error.filename}: {error.strerror}", file=sys.stderr)
+        sys.exit(2)

@@ -16,6 +16,24 @@ from typing import Any
 from hystbench.errors import InputError
 
 
+def check_writable(folder: str | Path) -> None:
+    """Refuse a folder that could not be made or written into, before work is paid.
+
+    Raises
+    ------
+    InputError
+        If a file stands where it or a folder above it has to be, or writing is not
+        allowed.
+    """
+    place = Path(folder).absolute()
+    while not place.exists():
+        place = place.parent
+    if not place.is_dir():
+        raise InputError(f"{place}: a file; expected a folder to write into")
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise InputError(f"{place}: not writable; expected a folder to write into")
+
+
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:
     """Give a temporary path beside ``path`` that takes its place on success.

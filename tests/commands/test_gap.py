@@ -11,6 +11,7 @@ from hystbench.commands import gap as module
 from hystbench.commands.simulate import simulate
 from hystbench.dataset import load_dataset
 from hystbench.files import read_json
+from hystbench.gap import run as run_module
 from hystbench.signals import load_signal
 from tests.gap.made import CURRENT
 from tests.gap.small import write_lagging
@@ -114,3 +115,21 @@ def test_the_signal_archive_runs_a_model(lagging, tmp_path):
     assert result.exit_code == 0, result.output
     table = np.loadtxt(tmp_path / "y.csv", delimiter=",", skiprows=1)
     assert table[:, 1] == pytest.approx(signal.u)
+
+
+@pytest.mark.parametrize("option", ["--out", "--write-experiment"])
+def test_where_nothing_can_be_written_no_search_is_paid(
+    lagging, tmp_path, option, monkeypatch
+):
+    def find(*given):
+        raise AssertionError
+
+    monkeypatch.setattr(run_module, "find", find)
+    (tmp_path / "taken").write_text("mine")
+    words = [str(lagging / "rig"), "--model", str(lagging / "base.yaml")]
+    places = {"--out": "out", "--write-experiment": "next.csv"} | {option: "taken/x/y"}
+    for name, place in places.items():
+        words += [name, str(tmp_path / place)]
+    result = CliRunner().invoke(module.gap, words)
+    assert "taken: a file; expected a folder" in str(result.exception)
+    assert [item.name for item in tmp_path.iterdir()] == ["taken"]

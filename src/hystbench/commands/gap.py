@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from hystbench import options
+from hystbench.files import check_writable
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
@@ -38,6 +39,8 @@ def gap(
 
     Writes OUT/gap.json, model.yaml, holdout/ and report.html.
     """
+    if write_experiment is not None:
+        check_writable(write_experiment.parent)
     evidence = load_evidence(dataset)
     base, note = load_base(model, evidence)
     if note:

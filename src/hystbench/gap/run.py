@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError
-from hystbench.files import whole_folder, write_csv, write_json
+from hystbench.files import check_writable, whole_folder, write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.evidence import Evidence, check_units
@@ -76,8 +75,7 @@ def close_gap(
         If units do not match or the base does not run; nothing is written then.
     """
     check_units(evidence, base, place)
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: a file; expected a folder to write into")
+    check_writable(folder)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     finding = find(
