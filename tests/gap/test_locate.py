@@ -157,6 +157,25 @@ def test_asymmetry_of_one_record_is_told_by_the_record_view():
     views = locate(found, noise_floor(found))
     assert views[0].view == "record"
     assert (views[0].start, views[0].end) == ("multisine", "multisine")
+    told = "It leaves 7 records, sine-1-1.0 among them, alone."
+    assert views[0].sentence.endswith(told)
+
+
+@pytest.mark.parametrize("quiet", [0, 1, 3, 4])
+def test_records_without_a_gap_are_left_alone(quiet):
+    rng = np.random.default_rng(1)
+    found = []
+    for number in range(6):
+        u = np.sin(2 * np.pi * np.arange(2000) / 400)
+        gap = 0.0 if number < quiet else 0.3 * u**2
+        y = 6 * u + gap + 0.01 * rng.standard_normal(len(u))
+        found.append(compare(f"r{number}", u, y, 6 * u, 400))
+    told = told_by(found, "record")
+    names = {1: "r0", 3: "r0 and r1 and r2", 4: "4 records, r0 among them,"}
+    if quiet:
+        assert told.endswith(f" It leaves {names[quiet]} alone.")
+    else:
+        assert "leaves" not in told
 
 
 @pytest.mark.parametrize(

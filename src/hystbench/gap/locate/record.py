@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hystbench.gap.locate.regression import (
@@ -48,10 +50,31 @@ def record_view(samples: Samples) -> View:
         sentence=(
             f"{percent(share)} of the gap lies in {last - first + 1} of {len(names)} "
             f"records, {where}; a gain and an offset of each record's own would take "
-            f"away {percent(own)}."
+            f"away {percent(own)}.{_left_alone(samples, names)}"
         ),
         saved=single.saved,
     )
+
+
+QUIET = 1.5
+"""Of the noise's power, that a record's residual has where the gap is not."""
+NAMED = 3
+"""Records that are told by name; of more, how many they are."""
+
+
+def _left_alone(samples: Samples, names: Sequence[str]) -> str:
+    """Name the records whose residual is the noise: what the model does right."""
+    quiet = [
+        name
+        for name, part in zip(names, samples.slices, strict=True)
+        if float(np.mean(samples.residual[part] ** 2)) <= QUIET * samples.noise
+    ]
+    if not quiet:
+        return ""
+    told = " and ".join(quiet)
+    if len(quiet) > NAMED:
+        told = f"{len(quiet)} records, {quiet[0]} among them,"
+    return f" It leaves {told} alone."
 
 
 def record_shares(samples: Samples) -> FloatArray:
