@@ -69,8 +69,13 @@ CASES = [
 
 @cache
 def views_of(name, plant, ratio_db=20.0, seed=0):
+    return list(located(name, plant, ratio_db, seed))
+
+
+@cache
+def located(name, plant, ratio_db, seed):
     compared, _ = gap_of(name, PLANTS[plant], ratio_db, seed)
-    return locate(compared, noise_floor(compared))
+    return tuple(locate(compared, noise_floor(compared)))
 
 
 def test_every_effect_of_the_examples_has_a_first_view():
