@@ -10,11 +10,20 @@ from scipy import optimize
 
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import added, finished, refit, score_of
+from hystbench.gap.fit import FAR, added, finished, refit, score_of, sizes
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.search import Attempt, coarse, fine
 from hystbench.gap.state import Free
-from tests.gap.small import block, chains, hysteresis, measured, plain_score, state_of
+from tests.gap.small import (
+    ENVELOPE,
+    block,
+    chains,
+    hysteresis,
+    measured,
+    plain_score,
+    records,
+    state_of,
+)
 
 NOISE = 0.02
 
@@ -233,3 +242,34 @@ def test_the_frequency_of_a_tone_is_found_to_what_the_noise_lets_see():
     length, count = plain[0].time[-1], len(state.sample.positions[0])
     bound = np.sqrt(6 / count) * noise / (np.pi * 0.3 * length)
     assert abs(values["frequency_hz"] - hertz) < 4 * bound
+
+
+@pytest.mark.parametrize("unit", [1.0, 2.0**-20])
+def test_a_number_that_hardly_moves_the_output_stays_among_those_of_its_list(unit):
+    """An operator that the input only just reaches; its weight could be anything."""
+    one = block("gpi", envelope=ENVELOPE, thresholds=[0.0], weights=[1.0])
+    reach = max(one.simulate(x.u, x.u, x.dt).max() for x in records())
+    loop = block(
+        "gpi",
+        envelope=ENVELOPE,
+        thresholds=[0.0, reach - 1e-9],
+        weights=[0.8 * unit, 0.5 * unit],
+    )
+    state = state_of((loop,), free=tuple(Free(0, "weights", k) for k in (0, 1)))
+    own, hardly = sizes(state) / unit
+    assert own == pytest.approx(0.8)
+    assert 0.5 <= hardly <= 0.8 * FAR
+
+
+def test_a_number_that_is_zero_has_the_size_that_moves_the_output_a_tenth():
+    chain = (hysteresis(), block("asymmetry", coefficient=0.0))
+    state = state_of(chain, free=free_of(chain, ["coefficient"]))
+    (size,) = sizes(state)
+    plain = np.concatenate(
+        [
+            x[at]
+            for x, at in zip(state.scene.output, state.sample.positions, strict=True)
+        ]
+    )
+    wanted = 0.1 * np.sqrt(np.mean(plain**2) / np.mean(plain**4))
+    assert size == pytest.approx(wanted, rel=1e-3)

@@ -19,6 +19,9 @@ ROUNDS = 5
 DAMPING = (0.0, 1e2, 1e4, 1e6)
 """Charge for a change of the whole of a number, tried until a step pays."""
 
+FAR, NOWHERE = 1e6, 1e100
+"""Times its own list's largest that a number may become; where all of it is zero."""
+
 ENOUGH = 0.05
 """A round that lowers the score by less is the last."""
 
@@ -66,13 +69,19 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
 def sizes(state: State) -> FloatArray:
     """Give the size of each free number: its value, or what moves the output a tenth.
 
-    The second is for those that are zero, or nearly.
+    The second is for those that are zero, or nearly; but none is far more than the
+    numbers of its own list: what hardly moves the output would else run away.
     """
     output = state.measured - state.residual
     moved = np.sqrt(np.mean(state.tangents**2, axis=0))
     tenth = 0.1 * np.sqrt(np.mean(output**2)) / np.maximum(moved, 1e-300)
     values = np.array([abs(state.value(free)) for free in state.free])
-    return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, 1e100))
+    lists = [
+        np.abs(getattr(state.chain[free.block], free.parameter)) for free in state.free
+    ]
+    largest = np.array([float(np.max(each)) for each in lists])
+    most = np.where(largest > 0, FAR * largest, NOWHERE)
+    return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, most))
 
 
 def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
