@@ -69,7 +69,7 @@ CASES = [
 
 @cache
 def views_of(name, plant, ratio_db=20.0, seed=0):
-    return list(located(name, plant, ratio_db, seed))
+    return located(name, plant, ratio_db, seed)
 
 
 @cache
