@@ -191,13 +191,15 @@ def judge(
             f"of the vocabulary pays; {_box_words(explained_by_box, 'it')}"
         )
     more = (explained_by_box or 0.0) * left.loose
-    ahead = min(left.loose, (gap_explained_by_box or 0.0) - (1.0 - left.whole))
+    alone = gap_explained_by_box or 0.0
+    # What reshaping could do as well is none of the lead.
+    ahead = min(left.loose, alone - (1.0 - left.whole))
     much = left.loose > LOOSE or max(more, ahead) > BOX
     if left.loose > HALF or (much and not left.slight):
-        alone = f"; alone it takes {100 * (gap_explained_by_box or 0.0):.0f} % away"
+        lead = f"; alone it takes {100 * alone:.0f} % away" if ahead > BOX else ""
         return "unnamed", (
             f"{100 * left.loose:.0f} % of the gap stays with the best named effects; "
-            f"{_box_words(explained_by_box, 'that')}" + (alone if ahead > BOX else "")
+            f"{_box_words(explained_by_box, 'that')}{lead}"
         )
     if foreign:
         return "unnamed", foreign
