@@ -2,14 +2,15 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from hystbench.gap import reconsider
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import score_of
+from hystbench.gap.fit import refit
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, Round, make_score, reasons
+from hystbench.gap.rank import Candidate, Round, reasons
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.say import silent
 from hystbench.gap.told import ranking_rows
@@ -63,7 +64,7 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     assert by_effect["drive-lag"] is last
     # The model that is there scores better than what the second look came to.
     (own,) = by_effect["asymmetry"]
-    assert own.state is state
+    assert own.state.added == state.added
     assert own.score < 0.0
     assert own.score + own.gain == pytest.approx(1.0)
 
@@ -99,9 +100,11 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
 def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch):
     """A search from anew may end behind a rival that the model itself is ahead of."""
     state, rounds = two
-    now = score_of(state, make_score(state, NOISE))
+    scores = []
 
     def looked(short, score, known):
+        _, now = refit(state, score)
+        scores.append(now)
         rival = Candidate("creep", "mechanics", score=now + 1, gain=2.0, state=state)
         return rival, *(
             Candidate(x.name, x.place, score=now + 2, gain=1.0, state=state)
@@ -111,6 +114,26 @@ def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch
 
     monkeypatch.setattr(reconsider, "rank", looked)
     _, looks = reconsidered(state, rounds, NOISE, silent)
-    for look in looks:
+    assert len(looks) == len(scores) == 2
+    for look, now in zip(looks, scores, strict=True):
         assert [item.effect for item in look.ranking] == [look.instead_of, "creep"]
         assert [item.score for item in look.ranking] == [now, now + 1]
+
+
+def test_what_an_effect_does_is_not_free_for_its_rivals(two, monkeypatch):
+    """Its own other forms span what it does: a rival need not do it under them."""
+    state, rounds = two
+    free = {}
+
+    def looked(short, score, known):
+        (gone,) = {x.effect for x in state.added} - {x.effect for x in short.added}
+        does = short.residual - state.residual
+        rest, _ = score.split(does)
+        size = np.linalg.norm(does)
+        free[gone] = 1 - np.linalg.norm(rest) / size if size else 0.0
+        return (Candidate(gone, "", score=0.0, gain=1.0, state=state),)
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    reconsidered(state, rounds, NOISE, silent)
+    assert set(free) == {"drive-lag", "asymmetry"}
+    assert free["drive-lag"] < 0.5

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import score_of
+from hystbench.gap.fit import refit
 from hystbench.gap.rank import Look, Round, in_order, make_score, rank
 from hystbench.gap.say import Say
 from hystbench.gap.state import State
@@ -46,9 +46,10 @@ def reconsidered(
     for number, item in enumerate(state.added):
         if item.effect == SHAPE or not removable(state, number):
             continue
-        score = make_score(state, floor_rms)
-        now = score_of(state, score)
         short = without_effect(state, number)
+        # Other forms of the effect itself would do for a rival what the rival does not.
+        score = make_score(short, floor_rms)
+        again, now = refit(state, score)
         have = tuple(other.effect for other in short.added)
         names = set(effects()) if every else _rivals(item.effect, rounds)
         known = [effects()[name] for name in sorted(names - set(have))]
@@ -65,7 +66,7 @@ def reconsidered(
         if own is not None and kept:
             # A search from anew may end worse than the model that is there.
             as_is = replace(
-                own, score=now, gain=own.gain + own.score - now, state=state
+                own, score=now, gain=own.gain + own.score - now, state=again
             )
             ranking = tuple(
                 in_order(as_is if x is own and now < own.score else x for x in ranking)
