@@ -10,7 +10,7 @@ from hystbench.gap.fit import refit
 from hystbench.gap.name import LITTLE, Named
 from hystbench.gap.rank import Round, make_score
 from hystbench.gap.say import silent
-from hystbench.gap.taken_out import TakenOut, unknown, without_what_goes
+from hystbench.gap.taken_out import TakenOut, needless, unknown, without_what_goes
 from hystbench.gap.uncertainty import (
     error_of_size,
     on_more_samples,
@@ -22,10 +22,11 @@ NOISE = 0.02
 LAG_S, BEND = 0.004, 0.2
 
 
-def with_two(bend):
+def with_two(bend, given=None):
     """A lag of the drive and a curve of the material added to a gain.
 
-    The records hold the lag, and the curve only where it bends.
+    The records hold the lag, and the curve only where it bends; the model has the curve
+    with the bend given, or as it is.
     """
     gain = block("gain", value=12.0)
     plant = [
@@ -36,7 +37,7 @@ def with_two(bend):
     state = state_of((gain,), measured(plant, NOISE))
     values = {
         "drive-lag": {"time_constant_s": LAG_S},
-        "asymmetry": {"coefficient": bend},
+        "asymmetry": {"coefficient": bend if given is None else given},
     }
     for name, own in values.items():
         variant = next(iter(effects()[name].variants(state.scene)))
@@ -103,6 +104,12 @@ def test_one_effect_alone_is_not_looked_at():
     variant = next(iter(effects()["asymmetry"].variants(state.scene)))
     state = with_effect(state, variant, {"coefficient": 0.0})
     assert without_what_goes(state, NOISE, silent) == (state, ())
+
+
+@pytest.mark.parametrize("given", [BEND, 0.1 * BEND])
+def test_an_effect_is_not_needless_for_numbers_found_under_another_score(given):
+    """It is refitted as the model without it is, before the two are compared."""
+    assert needless(with_two(BEND, given), NOISE) is None
 
 
 def test_what_went_is_told_with_the_reason():

@@ -55,7 +55,7 @@ def needless(state: State, floor_rms: float) -> Without | None:
     """Find an effect that gains too little beside those that were added later.
 
     An effect is judged by what can be reshaped without it: other forms of itself would
-    stand in for it.
+    stand in for it. Both models are refitted under that score.
     """
     for number, item in enumerate(state.added):
         if not removable(state, number):
@@ -64,6 +64,8 @@ def needless(state: State, floor_rms: float) -> Without | None:
         score = make_score(short, floor_rms)
         short, value = finished(short, score)
         gain = value - score_of(state, score)
+        if gain < FURTHER:  # or enough, once refitted as the other one is
+            gain = value - finished(state, score)[1]
         if gain < FURTHER:
             reason = f"needless beside the others, its gain is {gain:.1f}"
             return Without(TakenOut(item.effect, reason), short)
