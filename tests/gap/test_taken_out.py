@@ -1,5 +1,7 @@
 """Effects go out again that are needless, or whose size the records do not know."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from hystbench.gap.name import LITTLE, Named
 from hystbench.gap.rank import Round, make_score
 from hystbench.gap.say import silent
 from hystbench.gap.taken_out import TakenOut, needless, unknown, without_what_goes
+from hystbench.gap.thresholds import FURTHER, MOST_OF_IT, PAYS, SHAPE
 from hystbench.gap.uncertainty import (
     error_of_size,
     on_more_samples,
@@ -103,19 +106,52 @@ def test_one_effect_alone_is_not_looked_at():
     state = state_of((gain,), measured((gain,), NOISE))
     variant = next(iter(effects()["asymmetry"].variants(state.scene)))
     state = with_effect(state, variant, {"coefficient": 0.0})
-    assert without_what_goes(state, NOISE, silent) == (state, ())
+    assert without_what_goes(state, NOISE, 1.0, silent) == (state, ())
 
 
 @pytest.mark.parametrize("given", [BEND, 0.1 * BEND])
 def test_an_effect_is_not_needless_for_numbers_found_under_another_score(given):
     """It is refitted as the model without it is, before the two are compared."""
-    assert needless(with_two(BEND, given), NOISE) is None
+    assert needless(with_two(BEND, given), NOISE, 1.0) is None
+
+
+@pytest.mark.parametrize(
+    ("effect", "gain", "share", "goes"),
+    [
+        (SHAPE, PAYS + 1, 2 * MOST_OF_IT, False),
+        (SHAPE, PAYS + 1, MOST_OF_IT / 2, True),
+        (SHAPE, PAYS - 1, 2 * MOST_OF_IT, True),
+        (SHAPE, FURTHER + 1, MOST_OF_IT / 2, False),
+        ("asymmetry", PAYS + 1, 2 * MOST_OF_IT, True),
+    ],
+)
+def test_a_wrong_shape_stays_by_the_rule_by_which_it_came(
+    effect, gain, share, goes, monkeypatch
+):
+    """It is charged for all its directions, so that its gain is small for its size."""
+    state = with_two(BEND)
+    lag, curve = state.added
+    state = replace(state, added=(lag, curve._replace(effect=effect)))
+    small = without_effect(state, 1)
+    gap = small.power(NOISE**2) - state.power(NOISE**2)
+
+    def fitted(one, score):
+        if names(one) == ["drive-lag"]:
+            return one, gain
+        return one, 0.0 if "drive-lag" in names(one) else 10 * FURTHER
+
+    monkeypatch.setattr(taken_out, "finished", fitted)
+    monkeypatch.setattr(taken_out, "score_of", lambda one, score: 0.0)
+    found = needless(state, NOISE, gap / share)
+    assert (found is not None) == goes
+    if found is not None:
+        assert found.gone.name == effect
 
 
 def test_what_went_is_told_with_the_reason():
     """The lag gains much, the curve of no size nothing: it is needless before all."""
     said = []
-    state, gone = without_what_goes(with_two(0.0), NOISE, said.append)
+    state, gone = without_what_goes(with_two(0.0), NOISE, 1.0, said.append)
     assert names(state) == ["drive-lag"]
     (curve,) = gone
     assert curve.name == "asymmetry"

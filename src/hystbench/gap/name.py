@@ -72,7 +72,7 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     if found.deferred and any(item.effect == SHAPE for item in found.state.added):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, shape_first=True)
-    state, gone = without_what_goes(found.state, floor_rms, say)
+    state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
     rounds = found.rounds
     if len(state.added) > 1 and _others_than_taken(state, rounds):
         state, again = reconsidered(state, rounds, floor_rms, say, True)

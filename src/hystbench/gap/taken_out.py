@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from hystbench.gap.fit import finished, score_of
 from hystbench.gap.rank import make_score
 from hystbench.gap.say import Say
 from hystbench.gap.state import Added, State
-from hystbench.gap.thresholds import FURTHER
+from hystbench.gap.thresholds import FURTHER, MOST_OF_IT, PAYS, SHAPE
 from hystbench.gap.uncertainty import error_of_size, on_more_samples
 
 UNKNOWN = 0.5
@@ -33,9 +34,17 @@ class Without(NamedTuple):
 
 
 def without_what_goes(
-    state: State, floor_rms: float, say: Say
+    state: State, floor_rms: float, gap: float, say: Say
 ) -> tuple[State, tuple[TakenOut, ...]]:
     """Take out what is needless, then what is not known, while two effects are there.
+
+    Parameters
+    ----------
+    state : State
+    floor_rms : float
+    gap : float
+        Mean square of the base's gap above the floor.
+    say : callable
 
     Returns
     -------
@@ -44,18 +53,20 @@ def without_what_goes(
         In the order in which they went.
     """
     gone: tuple[TakenOut, ...] = ()
-    for look in (needless, unknown):
+    for look in (partial(needless, gap=gap), unknown):
         while len(state.added) > 1 and (found := look(state, floor_rms)) is not None:
             say(f"{found.gone.name} goes: {found.gone.reason}")
             gone, state = (*gone, found.gone), found.state
     return state, gone
 
 
-def needless(state: State, floor_rms: float) -> Without | None:
+def needless(state: State, floor_rms: float, gap: float) -> Without | None:
     """Find an effect that gains too little beside those that were added later.
 
     An effect is judged by what can be reshaped without it: other forms of itself would
-    stand in for it. Both models are refitted under that score.
+    stand in for it. Both models are refitted under that score. A wrong shape of the
+    hysteresis, which is charged dearly, stays where it takes much of the gap away, by
+    the rule by which it was added.
     """
     for number, item in enumerate(state.added):
         if not removable(state, number):
@@ -65,7 +76,11 @@ def needless(state: State, floor_rms: float) -> Without | None:
         short, value = finished(short, score)
         gain = value - score_of(state, score)
         if gain < FURTHER:  # or enough, once refitted as the other one is
-            gain = value - finished(state, score)[1]
+            full, least = finished(state, score)
+            gain = value - least
+            share = full.share(short, floor_rms**2, gap)
+            if item.effect == SHAPE and gain >= PAYS and share > MOST_OF_IT:
+                continue
         if gain < FURTHER:
             reason = f"needless beside the others, its gain is {gain:.1f}"
             return Without(TakenOut(item.effect, reason), short)
