@@ -119,7 +119,8 @@ def told_by_rows(content, effect):
 
     The last ranking that has it taken counts. A rival is e times less likely for every
     four of score (2 % are kept for what is not in the vocabulary), and what is left of
-    the gap lowers all, down to none at 70 %. A tie is less than six apart.
+    the gap lowers all, down to none at 70 %. A tie is less than six apart. What scores
+    better than a wrong shape that was added is needed beside it, and no rival.
     """
     rows = content["ranking"]
     *_, (number, look) = (
@@ -130,6 +131,8 @@ def told_by_rows(content, effect):
     here = [row for row in rows if (row["round"], row["look"]) == (number, look)]
     scores = {row["name"]: row["score"] for row in here if "score" in row}
     own = scores.pop(effect)
+    if effect == "hysteresis-shape" and look == 0:
+        scores = {name: x for name, x in scores.items() if x >= own}
     odds = sum(math.exp(min((own - other) / 4, 100)) for other in scores.values())
     refitted = [row["name"] for row in here if row["refitted"]]
     ties = [name for name, x in scores.items() if name in refitted and x < own + 6]
@@ -137,7 +140,7 @@ def told_by_rows(content, effect):
     return 0.98 * trust / (1 + odds), ties
 
 
-NAMES = ("drive-lag", "creep", "friction", "resonance", "backlash")
+NAMES = ("drive-lag", "hysteresis-shape", "friction", "resonance", "backlash")
 
 
 ANY = state_of((block("gain", value=1.0),))

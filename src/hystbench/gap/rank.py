@@ -120,11 +120,20 @@ class Round:
 
 
 def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:
-    """Give the last ranking by which each effect was taken, or kept."""
+    """Give the last ranking by which each effect was taken, or kept.
+
+    What scores better than a wrong shape that goes first is no rival of it: the shape
+    is needed beside it.
+    """
     found: dict[str, tuple[Candidate, ...]] = {}
     for one in rounds:
+        first = one.ranking[0]
         if one.taken:
-            found[one.ranking[0].effect] = one.ranking
+            found[first.effect] = tuple(
+                x
+                for x in one.ranking
+                if first.effect != SHAPE or x.score >= first.score
+            )
         found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
     return found
 
