@@ -187,6 +187,8 @@ def test_columns_that_are_nothing_or_run_away():
     assert nothing.score == pytest.approx(score.of(residual))
     none = score.amplitudes(residual, np.zeros((30, 0)))
     assert none.score == score.of(residual)
+    gone = score.amplitudes(np.full(30, np.nan), np.zeros((30, 0)))
+    assert gone.score == np.inf  # nan would be less than nothing, and not more
     with np.errstate(all="ignore"):  # the squares of what runs away overflow
         for size in (np.inf, 1e200):
             away = score.amplitudes(residual, np.full((30, 1), size))

@@ -128,10 +128,10 @@ class Score:
             Columns whose amplitude may not be negative.
         """
         k = columns.shape[1]
-        if k == 0:
-            return Amplitudes(np.zeros(0), self.of(residual, freedom))
         if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
             return Amplitudes(np.zeros(k), np.inf)  # a model that runs away
+        if k == 0:
+            return Amplitudes(np.zeros(0), self.of(residual, freedom))
         scale = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
         scale[scale == 0] = 1.0
         grams, within = self._products(np.column_stack([residual, columns / scale]))

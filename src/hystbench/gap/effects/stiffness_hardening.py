@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -35,13 +36,18 @@ class StiffnessHardening(Effect):
         for k, block in enumerate(scene.chain):
             for before, mode in _modes(block):
                 found = True
-                yield self._hardened(scene, k, before, mode)
+                yield from self._hardened(scene, k, before, mode)
         if not found:
             raise Declined("the chain has no mode whose spring could harden")
 
     def _hardened(
         self, scene: Scene, k: int, before: Before, mode: Mapping[str, Any]
-    ) -> Variant:
+    ) -> Iterator[Variant]:
+        """Offer a spring that is hardly another, one that stiffens, one that softens.
+
+        The first is solved for. Where the mode moves by more than its own width, what
+        the first does tells nothing: the others are searched.
+        """
         rest = scene.chain[k + 1 :]
 
         def build(given: Values) -> tuple[Block, ...]:
@@ -49,21 +55,33 @@ class StiffnessHardening(Effect):
             return (*before, own, *rest)
 
         # What moves the spring: the mode's own input, or what it gives.
-        largest = scene.largest(k + 1 if before else k)
-        return Variant(
+        unit = 1.0 / scene.largest(k + 1 if before else k) ** 2
+        solved = Variant(
             self.name,
             self.place,
             f"{mode['frequency_hz']:.3g} Hz" if before else "",
             k,
             build,
             tuple(range(len(before) + 1)),
-            unit={"coefficient": 1e-3 / largest**2},
+            unit={"coefficient": 1e-3 * unit},
             free=("coefficient",),
             replaces=True,
             neutral=False,
             zero={"coefficient": 0.0},
         )
+        yield solved
+        for way, shares in (("stiffer", STIFFER), ("softer", SOFTER)):
+            yield replace(
+                solved,
+                form=f"{solved.form} {way}".strip(),
+                unit={},
+                grids={"coefficient": unit * shares},
+            )
 
+
+STIFFER, SOFTER = np.geomspace(2e-3, 4.0, 9), -np.geomspace(0.5, 2e-3, 6)
+"""Share of the linear force that the cube has at the largest static displacement. At
+resonance a mode moves by far more; softer by all of it, a spring has no force left."""
 
 MODE = ("frequency_hz", "damping_ratio", "participation")
 DAMPED = 0.5
