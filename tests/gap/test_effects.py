@@ -431,7 +431,7 @@ def test_a_mode_is_taken_out_of_a_transfer_function_and_hardens_there():
     assert found.coefficient == pytest.approx(2e-3, rel=0.05)
 
 
-@pytest.mark.parametrize("strong", [3e-3, 0.3, -0.03])
+@pytest.mark.parametrize("strong", [0.02, 0.3, -0.03])
 def test_a_mode_that_moves_by_more_than_its_width_is_found(strong):
     """The slope at a linear spring tells nothing of it: such springs are searched."""
     mode = {"frequency_hz": 60.0, "damping_ratio": 0.02, "participation": 0.5}
