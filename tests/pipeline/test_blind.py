@@ -221,14 +221,18 @@ def test_a_solver_that_did_not_enter_is_told_in_one_line(held):
 
 
 def test_the_gaps_own_solver_in_the_contest(tmp_path):
+    """With a share, as a solver that takes its time may enter: of nine, three cases."""
     workflow = Workflow(tmp_path / "contest")
     workflow.folder.mkdir()
-    own = small_config()["blind"]["solvers"]["gap"]
-    config = contest(tmp_path, {"gap": own}, "gap")
-    config["blind"]["scale"] = 0.25  # nine cases, one of each sort
+    own = small_config()["blind"]["solvers"]["gap"] | {"share": 0.3}
+    plain = entered(tmp_path, "plain", SOLVER + "reason = 'none is tried'\n" + ANSWER)
+    config = contest(tmp_path, {"plain": plain, "gap": own}, "plain")
+    config["blind"] |= {"scale": 0.25, "chunk": 3}
     workflow.configure(config)
-    workflow.run("blind")
-    rows = table(workflow, "cases")
+    done = workflow.run("blind")
+    assert done["blind_solve"] == 4  # three chunks, and the first one twice
+    rows = [row for row in table(workflow, "cases") if row["solver"] == "gap"]
+    assert len(rows) == 3
     assert not [row["lost"] for row in rows if row["lost"]]
     singles = [row for row in rows if row["kind"] == "single"]
     assert sum(row["top1"] == "True" for row in singles) > len(singles) / 2
