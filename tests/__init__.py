@@ -2,6 +2,6 @@
 
 import os
 
-# As the command line does: beside another process the threads of small matrices wait for
-# each other, and take ten times as long. Before NumPy is imported.
+# As the command line does, before NumPy is imported: beside another process the threads
+# of small matrices wait for each other, and take ten times as long.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
