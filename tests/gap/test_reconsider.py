@@ -137,3 +137,41 @@ def test_what_an_effect_does_is_not_free_for_its_rivals(two, monkeypatch):
     reconsidered(state, rounds, NOISE, silent)
     assert set(free) == {"drive-lag", "asymmetry"}
     assert free["drive-lag"] < 0.5
+
+
+@pytest.mark.parametrize(
+    ("own", "rival", "form", "score"),
+    [
+        (-10.0, -1.0, "another", -10.0),
+        (-2.0, -1.0, "", 0.0),  # not enough to be taken: the model is as it was
+        (-10.0, -12.0, "another", -10.0),  # a rival has to beat the better form
+        (5.0, 6.0, "", 0.0),
+    ],
+)
+def test_another_form_of_an_effect_is_taken_where_it_does_better(
+    own, rival, form, score, two, monkeypatch
+):
+    """The rows then tell of the form that is in the model, and of no other."""
+    state, rounds = two
+    anew = replace(state, added=state.added)
+
+    def looked(short, score, known):
+        (gone,) = {x.effect for x in state.added} - {x.effect for x in short.added}
+        if gone == "asymmetry":
+            return (Candidate(gone, "", "", score=0.0, gain=1.0, state=state),)
+        rows = (
+            Candidate(gone, "", "another", score=own, gain=30.0 - own, state=anew),
+            Candidate("creep", "", score=rival, gain=30.0 - rival, state=state),
+        )
+        return tuple(sorted(rows, key=lambda row: row.score))
+
+    def fitted(one, score):
+        return one, own if one is anew else 0.0
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    monkeypatch.setattr(reconsider, "finished", fitted)
+    found, looks = reconsidered(state, rounds, NOISE, silent)
+    assert found is (anew if form else state)
+    assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]
+    row = next(x for x in looks[0].ranking if x.effect == "drive-lag")
+    assert (row.form, row.score, row.gain) == (form, score, 30.0 - score)

@@ -128,12 +128,10 @@ def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:
     found: dict[str, tuple[Candidate, ...]] = {}
     for one in rounds:
         first = one.ranking[0]
-        if one.taken:
-            found[first.effect] = tuple(
-                x
-                for x in one.ranking
-                if first.effect != SHAPE or x.score >= first.score
-            )
+        if one.taken and first.effect == SHAPE:
+            found[SHAPE] = tuple(x for x in one.ranking if x.score >= first.score)
+        elif one.taken:
+            found[first.effect] = one.ranking
         found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
     return found
 

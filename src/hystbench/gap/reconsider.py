@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import refit
-from hystbench.gap.rank import Look, Round, in_order, make_score, rank
+from hystbench.gap.fit import finished
+from hystbench.gap.rank import Candidate, Look, Round, in_order, make_score, rank
 from hystbench.gap.say import Say
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import CLOSE, SHAPE, SWAP
@@ -24,7 +24,7 @@ def reconsidered(
     """Try the rivals of each effect in its place, now that others are there.
 
     The first effect was named while the others were missing: one like it may have
-    looked better for that.
+    looked better for that, or another form of it. A rival has to do better than both.
 
     Parameters
     ----------
@@ -43,36 +43,48 @@ def reconsidered(
         At each effect in turn; the last one is that at which one gave way, if any did.
     """
     looks: list[Look] = []
+    better: tuple[int, State, tuple[Candidate, ...]] | None = None
     for number, item in enumerate(state.added):
         if item.effect == SHAPE or not removable(state, number):
             continue
         short = without_effect(state, number)
         # Other forms of the effect itself would do for a rival what the rival does not.
         score = make_score(short, floor_rms)
-        again, now = refit(state, score)
+        as_is, now = finished(state, score)
         have = tuple(other.effect for other in short.added)
         names = set(effects()) if every else _rivals(item.effect, rounds)
         known = [effects()[name] for name in sorted(names - set(have))]
         ranking = rank(short, score, known)
         best = ranking[0]
-        other = best.state is not None and best.effect != item.effect
-        if other and best.score < now - SWAP:
-            gain = now - best.score
-            say(f"{item.effect} gives way to {best.effect}: {gain:.1f}")
+        own = next((x for x in ranking if x.effect == item.effect and x.state), None)
+        least = now if own is None else min(now, own.score)
+        if best.state and best.effect != item.effect and best.score < least - SWAP:
+            say(f"{item.effect} gives way to {best.effect}: {least - best.score:.1f}")
             looks.append(Look(item.effect, have, ranking, best.effect))
-            return best.state or state, tuple(looks)
-        own = next((x for x in ranking if x.effect == item.effect), None)
-        kept = own is not None and own.state is not None
-        if own is not None and kept:
-            # A search from anew may end worse than the model that is there.
-            as_is = replace(
-                own, score=now, gain=own.gain + own.score - now, state=again
-            )
-            ranking = tuple(
-                in_order(as_is if x is own and now < own.score else x for x in ranking)
-            )
-        looks.append(Look(item.effect, have, ranking, item.effect if kept else None))
+            return best.state, tuple(looks)
+        if own is None:
+            looks.append(Look(item.effect, have, ranking, None))
+            continue
+        if better is None and own.state and own.score < now - SWAP:
+            anew, least = finished(own.state, score)
+            if least < now - SWAP:
+                better = len(looks), anew, _with(ranking, own, own.form, least, anew)
+        shown = _with(ranking, own, item.form, now, as_is)
+        looks.append(Look(item.effect, have, shown, item.effect))
+    if better is not None:
+        place, state, ranking = better
+        looks[place] = replace(looks[place], ranking=ranking)
+        say(f"{looks[place].instead_of} is fitted anew")
     return state, tuple(looks)
+
+
+def _with(
+    ranking: Sequence[Candidate], own: Candidate, form: str, score: float, state: State
+) -> tuple[Candidate, ...]:
+    """Give a ranking in which an effect stands as a model has it."""
+    gain = own.gain + own.score - score
+    shown = replace(own, form=form, score=score, gain=gain, state=state)
+    return tuple(in_order(shown if x is own else x for x in ranking))
 
 
 def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:

@@ -262,7 +262,7 @@ def fine(attempt: Attempt, start: Trial) -> Trial:
                 if trial is not None and trial.score < best.score:
                     best = trial
                     break
-    most = np.array(list(steps.values())) / 2
+    most = np.abs(list(steps.values())) / 2  # of a grid of negative values too
     for _ in range(NEWTON if grids else 0):
         try:
             step = np.clip(attempt.step(best), -most, most)
