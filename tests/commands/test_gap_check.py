@@ -108,6 +108,17 @@ def test_a_function_that_is_not_finite_on_a_hold_out_input(tiny, tmp_path, monke
     assert "it gave inf at sample 0; expected finite numbers" in said
 
 
+def test_a_function_that_gives_complex_numbers(tiny, tmp_path, monkeypatch):
+    """No imaginary part is dropped unseen."""
+    (tmp_path / "rig_of_waves.py").write_text(
+        "def run(u, dt):\n    return u * (1 + 0.1j)\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    data, _ = tiny
+    said = message(lambda: check(data, "rig_of_waves:run"))
+    assert "it gave complex numbers; expected real ones" in said
+
+
 @pytest.mark.parametrize("word", ["gpi", "linear"])
 def test_a_base_that_is_to_be_identified_is_not_identified_here(
     tiny, monkeypatch, word

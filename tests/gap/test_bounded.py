@@ -163,9 +163,16 @@ def test_a_base_that_runs_away_on_a_hold_out_record_is_refused_before_the_search
     assert not (tmp_path / "out").exists()
 
 
-def squared(value):
+def narrow(u, dt):
+    """A simulator of somebody's own that knows how much its rig bears."""
+    if np.abs(u).max() > 1.0:
+        raise ValueError("current beyond 1 A")
+    return 12.0 * u
+
+
+def squared(value, simulator=None):
     """A gain that an asymmetry was added to, and the base on its own."""
-    chain = (block("gain", value=12.0),)
+    chain = (simulator or block("gain", value=12.0),)
     start, floor = start_state(
         measured(chain, 0.02),
         Model("simulator", CURRENT, DISPLACEMENT, chain),
@@ -190,6 +197,29 @@ def test_what_is_beyond_any_use_runs_away_though_it_is_a_number(size):
     assert shown.content["gap"]["after"] is None
 
 
+def test_a_simulator_may_refuse_what_an_effect_sends_it():
+    """It takes the held-out input as it is, but not with the effect before it."""
+    simulator = block("external", function="tests.gap.test_bounded:narrow")
+    base, start, after, floor = squared(0.05, simulator)
+    t = np.arange(600) / 600
+    held = tuple(
+        record(size * np.sin(20 * t), 12 * t, name=name, use="hold-out")
+        for name, size in (("near", 0.5), ("far", 1.0))
+    )
+    rungs = (Rung("base", start), Rung("asymmetry", after))
+    shown = show(base, after, floor, black_box(start, floor), held, rungs)
+    (away,) = shown.content["runs_away"]
+    assert (away["record"], away["from_s"]) == ("far", 0.0)
+    assert "it raised ValueError: current beyond 1 A" in away["refused"]
+    assert away["sentence"] == (
+        f"simulator with asymmetry cannot be run on far: {away['refused']}, and "
+        "nothing of the gap counts as closed."
+    )
+    assert shown.content["gap"]["after"] is None
+    assert np.isfinite(shown.outputs[0][1]).all()
+    assert np.isnan(shown.outputs[1][1]).all()
+
+
 def test_the_bound_is_some_times_as_far_as_the_base_goes():
     one = record(np.zeros(3), name="rests")
     usual = reach([np.array([0.0, -2.0, 1.0]), np.zeros(3)], 0.5)
@@ -198,4 +228,4 @@ def test_the_bound_is_some_times_as_far_as_the_base_goes():
     assert bounded("m", [one], [inside], usual) == ([inside], [])
     kept, found = bounded("m", [one], [inside * (1 + 1e-9)], usual)
     assert kept == [None]
-    assert found == [("m", "rests", pytest.approx(one.dt))]
+    assert found == [("m", "rests", pytest.approx(one.dt), None)]

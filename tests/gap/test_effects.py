@@ -20,6 +20,7 @@ from hystbench.gap.state import Free
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
 from tests.gap.small import (
+    MODE,
     block,
     chains,
     hysteresis,
@@ -402,6 +403,25 @@ def test_bounds_come_from_the_records_alone(name):
             assert other.grids[key] == pytest.approx(SCALES[key] * axis, rel=1e-9)
             ends = np.array(one.ends(key))
             assert other.ends(key) == pytest.approx(SCALES[key] * ends, rel=1e-9)
+
+
+def test_the_range_of_a_spring_is_that_of_what_moves_it():
+    """Its cube weighs by the square of the displacement, on slower records too."""
+    chain = (block("gain", value=12.0), block("resonance", **MODE))
+    moved = tuple(
+        replace(item, u=LARGER * item.u, dt=SLOWER * item.dt) for item in records()
+    )
+    before, after = (
+        list(effects()["stiffness-hardening"].variants(Scene(chain, given)))
+        for given in (records(), moved)
+    )
+    assert len(before) == len(after) == 3
+    for one, other in zip(before, after, strict=True):
+        ranges = {**one.grids, **one.unit}
+        there = {**other.grids, **other.unit}
+        assert ranges.keys() == there.keys() == {"coefficient"}
+        expected = ranges["coefficient"] / LARGER**2
+        assert there["coefficient"] == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_range_of_a_rate_is_that_of_the_records():

@@ -489,7 +489,9 @@ def test_a_model_that_runs_away_is_said_to_and_drawn_without_it(tmp_path):
     gap["records"][1] |= {"after": None, "explained": 0.0}
     gap["black_box"]["records"][1]["named"] = None
     gap["ladder"][2]["rms"] = None
-    gap["runs_away"] = [{"record": "held-2", "from_s": 0.3, "sentence": told}]
+    gap["runs_away"] = [
+        {"record": "held-2", "from_s": 0.3, "refused": None, "sentence": told}
+    ]
     write_folder(tmp_path, gap)
     table = tmp_path / "holdout" / "held-2.csv"
     rows = [line.split(",") for line in table.read_text().splitlines()]

@@ -79,3 +79,15 @@ def test_without_a_gap_or_an_effect_nothing_was_promised(missing):
     if missing is not None:
         given[missing]["explained"] = None
     assert shortfall(given) is None
+
+
+def test_records_that_a_model_runs_away_on_and_those_that_refuse_it_are_told_apart():
+    away = [
+        {"record": name, "from_s": 0.0, "refused": why, "sentence": ""}
+        for name, why in (("a", None), ("b", "rig:run: raised"), ("c", None))
+    ]
+    found = shortfall(content(fit=0.9, held=0.0) | {"runs_away": away})
+    assert (
+        "the model runs away on a and c; the model cannot be run on b"
+        in (found["sentence"])
+    )

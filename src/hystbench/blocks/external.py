@@ -91,6 +91,8 @@ def called(name: str, z: FloatArray, dt: float) -> FloatArray:
         # Whatever a user's program raises is to be told in one line.
         said = " ".join(f"{type(error).__name__}: {error}".split())
         raise InputError(f"{call}, it raised {said}") from error
+    if np.iscomplexobj(given):  # NumPy would drop the imaginary part
+        raise InputError(f"{call}, it gave complex numbers; expected real ones")
     try:
         y = np.array(given, dtype=np.float64)
     except (TypeError, ValueError):

@@ -1,12 +1,13 @@
 """Models that run away on a hold-out record: told by name, and nothing of it counts.
 
 A spring that softens, say, fits the records that it was fitted to and has no bounded
-motion beyond their amplitudes. What was decided stays: hold-out records decide nothing.
+motion beyond their amplitudes; a simulator of somebody's own may refuse what an effect
+sends it there. What was decided stays: hold-out records decide nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,20 +19,28 @@ FAR = 1e6
 
 
 class RunsAway(NamedTuple):
-    """A record on which a model runs away, and from when on."""
+    """A record on which a model has no bounded output, and from when on."""
 
     model: str
     record: str
     from_s: float
+    refused: str | None = None
+    """What the simulator said that refused the record, if one did."""
 
     def mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``runs_away``."""
+        what = (
+            f"runs away on {self.record} from {self.from_s:g} s on: there its output "
+            "is not bounded"
+        )
+        if self.refused is not None:
+            what = f"cannot be run on {self.record}: {self.refused}"
+        told = f"{self.model} {what}, and nothing of the gap counts as closed."
         return {
             "record": self.record,
             "from_s": self.from_s,
-            "sentence": f"{self.model} runs away on {self.record} from "
-            f"{self.from_s:g} s on: there its output is not bounded, and nothing of "
-            "the gap counts as closed.",
+            "refused": self.refused,
+            "sentence": told,
         }
 
 
@@ -45,6 +54,7 @@ def bounded(
     records: Sequence[Record],
     outputs: Sequence[FloatArray],
     usual: float,
+    refused: Mapping[str, str] | None = None,
 ) -> tuple[list[FloatArray | None], list[RunsAway]]:
     """Tell on which records a model runs away.
 
@@ -56,6 +66,8 @@ def bounded(
     outputs : sequence of ndarray, shape (n,) each
     usual : float
         How far the base goes.
+    refused : mapping of str to str, optional
+        By record, why there is no output, which is NaN there.
 
     Returns
     -------
@@ -70,5 +82,7 @@ def bounded(
         beyond = np.flatnonzero(~(np.abs(output) <= FAR * usual))
         kept.append(None if len(beyond) else output)
         if len(beyond):
-            found.append(RunsAway(model, record.name, float(beyond[0] * record.dt)))
+            why = (refused or {}).get(record.name)
+            start = float(beyond[0] * record.dt)
+            found.append(RunsAway(model, record.name, start, why))
     return kept, found

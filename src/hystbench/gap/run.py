@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.errors import InputError
 from hystbench.files import check_writable, whole_folder, write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
@@ -233,9 +234,16 @@ def what_is_new(state: State) -> Nuisance | None:
 def _run(
     name: str, state: State, records: tuple[Record, ...], usual: float
 ) -> tuple[list[FloatArray | None], list[RunsAway]]:
-    with np.errstate(over="ignore", invalid="ignore"):
-        outputs = Scene(state.chain, records, state.hold).output
-    return bounded(name, records, outputs, usual)
+    outputs: list[FloatArray] = []
+    refused: dict[str, str] = {}
+    for record in records:
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                outputs += Scene(state.chain, (record,), state.hold).output
+        except InputError as error:  # a simulator may not take what an effect sends it
+            refused[record.name] = str(error)
+            outputs.append(np.full(len(record), np.nan))
+    return bounded(name, records, outputs, usual, refused)
 
 
 def _name(base: Model, state: State) -> str:

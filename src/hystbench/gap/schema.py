@@ -84,7 +84,15 @@ GAP = _object(
 )
 
 # A hold-out record on which the model with its effects has no bounded output.
-AWAY = _object({"record": {"type": "string"}, "from_s": NUMBER, "sentence": WORDS})
+AWAY = _object(
+    {
+        "record": {"type": "string"},
+        "from_s": NUMBER,
+        # What a simulator of somebody's own said that refused the record.
+        "refused": {"type": ["string", "null"]},
+        "sentence": WORDS,
+    }
+)
 
 FIT = _object(
     {

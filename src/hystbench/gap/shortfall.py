@@ -73,8 +73,15 @@ def _widens(content: Mapping[str, Any]) -> list[str]:
 
 
 def _runs_away(content: Mapping[str, Any]) -> list[str]:
-    names = [item["record"] for item in content.get("runs_away", [])]
-    return [f"the model runs away on {' and '.join(names)}"] if names else []
+    found = []
+    for what, refused in (("runs away", False), ("cannot be run", True)):
+        names = [
+            item["record"]
+            for item in content.get("runs_away", [])
+            if (item["refused"] is not None) is refused
+        ]
+        found += [f"the model {what} on {' and '.join(names)}"] if names else []
+    return found
 
 
 def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:
