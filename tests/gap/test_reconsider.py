@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from hystbench.gap import reconsider
-from hystbench.gap.change import with_effect
+from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import refit
+from hystbench.gap.fit import finished
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, Round, reasons
+from hystbench.gap.rank import Candidate, Round, make_score, reasons
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.say import silent
 from hystbench.gap.told import ranking_rows
@@ -64,7 +64,9 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     assert by_effect["drive-lag"] is last
     # The model that is there scores better than what the second look came to.
     (own,) = by_effect["asymmetry"]
-    assert own.state.added == state.added
+    kept, now = finished(state, make_score(without_effect(state, 1), NOISE))
+    assert own.state.chain == kept.chain
+    assert own.score == pytest.approx(now)
     assert own.score < 0.0
     assert own.score + own.gain == pytest.approx(1.0)
 
@@ -103,7 +105,7 @@ def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch
     scores = []
 
     def looked(short, score, known):
-        _, now = refit(state, score)
+        _, now = finished(state, score)
         scores.append(now)
         rival = Candidate("creep", "mechanics", score=now + 1, gain=2.0, state=state)
         return rival, *(

@@ -12,14 +12,13 @@ from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.say import Say, silent
 from hystbench.gap.state import State
 from hystbench.gap.steps import above_floor
-from hystbench.gap.taken_out import TakenOut, without_what_goes
+from hystbench.gap.taken_out import TakenOut, is_most_of_it, without_what_goes
 from hystbench.gap.thresholds import (
     BESIDE_SHAPE,
     CERTAIN,
     FURTHER,
     MATTERS,
     MOST,
-    MOST_OF_IT,
     PAYS,
     PAYS_HELD_BACK,
     SHAPE,
@@ -206,6 +205,6 @@ def _pays(item: Candidate, state: State, floor: float, gap: float) -> bool:
     beside_shape = any(other.effect == SHAPE for other in state.added)
     matters = BESIDE_SHAPE if beside_shape else MATTERS
     share = item.state.share(state, floor, gap)
-    if item.effect == SHAPE and share > MOST_OF_IT:
+    if is_most_of_it(item.effect, item.gain, share):
         return True
     return item.gain > CERTAIN or (item.gain > FURTHER and share > matters)

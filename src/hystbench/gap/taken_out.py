@@ -74,17 +74,20 @@ def needless(state: State, floor_rms: float, gap: float) -> Without | None:
         short = without_effect(state, number)
         score = make_score(short, floor_rms)
         short, value = finished(short, score)
-        gain = value - score_of(state, score)
-        if gain < FURTHER:  # or enough, once refitted as the other one is
-            full, least = finished(state, score)
-            gain = value - least
-            share = full.share(short, floor_rms**2, gap)
-            if item.effect == SHAPE and gain >= PAYS and share > MOST_OF_IT:
-                continue
-        if gain < FURTHER:
+        if value - score_of(state, score) >= FURTHER:
+            continue  # a refit could only add to it
+        full, least = finished(state, score)
+        gain = value - least
+        share = full.share(short, floor_rms**2, gap)
+        if gain < FURTHER and not is_most_of_it(item.effect, gain, share):
             reason = f"needless beside the others, its gain is {gain:.1f}"
             return Without(TakenOut(item.effect, reason), short)
     return None
+
+
+def is_most_of_it(effect: str, gain: float, share: float) -> bool:
+    """Tell whether a wrong shape pays and takes much of the gap, dear as it is."""
+    return effect == SHAPE and gain >= PAYS and share > MOST_OF_IT
 
 
 def unknown(state: State, floor_rms: float) -> Without | None:
