@@ -36,6 +36,7 @@ class BuildKernels(build_ext):
 HERE = "src/hystbench/kernels"
 SOURCES = [
     "drive.c",
+    "envelope.c",
     "hardening.c",
     "jiles_atherton.c",
     "largest.c",

@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass, fields
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hystbench import kernels
 from hystbench.errors import InputError, nearest
 from hystbench.record import FloatArray
 
@@ -180,13 +181,9 @@ def fewest_samples(order: int) -> int:
 def _curve(
     height: float, slope: float, place: float, offset: float, v: ArrayLike
 ) -> FloatArray:
-    # in place: fresh memory for each step would cost more than the tanh
-    x: FloatArray = np.asarray(v, dtype=np.float64)
-    curve: FloatArray = np.multiply(x, slope, out=np.empty(x.shape))
-    curve += place
-    np.tanh(curve, out=curve)
-    curve *= height
-    curve += offset
+    x: FloatArray = np.ascontiguousarray(v, dtype=np.float64).reshape(np.shape(v))
+    curve: FloatArray = np.empty(x.shape)
+    kernels.call("hb_envelope", x.size, height, slope, place, offset, x, curve)
     return curve
 
 

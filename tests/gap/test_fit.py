@@ -11,6 +11,7 @@ from scipy import optimize
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import FAR, added, finished, refit, score_of, sizes
+from hystbench.gap.held_back import cross_validated
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.search import Attempt, coarse, fine
 from hystbench.gap.state import Free
@@ -222,7 +223,11 @@ def test_gains_are_what_the_score_falls_by():
     finalists = [item.score for item in judged if item.state is not None]
     assert finalists == sorted(finalists)
     for item in judged:
-        if item.state is not None:
+        if item.held_back is not None:
+            gain = now - score_of(item.state, score)
+            told, _ = cross_validated(state, item.state, score, gain)
+            assert item.gain == pytest.approx(told)
+        elif item.state is not None:
             assert score_of(item.state, score) == pytest.approx(item.score)
 
 

@@ -8,11 +8,13 @@ import pytest
 from hystbench.gap import reconsider
 from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import finished
+from hystbench.gap.fit import finished, score_of
+from hystbench.gap.held_back import cross_validated
 from hystbench.gap.name import Named
 from hystbench.gap.rank import Candidate, Round, make_score, reasons
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.say import silent
+from hystbench.gap.thresholds import PAYS
 from hystbench.gap.told import ranking_rows
 from tests.gap.small import block, measured, state_of
 
@@ -64,11 +66,34 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     assert by_effect["drive-lag"] is last
     # The model that is there scores better than what the second look came to.
     (own,) = by_effect["asymmetry"]
-    kept, now = finished(state, make_score(without_effect(state, 1), NOISE))
+    short = without_effect(state, 1)
+    score = make_score(short, NOISE)
+    kept, now = finished(state, score)
     assert own.state.chain == kept.chain
     assert own.score == pytest.approx(now)
     assert own.score < 0.0
-    assert own.score + own.gain == pytest.approx(1.0)
+    assert own.score + own.gain == pytest.approx(score_of(short, score))
+
+
+def test_the_model_that_is_there_is_judged_on_records_held_back(two, monkeypatch):
+    state, rounds = two
+
+    def looked(short, score, known):
+        return tuple(
+            Candidate(x.name, x.place, score=0.0, gain=1.0, state=state) for x in known
+        )
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    _, looks = reconsidered(state, rounds, NOISE, silent)
+    own = next(x for x in looks[0].ranking if x.effect == "drive-lag")
+    short = without_effect(state, 0)
+    score = make_score(short, NOISE)
+    after, value = finished(state, score)
+    gain = score_of(short, score) - value
+    wanted, held = cross_validated(short, after, score, gain)
+    assert wanted > PAYS
+    assert own.held_back == pytest.approx(held)
+    assert own.gain == pytest.approx(wanted)
 
 
 def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch):
@@ -104,8 +129,15 @@ def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch
     state, rounds = two
     scores = []
 
+    def as_is(short, score):
+        after, now = finished(state, score)
+        gain = score_of(short, score) - now
+        if gain < PAYS:
+            return now
+        return now + gain - cross_validated(short, after, score, gain)[0]
+
     def looked(short, score, known):
-        _, now = finished(state, score)
+        now = as_is(short, score)
         scores.append(now)
         rival = Candidate("creep", "mechanics", score=now + 1, gain=2.0, state=state)
         return rival, *(
@@ -172,6 +204,7 @@ def test_another_form_of_an_effect_is_taken_where_it_does_better(
 
     monkeypatch.setattr(reconsider, "rank", looked)
     monkeypatch.setattr(reconsider, "finished", fitted)
+    monkeypatch.setattr(reconsider, "score_of", lambda short, score: 30.0)
     found, looks = reconsidered(state, rounds, NOISE, silent)
     assert found is (anew if form else state)
     assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]

@@ -18,10 +18,11 @@ from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.kept import Restorer, progress_mapping, state_mapping
 from hystbench.gap.name import name
 from hystbench.gap.rank import make_score
+from hystbench.gap.score import PARAMETER
 from hystbench.gap.search import Attempt, coarse
 from hystbench.gap.stages import Recorded, begin, choose, named_by, try_one
 from hystbench.gap.start import start_state
-from hystbench.gap.thresholds import PAYS, PAYS_HELD_BACK
+from hystbench.gap.thresholds import PAYS
 from hystbench.gap.told import ranking_rows
 from hystbench.gap.work import Work
 from hystbench.model import Model, load_model
@@ -98,26 +99,29 @@ def test_jobs_and_one_process_rank_and_name_alike(tiny, whole, staged):
     assert decided[0] == decided[1]
 
 
-def test_the_ranking_tells_what_was_gained_on_records_held_back(tiny, whole, staged):
+def test_the_ranking_is_by_what_records_held_back_tell(tiny, whole, staged):
     floor = tiny[-1]
     progress, _ = staged
     ranking = ranking_rows(whole)
     for number, one in enumerate(whole.rounds, start=1):
         rows = [item for item in ranking if item["round"] == number]
         assert {item["name"] for item in rows} == set(effects())
-        best = one.ranking[0]
-        assert rows[0]["name"] == best.effect
-        assert [item["held_back"] for item in rows[1:]] == [None] * (len(rows) - 1)
-        kept = progress[-1]["rounds"][number - 1]["ranking"][0]["held_back"]
-        assert rows[0]["held_back"] == best.held_back == kept
-        if one.taken:
-            # Judged anew: what the taken one gains on records held back decides.
-            score = make_score(one.before, floor.rms)
-            again = gain_held_back(one.before, best.state, score)
-            assert rows[0]["held_back"] == pytest.approx(again)
-            assert again > PAYS_HELD_BACK
-        else:
-            assert (rows[0]["held_back"] is None) == (best.gain < PAYS)
+        kept = progress[-1]["rounds"][number - 1]["ranking"]
+        score = make_score(one.before, floor.rms)
+        for row, item, there in zip(rows, one.ranking, kept, strict=True):
+            assert row["name"] == item.effect == there["effect"]
+            assert row["held_back"] == item.held_back == there["held_back"]
+            if item.held_back is None:
+                assert item.state is None or item.gain < PAYS
+                continue
+            # Judged anew: the gain is what is left of it less the charge, or less.
+            again = gain_held_back(one.before, item.state, score)
+            assert item.held_back == pytest.approx(again)
+            charge = PARAMETER * (item.state.freedom - one.before.freedom)
+            assert item.gain <= again - charge + 1e-9
+        finalists = [item for item in one.ranking if item.state is not None]
+        assert finalists == sorted(finalists, key=lambda item: item.score)
+        assert one.ranking[0].held_back is not None or not one.taken
     assert whole.rounds[0].taken
 
 

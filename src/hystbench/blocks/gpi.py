@@ -13,6 +13,7 @@ from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
 from hystbench.operators import (
+    generalized_play,
     generalized_prandtl_ishlinskii,
     growing_prandtl_ishlinskii,
 )
@@ -73,11 +74,7 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
-        rounds = 2 if self.start == "settled" else 1
-        envelope = Envelope(*self.envelope)
-        left, right = envelope.left(v), envelope.right(v)
-        if rounds > 1:
-            left, right = np.tile(left, rounds), np.tile(right, rounds)
+        left, right, rounds = self._envelopes(v)
         if growth is None:
             y, _ = generalized_prandtl_ishlinskii(
                 left, right, self.thresholds, self.weights
@@ -87,6 +84,26 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
                 left, right, self.thresholds, self.weights, np.tile(growth, rounds)
             )
         return y[-len(v) :] if rounds > 1 else y
+
+    def operators(self, v: FloatArray) -> FloatArray:
+        """Compute the outputs of the operators without their weights.
+
+        Returns
+        -------
+        ndarray, shape (n, operators)
+        """
+        left, right, _ = self._envelopes(v)
+        outputs, _ = generalized_play(left, right, self.thresholds)
+        return outputs[-len(v) :]
+
+    def _envelopes(self, v: FloatArray) -> tuple[FloatArray, FloatArray, int]:
+        """Give the envelope functions of an input, and how often it passes."""
+        rounds = 2 if self.start == "settled" else 1
+        envelope = Envelope(*self.envelope)
+        left, right = envelope.left(v), envelope.right(v)
+        if rounds > 1:
+            left, right = np.tile(left, rounds), np.tile(right, rounds)
+        return left, right, rounds
 
     def check_growth(self) -> None:
         """Accept: the thresholds of play operators can grow."""

@@ -1,20 +1,34 @@
-"""What an effect gains on records that did not fit it."""
+"""Cross-validation: what an effect gains on records that did not fit it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.gap.fit import refit
 from hystbench.gap.folds import make_folds
-from hystbench.gap.score import Score
+from hystbench.gap.score import PARAMETER, Score
 from hystbench.gap.state import State
 from hystbench.record import FloatArray
 
-ROUNDS = 2
+ROUNDS = 1
 """Of least squares on a fold: the fit to all records is near."""
+
+Used = tuple[NDArray[np.bool_], ...]
+"""Of each record's scored samples, those that count."""
+
+
+class _Fold(NamedTuple):
+    train: Score
+    """Of what fits."""
+    held: Used
+    """What judges."""
+    outside: FloatArray
+    """Terms of the score there of the model without the effect, by record."""
 
 
 def gain_held_back(before: State, after: State, score: Score) -> float:
@@ -38,9 +52,44 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
     float
         Over all folds, so of every record once; above zero where the effect pays.
     """
-    folds = make_folds(before.records)
-    outside, inside = 0.0, 0.0
+    folds, inside = _folds(before, score)
+    gain = 0.0
     for fold in folds:
+        fitted, _ = refit(after, fold.train, ROUNDS)
+        outside, within = _terms(fitted, score, fold.held)
+        gain += float(np.sum(fold.outside - outside)) + (inside - within) / len(folds)
+    return gain
+
+
+def cross_validated(
+    before: State, after: State, score: Score, gain: float
+) -> tuple[float, float]:
+    """Give an effect's gain as records held back tell it, and what it gains there.
+
+    The first is less the charge for its parameters, as ``gain`` is, and never more than
+    that: a fold that fits better than all records together shows no merit.
+
+    Parameters
+    ----------
+    before, after : State
+        Models without and with the effect, on the same records.
+    score : Score
+    gain : float
+        In the score of all records.
+    """
+    held_back = gain_held_back(before, after, score)
+    charge = PARAMETER * (after.freedom - before.freedom)
+    return min(gain, held_back - charge), held_back
+
+
+@lru_cache(maxsize=2)
+def _folds(before: State, score: Score) -> tuple[tuple[_Fold, ...], float]:
+    """Give the folds, and the term of the directions without the effect.
+
+    All effects of a round share them.
+    """
+    found, inside = [], 0.0
+    for fold in make_folds(before.records):
         train, held = (
             tuple(
                 mask[places]
@@ -48,16 +97,12 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
             )
             for masks in (fold.train, fold.validation)
         )
-        fitted, _ = refit(after, replace(score, used=train), ROUNDS)
-        old, new = (_terms(model, score, held) for model in (before, fitted))
-        outside += float(np.sum(old[0] - new[0]))
-        inside += (old[1] - new[1]) / len(folds)
-    return outside + inside
+        outside, inside = _terms(before, score, held)
+        found.append(_Fold(replace(score, used=train), held, outside))
+    return tuple(found), inside
 
 
-def _terms(
-    model: State, score: Score, held: tuple[NDArray[np.bool_], ...]
-) -> tuple[FloatArray, float]:
+def _terms(model: State, score: Score, held: Used) -> tuple[FloatArray, float]:
     """Terms of the score of held-back samples, by record, and of the directions."""
     columns = model.beside_columns
     amplitudes = score.amplitudes(model.residual, columns).values

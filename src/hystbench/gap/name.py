@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hystbench.gap.fit import finished
-from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.rank import Candidate, Round, make_score, rank, reasons
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.say import Say, silent
@@ -20,7 +19,6 @@ from hystbench.gap.thresholds import (
     MATTERS,
     MOST,
     PAYS,
-    PAYS_HELD_BACK,
     SHAPE,
 )
 from hystbench.gap.work import IN_PROCESS, Work
@@ -159,12 +157,6 @@ def advance(
     for item in ranking[:4]:
         say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
     taken = _pays(first, state, floor, progress.gap)
-    if taken and first.state is not None:
-        held_back = gain_held_back(state, first.state, score)
-        say(f"{first.effect}: {held_back:.1f} of it on records held back")
-        taken = held_back > PAYS_HELD_BACK
-        first = replace(first, held_back=held_back)
-        ranking = (first, *ranking[1:])
     one = Round(state, first.score + first.gain, ranking, taken)
     if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)

@@ -13,6 +13,7 @@ from hystbench.gap.change import at_end
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fit import score_of
+from hystbench.gap.held_back import cross_validated
 from hystbench.gap.reshape import orthonormal
 from hystbench.gap.score import Score
 from hystbench.gap.search import Trial
@@ -48,6 +49,8 @@ class Candidate:
     ----------
     effect, place, form : str
     score : float
+        Of the model with it: of a finalist that pays as records held back tell it, of
+        the others on all records.
     gain : float
         By how much it lowers the score.
     state : State, optional
@@ -55,8 +58,7 @@ class Candidate:
     declined : str
         Why it could not be judged, if so.
     held_back : float, optional
-        What it gains on records held back; of the best one, where that had to decide
-        whether it is taken.
+        What a finalist that pays gains on records held back, without any charge.
     variants : tuple of Tested
         Every place and form of it that could be scored, best first.
     """
@@ -225,6 +227,7 @@ def rank(
         else item
         for place, item in enumerate(candidates)
     ]
+    candidates = [held_back(item, state, score) for item in candidates]
     return (*in_order(candidates), *declined)
 
 
@@ -276,3 +279,12 @@ def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:
         return item
     after, value = work.finished(item.state, score)
     return replace(item, state=after, score=value, gain=now - value)
+
+
+def held_back(item: Candidate, before: State, score: Score) -> Candidate:
+    """Judge a finalist that pays on records that did not fit it."""
+    if item.state is None or item.gain < PAYS:
+        return item
+    gain, held = cross_validated(before, item.state, score, item.gain)
+    worse = item.score + item.gain - gain
+    return replace(item, score=worse, gain=gain, held_back=held)

@@ -7,10 +7,19 @@ from dataclasses import replace
 
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import finished
-from hystbench.gap.rank import Candidate, Look, Round, in_order, make_score, rank
+from hystbench.gap.fit import finished, score_of
+from hystbench.gap.rank import (
+    Candidate,
+    Look,
+    Round,
+    held_back,
+    in_order,
+    make_score,
+    rank,
+)
 from hystbench.gap.say import Say
-from hystbench.gap.state import State
+from hystbench.gap.score import Score
+from hystbench.gap.state import Added, State
 from hystbench.gap.thresholds import CLOSE, SHAPE, SWAP
 
 
@@ -50,7 +59,8 @@ def reconsidered(
         short = without_effect(state, number)
         # Other forms of the effect itself would do for a rival what the rival does not.
         score = make_score(short, floor_rms)
-        as_is, now = finished(state, score)
+        as_is = _as_it_is(item, state, short, score)
+        now = as_is.score
         have = tuple(other.effect for other in short.added)
         names = set(effects()) if every else _rivals(item.effect, rounds)
         known = [effects()[name] for name in sorted(names - set(have))]
@@ -66,10 +76,10 @@ def reconsidered(
             looks.append(Look(item.effect, have, ranking, None))
             continue
         if better is None and own.state and own.score < now - SWAP:
-            anew, least = finished(own.state, score)
-            if least < now - SWAP:
-                better = len(looks), anew, _with(ranking, own, own.form, least, anew)
-        shown = _with(ranking, own, item.form, now, as_is)
+            anew = _as_it_is(own, own.state, short, score)
+            if anew.state and anew.score < now - SWAP:
+                better = len(looks), anew.state, _with(ranking, own, anew)
+        shown = _with(ranking, own, as_is)
         looks.append(Look(item.effect, have, shown, item.effect))
     if better is not None:
         place, state, ranking = better
@@ -78,12 +88,21 @@ def reconsidered(
     return state, tuple(looks)
 
 
+def _as_it_is(
+    item: Added | Candidate, state: State, short: State, score: Score
+) -> Candidate:
+    """Refit a model and judge the effect in it as its rivals are."""
+    state, value = finished(state, score)
+    gain = score_of(short, score) - value
+    one = Candidate(item.effect, item.place, item.form, value, gain, state)
+    return held_back(one, short, score)
+
+
 def _with(
-    ranking: Sequence[Candidate], own: Candidate, form: str, score: float, state: State
+    ranking: Sequence[Candidate], own: Candidate, one: Candidate
 ) -> tuple[Candidate, ...]:
     """Give a ranking in which an effect stands as a model has it."""
-    gain = own.gain + own.score - score
-    shown = replace(own, form=form, score=score, gain=gain, state=state)
+    shown = replace(one, variants=own.variants)
     return tuple(in_order(shown if x is own else x for x in ranking))
 
 

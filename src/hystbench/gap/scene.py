@@ -85,9 +85,28 @@ class Scene:
                 elif self.quick and _takes_short_steps(step):
                     z = _finely(step, z, record.dt, QUICK)
                 else:
-                    z = step.simulate(z, record.u, record.dt)
+                    z = self._known(step, z).simulate(z, record.u, record.dt)
             out.append(z)
         return tuple(out)
+
+    def _known(self, step: Block | Wrapped, z: FloatArray) -> Block | Wrapped:
+        """Put in what a hysteresis gives for a signal of the scene's own, if wrapped.
+
+        What wraps it is tried in many ways, each of which would run it again.
+        """
+        if not isinstance(step, Wrapped) or z.flags.writeable:
+            return step
+        inner = step.inner
+        if isinstance(inner, Wrapped):
+            return Wrapped(cast(Wrapped, self._known(inner, z)), step.by)
+        key = id(z), inner
+        if key not in self._outputs:
+            self._outputs[key] = _Known(inner, z)
+        return Wrapped(self._outputs[key], step.by)
+
+    @cached_property
+    def _outputs(self) -> dict[tuple[int, Hysteresis], _Known]:
+        return {}
 
     @cached_property
     def hysteresis(self) -> int | None:
@@ -168,6 +187,29 @@ class Scene:
         """Largest rate of the signal before a block, in its unit a second."""
         pairs = zip(self.before[place], self.records, strict=True)
         return float(max(np.abs(np.diff(z)).max() / record.dt for z, record in pairs))
+
+
+class _Known:
+    """A hysteresis that keeps what it gave for one input."""
+
+    def __init__(self, inner: Hysteresis, v: FloatArray) -> None:
+        self.inner, self.v = inner, v
+        self.output: FloatArray | None = None
+
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Compute the output, or give it."""
+        if growth is not None or v is not self.v:
+            return self.inner.grow(v, u, dt, growth)
+        if self.output is None:
+            self.output = self.inner.grow(v, u, dt, None)
+            self.output.setflags(write=False)
+        return self.output
+
+    def check_growth(self) -> None:
+        """Refuse as the hysteresis does."""
+        self.inner.check_growth()
 
 
 @lru_cache(maxsize=1024)

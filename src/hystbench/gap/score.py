@@ -34,6 +34,8 @@ ROUNDS = 4
 """Of reweighting: amplitudes change little after."""
 STILL = 1e-3
 """A round that changes the score by less is the last."""
+KNOWN = 1e-5
+"""Least over largest pivot of products that tell all columns apart."""
 FEW = 12
 """Columns of which none is looked for that is zero in a record."""
 
@@ -159,6 +161,17 @@ class Score:
         return Amplitudes(best[1] / scale, best[0])
 
     @cached_property
+    def _stacked(self) -> FloatArray | None:
+        """Directions by record, where as many samples count in each, in one piece."""
+        alike = len({len(part) for part in self.parts}) == 1
+        whole = all(isinstance(_place(part), slice) for part in self.parts)
+        return _stack(self.directions, self.parts) if alike and whole else None
+
+    @cached_property
+    def _spreads(self) -> FloatArray:
+        return np.stack(self._spread)
+
+    @cached_property
     def _rows(self) -> tuple[FloatArray, ...]:
         """Rows of the directions that count, by record."""
         return tuple(self.directions[_place(part)] for part in self.parts)
@@ -185,13 +198,24 @@ class Score:
         ``C'C - A'Q'C - C'Q A + A'Q'Q A``. Columns that are zero in a record, as those
         of a signal that each record has of its own, cost nothing there.
         """
+        k, d = table.shape[1], self.directions.shape[1]
+        if self._stacked is not None and k <= FEW:
+            rows = _stack(table, self.parts)
+            turned = rows.transpose(0, 2, 1)
+            across = turned @ self._stacked
+            whole = self.used is None
+            inside = across.sum(axis=0) if whole else table.T @ self.directions
+            mixed = across @ inside.T
+            grams = turned @ rows + inside @ self._spreads @ inside.T
+            grams -= mixed
+            grams -= mixed.transpose(0, 2, 1)
+            return grams, inside @ inside.T
         pieces = []
         for part, directions in zip(self.parts, self._rows, strict=True):
             rows = table[_place(part)]
             there = np.flatnonzero(rows.any(axis=0)) if rows.shape[1] > FEW else None
             own = rows if there is None else rows[:, there]
             pieces.append((there, own.T @ own, directions.T @ own))
-        k, d = table.shape[1], self.directions.shape[1]
         if self.used is None:
             inside = np.zeros((d, k))
             for there, _, across in pieces:
@@ -217,6 +241,14 @@ class Score:
         return outside + float(inside) + PARAMETER * freedom
 
 
+def _stack(table: FloatArray, parts: Sequence[NDArray[np.intp]]) -> FloatArray:
+    """Give a table's rows by record, which have as many each: shape (parts, n, k)."""
+    n, k = len(parts[0]), table.shape[1]
+    if n * len(parts) == len(table):
+        return table.reshape(len(parts), n, k)
+    return np.stack([table[_place(part)] for part in parts])
+
+
 def _place(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:
     """Give a view's slice where samples stand in one piece, as they mostly do."""
     whole = part[-1] - part[0] + 1 == len(part)
@@ -231,13 +263,23 @@ def _solve(
     for _ in range(len(vector) + 1):
         beta: FloatArray = np.zeros(len(vector))
         if active.all():
-            beta[:] = np.linalg.lstsq(matrix, vector, rcond=1e-13)[0]
+            beta[:] = _solution(matrix, vector)
         else:
             keep = np.flatnonzero(active)
-            part = matrix[np.ix_(keep, keep)]
-            beta[keep] = np.linalg.lstsq(part, vector[keep], rcond=1e-13)[0]
+            beta[keep] = _solution(matrix[np.ix_(keep, keep)], vector[keep])
         negative = [k for k in positive if active[k] and beta[k] < 0]
         if not negative:
             return beta
         active[min(negative, key=lambda k: beta[k])] = False
     return beta
+
+
+def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Solve a symmetric system; directions that it hardly knows stay at zero."""
+    try:
+        pivots = np.linalg.cholesky(matrix).diagonal()
+    except np.linalg.LinAlgError:
+        pivots = np.zeros(len(vector))
+    if (pivots > KNOWN * pivots.max(initial=0.0)).all():  # elimination is quicker
+        return np.asarray(np.linalg.solve(matrix, vector), dtype=np.float64)
+    return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -29,11 +30,15 @@ SLIGHT = 3.0
 
 MANY = 15
 """Points of a grid for each of which one more is looked at on all records."""
+SHORT = 6
+"""An axis of so few points is looked at whole: they need not be neighbours."""
 GLANCE = 4
 """Records of which half is enough to choose a point of a grid."""
 
 Point = tuple[float, ...]
 """Values of the searched parameters."""
+Place = tuple[int, ...]
+"""Their numbers on the axes of a grid."""
 
 
 @dataclass(frozen=True)
@@ -211,15 +216,22 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     Declined
         If the blocks refuse every point of the grid: with what the last one said.
     """
-    axes = attempt.variant.grids.values()
+    axes = [axis.tolist() for axis in attempt.variant.grids.values()]
     look = attempt if glance is None or not axes else glance
     trials: list[tuple[float, Point]] = []
     refused: InputError | None = None
-    for point in itertools.product(*(axis.tolist() for axis in axes)):
+
+    def scored(place: Place) -> float:
+        nonlocal refused
+        point = tuple(axis[k] for axis, k in zip(axes, place, strict=True))
         try:
-            trials.append((look.at(tuple(point)).score, point))
+            trials.append((look.at(point).score, point))
         except InputError as error:
             refused = error  # values that the block itself refuses are no candidates
+            return np.inf
+        return trials[-1][0]
+
+    _walk([len(axis) for axis in axes], scored)
     found = []
     for _, point in sorted(trials)[: 1 + len(trials) // MANY]:
         try:
@@ -229,6 +241,24 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     if not found:
         raise Declined(str(refused)) from refused
     return min(found, key=lambda trial: trial.score)
+
+
+def _walk(sizes: Sequence[int], scored: Callable[[Place], float]) -> None:
+    """Score every other point of a grid, then what is around the best, as it moves."""
+    axes = [
+        sorted({*range(0, n, 2), n - 1}) if n > SHORT else list(range(n)) for n in sizes
+    ]
+    known = {place: scored(place) for place in itertools.product(*axes)}
+    best: Place | None = None
+    while best != (least := min(known, key=lambda place: known[place])):
+        best = least
+        around = [
+            range(max(k - 1, 0), min(k + 2, n))
+            for k, n in zip(best, sizes, strict=True)
+        ]
+        for place in itertools.product(*around):
+            if place not in known:
+                known[place] = scored(place)
 
 
 @lru_cache(maxsize=1)

@@ -5,9 +5,6 @@ from __future__ import annotations
 PAYS = 40.0
 """By how much an effect must lower the score to be named."""
 
-PAYS_HELD_BACK = 20.0
-"""The same on records that did not fit it, where no parameter is charged."""
-
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
 

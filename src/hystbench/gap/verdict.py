@@ -255,8 +255,10 @@ def _box_words(explained: float | None, what: str) -> str:
 
 
 def _beyond(model: State, score: Score) -> float:
-    columns = np.hstack([model.beside_columns, score.directions])
-    residual = model.residual
-    rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
+    residual, beside = model.residual, model.beside_columns
+    rest, _ = score.split(residual)
+    if beside.shape[1]:
+        columns = np.hstack([beside, score.directions])
+        rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
     squares = [float(np.mean(rest[part] ** 2)) for part in model.sample.slices]
     return float(np.mean(squares)) / score.floor - 1.0

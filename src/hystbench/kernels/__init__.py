@@ -29,6 +29,7 @@ _SIZE, _REAL, _ARRAY = ctypes.c_ssize_t, ctypes.c_double, ctypes.c_void_p
 _SIGNATURES: dict[str, tuple[Any, str]] = {
     # i: a size, f: a number, a: an array
     "hb_largest": (None, "iaa"),
+    "hb_envelope": (None, "iffffaa"),
     "hb_follow_direction": (None, "iaaa"),
     "hb_play": (None, "iiaaaaa"),
     "hb_prandtl_ishlinskii": (_SIZE, "iiaaaaaa"),

@@ -1,0 +1,134 @@
+"""Cross-validation of an effect, beside a plain one and where folds must disagree."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import optimize
+
+from hystbench.gap import score as scores
+from hystbench.gap.change import with_effect
+from hystbench.gap.effects import effects
+from hystbench.gap.fit import refit
+from hystbench.gap.folds import make_folds
+from hystbench.gap.held_back import cross_validated, gain_held_back
+from hystbench.gap.rank import make_score, rank
+from hystbench.gap.state import Free
+from hystbench.gap.thresholds import PAYS
+from tests.gap.made import multisine, record, steady
+from tests.gap.small import block, plain_score, state_of
+
+NOISE = 0.05
+SPREAD = [1.09, 1.11, 1.1, 1.12, 1.08, 1.1]
+UNSURE = [1.02, 1.06, 0.99, 1.05, 0.99, 1.07]
+
+
+def lines(count, seed=0, length=1500):
+    """Records of the same kind of input: sines of random phases."""
+    return [
+        steady(
+            multisine(seed + k, highest_hz=60.0, lines=12, count=length), count=length
+        )
+        for k in range(count)
+    ]
+
+
+def measured(inputs, gains, noise=NOISE, bend=0.0):
+    rng = np.random.default_rng(5)
+    return tuple(
+        record(
+            u, g * u + bend * u**2 + noise * rng.standard_normal(len(u)), name=f"r{k}"
+        )
+        for k, (u, g) in enumerate(zip(inputs, gains, strict=True))
+    )
+
+
+def with_gain(state, value):
+    """A model with a gain behind it, free: one number, linear."""
+    gain = block("gain", value=value)
+    return replace(
+        state, chain=(*state.chain, gain), free=(*state.free, Free(1, "value"))
+    )
+
+
+@pytest.mark.parametrize("gains", [[1.1] * 6, SPREAD])
+def test_the_gain_on_held_back_records_is_that_of_a_plain_cross_validation(gains):
+    """Every record is judged by the gain that scores least on the other folds'."""
+    given = measured(lines(6), gains)
+    before = state_of((block("gain", value=1.0),), given)
+    floor = (NOISE / 2) ** 2  # below the noise: the terms are smooth
+    score = plain_score(before, floor)
+    after, _ = refit(with_gain(before, 1.0), score)
+    weight = max(scores.RECORD_WEIGHT, scores.LEAST_WEIGHT / 6)
+    pairs = [
+        (one.u[at], one.y[at])
+        for one, at in zip(given, before.sample.positions, strict=True)
+    ]
+
+    def terms(gain, which):
+        left = [np.mean((y - gain * u) ** 2) for u, y in (pairs[k] for k in which)]
+        return weight * float(np.sum(np.log(left)))
+
+    wanted = 0.0
+    for fold in make_folds(before.records):
+        held = [k for k, mask in enumerate(fold.validation) if mask.any()]
+        others = [k for k in range(6) if k not in held]
+        best = optimize.minimize_scalar(
+            lambda gain, others=others: terms(gain, others), bounds=(0.5, 2.0)
+        ).x
+        wanted += terms(1.0, held) - terms(best, held)
+    assert gain_held_back(before, after, score) == pytest.approx(wanted, rel=2e-3)
+
+
+def test_what_the_records_do_not_agree_on_gains_less_on_the_others():
+    given = measured(lines(6), UNSURE)
+    before = state_of((block("gain", value=1.0),), given)
+    score = plain_score(before, NOISE**2)
+    after, value = refit(with_gain(before, 1.0), score)
+    gain = score.of(before.residual) - value
+    assert gain > 5.0
+    found, held_back = cross_validated(before, after, score, gain)
+    assert held_back < gain / 2
+    assert found == pytest.approx(held_back)
+
+
+def test_folds_lower_a_gain_and_never_raise_it():
+    given = measured(lines(6), [1.1] * 6)
+    before = state_of((block("gain", value=1.0),), given)
+    score = plain_score(before, NOISE**2)
+    after, _ = refit(with_gain(before, 1.0), score)
+    found, held_back = cross_validated(before, after, score, 1.0)
+    assert held_back > 1.0
+    assert found == 1.0
+
+
+def test_parameters_are_charged_on_folds_too():
+    given = measured(lines(6), [1.1] * 6)
+    before = state_of((block("gain", value=1.0),), given)
+    score = plain_score(before, NOISE**2)
+    variant = next(
+        x
+        for x in effects()["calibration-error"].variants(before.scene)
+        if x.form == "gain"
+    )
+    after, _ = refit(with_effect(before, variant, {"gain": 1.1}), score)
+    found, held_back = cross_validated(before, after, score, np.inf)
+    assert variant.freedom > 0
+    assert found == pytest.approx(held_back - scores.PARAMETER * variant.freedom)
+
+
+def test_finalists_are_ranked_by_records_held_back():
+    given = measured(lines(6), [1.0] * 6, bend=0.03)
+    before = state_of((block("gain", value=1.0),), given)
+    score = make_score(before, NOISE)
+    ranking = rank(before, score)
+    judged = [item for item in ranking if item.held_back is not None]
+    assert len(judged) > 1
+    assert judged[0] is ranking[0]
+    for item in judged:
+        gain = gain_held_back(before, item.state, score)
+        charge = scores.PARAMETER * item.state.freedom
+        assert item.held_back == pytest.approx(gain)
+        assert item.gain <= gain - charge + 1e-9
+    rest = [item for item in ranking if item.state is not None and item not in judged]
+    assert all(item.gain < PAYS for item in rest)
