@@ -1,6 +1,7 @@
 """The block ``gpi`` against a plain loop over Eqs. 3-6 and 9."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -42,6 +43,24 @@ def test_it_is_the_plain_loop(samples, operators):
         rtol=1e-12,
         atol=1e-12,
     )
+
+
+@pytest.mark.parametrize("start", ["rest", "settled"])
+def test_its_operators_add_up_to_it(start):
+    block = GeneralizedPrandtlIshlinskii(
+        envelope=ENVELOPE,
+        thresholds=(0.0, 0.1, 0.25),
+        weights=(1.0, 2.0, -1.0),
+        start=start,
+    )
+    v = 0.6 * np.sin(np.arange(300) / 20) * np.linspace(0.2, 1, 300)
+    outputs = block.operators(v)
+    assert outputs.shape == (300, 3)
+    for one, weight in zip(outputs.T, np.eye(3), strict=True):
+        alone = replace(block, weights=tuple(weight.tolist()))
+        np.testing.assert_allclose(one, alone.simulate(v, v, 1e-4), atol=1e-15)
+    total = outputs @ block.weights
+    np.testing.assert_allclose(total, block.simulate(v, v, 1e-4), atol=1e-13)
 
 
 @pytest.mark.parametrize("growth", [None, 1.5])

@@ -43,6 +43,7 @@ def test_curves_are_small_and_are_json():
         "spectrum",
         "over_input",
         "over_rate",
+        "over_plane",
         "slow",
         "records",
         "harmonics",

@@ -223,6 +223,12 @@ def curves():
             "mean": (0.1 * cells).tolist(),
             "rms": np.full(20, 0.2).tolist(),
         },
+        "over_plane": {
+            "input": [-1.0, 0.0, 1.0],
+            "rate": [-100.0, 0.0, 100.0],
+            "mean": [[0.1, -0.1], [None, 0.05]],
+            "share": 0.412,
+        },
         "slow": [
             {"record": name, "time": [0.5, 1.5, 2.5], "residual": [0.1, 0.15, 0.17]}
             for name in ("sine-010hz", "sine-070hz")
@@ -355,6 +361,11 @@ def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
     assert page.said.count("u does not reverse") == 1
     assert page.said.count("drive-lag") == 2  # a row of each round
     assert "ranked by the score on all fit records" in page.said
+    assert "judged anew on records held back from the fit" in page.said
+
+
+def test_how_much_of_the_gap_the_map_holds_is_said(page):
+    assert "these cells hold 41 % of the gap" in page.said
 
 
 def test_second_looks_are_told_in_words(page):
@@ -428,6 +439,7 @@ DRAWN = (
     "response",
     "over_input",
     "over_rate",
+    "over_plane",
     "loops",
     "coherence",
     "distortion",
@@ -436,7 +448,7 @@ DRAWN = (
 )
 
 
-@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate", *DRAWN[4:7]])
+@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate", *DRAWN[4:8]])
 def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
     folder = write_folder(tmp_path, small(), with_tables=False)
     there = {"units": curves()["units"], key: curves()[key]}
@@ -449,10 +461,11 @@ def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
 
 def test_what_the_records_cannot_show_is_said_with_its_reason(tmp_path):
     folder = write_folder(tmp_path, small(), with_tables=False)
-    none = dict.fromkeys(("distortion", "loops", "coherence"))
+    none = dict.fromkeys(("distortion", "loops", "coherence", "over_plane"))
     (folder / "curves.json").write_text(json.dumps(curves() | none))
     said = read(write_report(folder)).said
     assert "Not drawn: distortion, as no record repeats" in said
+    assert "Not drawn: the input and its rate together, as the input" in said
     assert "Not drawn: areas of loops, as the input never moves" in said
     assert "Not drawn: coherence, as records are too short" in said
 

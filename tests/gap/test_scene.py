@@ -1,10 +1,12 @@
 """A chain on records: what is kept and reused equals a simulation from scratch."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hystbench.blocks.band_limited import interpolate
-from hystbench.blocks.wrapping import WrappingBlock
+from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.gap.scene import Scene
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
@@ -68,6 +70,30 @@ def test_a_wrapping_block_changes_the_chain_from_the_hysteresis_on():
         changed = (*chain[:start], *blocks)
         same(scene.tail(start, blocks), from_scratch(changed))
         assert np.ptp(scene.tail(start, blocks)[1] - scene.output[1]) > 1e-3
+
+
+@pytest.mark.parametrize("form", ["growing-thresholds", "excess-field"])
+def test_what_wraps_a_hysteresis_is_tried_on_what_is_kept(form):
+    """Whatever wraps it first: the outputs kept for one are no other's."""
+    scene = Scene((hysteresis(), block("resonance", **MODE)), records())
+    for coefficient in (0.02, 0.3, 0.02):
+        around = block(
+            "rate-dependent-hysteresis",
+            coefficient=coefficient,
+            exponent=0.5,
+            form=form,
+        )
+        chain = (hysteresis(), around, block("resonance", **MODE))
+        same(scene.tail(0, chain), from_scratch(chain))
+        # Another hysteresis, and signals that are not the scene's own.
+        other = replace(hysteresis(), weights=(0.5, 0.1, 0.2, 0.3))
+        same(scene.tail(0, (other, around)), from_scratch((other, around)))
+        louder = tuple(1.5 * one.u for one in records())
+        found = scene.run((hysteresis(), around), louder)
+        step = Wrapped(hysteresis(), around)
+        pairs = zip(louder, records(), strict=True)
+        wanted = [step.simulate(u, one.u, one.dt) for u, one in pairs]
+        same(found, wanted)
 
 
 def test_a_second_wrapping_block_goes_around_the_first():

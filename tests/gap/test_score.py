@@ -40,6 +40,8 @@ def problem(seed, columns=2, directions=3, noise=0.05):
     """A residual that is columns, reshaping and noise of its own size a record."""
     rng = np.random.default_rng(seed)
     lengths = rng.integers(40, 120, size=rng.integers(1, 5))
+    if rng.random() < 0.5:
+        lengths[:] = lengths[0]  # records alike are reckoned with together
     n = int(lengths.sum())
     basis = np.linalg.qr(rng.standard_normal((n, directions)))[0]
     terms = rng.standard_normal((n, columns)) * 10.0 ** rng.uniform(-4, 4, columns)
@@ -101,6 +103,41 @@ def test_amplitudes_minimise_the_formula(seed, columns):
     )
     # Far below what tells two effects apart.
     assert found.score < best + 0.5
+
+
+@given(SEEDS, st.booleans())
+@settings(max_examples=40)
+def test_on_a_fold_amplitudes_are_judged_by_what_counts(seed, whole):
+    lengths, basis, terms, _, residual = problem(seed)
+    rng = np.random.default_rng(seed)
+    used = [rng.random(n) < 0.6 for n in lengths]
+    if whole:
+        used = [np.full(n, k != 1) for k, n in enumerate(lengths)]
+    floor = 1e-6
+    score = Score(sample_of(lengths), basis, floor, tuple(used))
+    found = score.amplitudes(residual, terms, 3.0)
+    left = residual - terms @ found.values
+    inside = basis.T @ left
+    rest = np.split(left - basis @ inside, np.cumsum(lengths)[:-1])
+    weight = max(scores.RECORD_WEIGHT, scores.LEAST_WEIGHT / len(lengths))
+    squares = [np.mean(r[u] ** 2) for r, u in zip(rest, used, strict=True) if u.any()]
+    value = weight * np.sum(np.log(np.maximum(squares, floor)))
+    value += 3 * np.log(max(inside @ inside / 3, floor)) + scores.PARAMETER * 3.0
+    assert found.score == pytest.approx(value, abs=1e-6)
+    for change in (0.99, 1.01):
+        worse = residual - terms @ (change * found.values)
+        assert score.of(worse, 3.0) > found.score - 0.5
+
+
+@given(SEEDS)
+@settings(max_examples=40)
+def test_columns_that_say_the_same_are_shared_out(seed):
+    lengths, basis, terms, _, residual = problem(seed)
+    score = Score(sample_of(lengths), basis, 1e-6)
+    once = score.amplitudes(residual, terms)
+    twice = score.amplitudes(residual, np.hstack([terms, terms[:, :1]]))
+    assert twice.score == pytest.approx(once.score, abs=0.01)
+    assert np.isfinite(twice.values).all()
 
 
 PRECISE = {"xatol": 1e-6, "fatol": 1e-6, "maxiter": 2000}

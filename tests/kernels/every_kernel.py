@@ -21,6 +21,7 @@ from hystbench.blocks.jiles_atherton import JilesAtherton  # noqa: E402
 from hystbench.blocks.preisach import Preisach  # noqa: E402
 from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
 from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E402
+from hystbench.envelope import Envelope  # noqa: E402
 from hystbench.filters import FILTERS, run_many  # noqa: E402
 
 DT = 1e-4
@@ -88,6 +89,8 @@ def models(x):
     growth = 1 + 0.1 * x
     a = 0.1 * np.random.default_rng(6).standard_normal((11, 11))
     o = operators
+    bent = Envelope(1.0, 2.0, 0.1, 0.2, 0.9, 1.5, -0.1, -0.2)
+    yield "envelope functions", (bent.left(x), bent.right(x))
     yield "gpo, Eq. 12", o.generalized_play(left, right, r, form="eq12", v=x)
     yield "gpi", o.generalized_prandtl_ishlinskii(left, right, r, w)
     rates = (0.03 * growth, 0.9 * growth)

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from hystbench import kernels
+from hystbench.envelope import Envelope
 from hystbench.errors import InputError
 from hystbench.operators import generalized_play, state_space
 
@@ -127,3 +128,34 @@ def test_a_read_only_array_is_taken():
     values = np.array([1.0, -3.0, 2.0])
     values.flags.writeable = False
     assert kernels.largest(values) == 3.0
+
+
+ANY = st.floats(-1e300, 1e300) | st.floats(-30, 30) | st.floats(-1e-3, 1e-3)
+
+
+@given(arrays(float, st.integers(1, 70), elements=ANY))
+def test_envelope_functions_are_hyperbolic_tangents(v):
+    bent = Envelope(1.0, 1.0, 0.0, 0.0, -3.0, 0.5, 0.25, 7.0)
+    np.testing.assert_allclose(bent.left(v), np.tanh(v), rtol=5e-16, atol=0)
+    wanted = -3 * np.tanh(0.5 * v + 0.25) + 7
+    np.testing.assert_allclose(bent.right(v), wanted, rtol=2e-15, atol=0)
+
+
+def test_envelope_functions_at_the_ends_of_the_numbers():
+    tanh = Envelope(1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0).left
+    v = [np.inf, -np.inf, 0.0, 5e-324, 2.0**-1060, 709.0, -1e308]
+    np.testing.assert_array_equal(tanh(v), np.tanh(v))
+    # Every place in a vector, not only the first or those behind the last whole one.
+    for place in range(11):
+        holed = np.where(np.arange(11) == place, np.nan, 0.5)
+        assert np.isnan(tanh(holed)).tolist() == np.isnan(holed).tolist()
+
+
+def test_envelope_functions_take_any_shape():
+    bent = Envelope(1.2, 0.4, 0.6, -0.7, 0.3, 1.2, 0.1, 0.0)
+    grid = np.linspace(-3, 3, 24).reshape(4, 6)
+    for v in (grid, grid.T, grid[:, ::2], grid[::-1], grid.astype(int), 0.3):
+        found = bent.left(v)
+        assert np.shape(found) == np.shape(v)
+        wanted = 1.2 * np.tanh(0.4 * np.asarray(v) + 0.6) - 0.7
+        np.testing.assert_allclose(found, wanted, rtol=1e-14)

@@ -157,8 +157,8 @@ RANK = _object(
         "taken": {"type": "boolean"},
         # Whether it was refitted with the whole model: only those can be a tie.
         "refitted": {"type": "boolean"},
-        # The gain on records held back from the fit, of the best of a round where it
-        # had to decide whether that one is taken.
+        # The gain on records held back from the fit, of each likely effect that pays
+        # on all fit records.
         "held_back": OPTIONAL,
     },
     form={"type": "string"},

@@ -16,6 +16,7 @@ from hystbench.gap.locate.coherence import coherence_curve, take_coherence
 from hystbench.gap.locate.distortion import KINDS, Distortion, Lines, take_distortion
 from hystbench.gap.locate.listed import IntArray, in_groups, listed
 from hystbench.gap.locate.loops import loop_curve, take_loops
+from hystbench.gap.locate.plane import over_plane
 from hystbench.gap.locate.record import record_shares
 from hystbench.gap.locate.samples import Samples, take_samples
 from hystbench.gap.locate.slow_time import block_means
@@ -58,6 +59,8 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
           ``rms`` (Y), ``floor`` (Y, one number).
         - ``over_rate``: residual by the input's rate: ``rate`` (U/s), ``mean`` (Y),
           ``rms`` (Y); cells of equally many samples.
+        - ``over_plane``: residual by both, or null where the input never moves; see
+          :func:`~hystbench.gap.locate.plane.over_plane`.
         - ``slow``: one mapping a record, in order: ``record`` (name), ``time`` (s),
           ``residual`` (Y, mean over a block of at least one main period), 25 points
           at most.
@@ -97,6 +100,7 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
         "spectrum": _spectrum(samples, spectra),
         "over_input": _over_input(samples, floor),
         "over_rate": _over_rate(samples),
+        "over_plane": over_plane(samples),
         "slow": [_slow(item, f) for item, f in _with_frequency(samples)],
         "records": _records(samples, floor),
         "harmonics": None if distortion is None else distortion.shares(),

@@ -8,6 +8,7 @@ from typing import Any
 
 from hystbench.figures.style import unit_text
 from hystbench.gap.locate import LEVEL
+from hystbench.gap.locate.view import percent
 from hystbench.gap.report import pictures, where, words
 from hystbench.gap.report.pictures import Picture, draw
 from hystbench.gap.report.read import Content
@@ -31,6 +32,7 @@ INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
 #: Why a curve is null.
 WHY = {
     "distortion": "distortion, as no record repeats with a gap above the noise",
+    "over_plane": "the input and its rate together, as the input never moves",
     "loops": "areas of loops, as the input never moves",
     "coherence": "coherence, as records are too short or the input never moves",
 }
@@ -246,6 +248,18 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 words="Residual over the input, by branch, and over the input's rate; "
                 "noise floor grey",
                 panels=(1, 2),
+            ),
+        ),
+        (
+            ("over_plane",),
+            lambda: draw(
+                where.plane,
+                curves["over_plane"],
+                units,
+                words="Mean residual over the input and its rate together: these cells "
+                f"hold {percent(curves['over_plane']['share'])} of the gap; "
+                "grey where there are few samples",
+                height=2.8,
             ),
         ),
         (

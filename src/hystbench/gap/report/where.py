@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 
 from hystbench.figures.style import (
@@ -165,6 +166,30 @@ def maps(
         panel.set_ylabel(f"residual ({made})")
         panel.set_title("by rate")
         panel.legend()
+
+
+def plane(axes: Sequence[Axes], curve: dict[str, Any], units: dict[str, str]) -> None:
+    """Draw the mean residual over the input and its rate; rows of equal height."""
+    (panel,) = axes
+    given, made = unit_text(units["input"]), unit_text(units["output"])
+    values = np.array([_numbers(row) for row in curve["mean"]])
+    most = float(np.nanmax(np.abs(values), initial=0.0)) or 1.0
+    rows = np.arange(len(curve["rate"]))
+    image = panel.pcolormesh(
+        curve["input"],
+        rows,
+        np.ma.masked_invalid(values),
+        cmap="RdBu_r",
+        norm=Normalize(-most, most),
+    )
+    panel.grid(visible=False)
+    panel.set_facecolor("0.85")  # cells without samples, which white would call right
+    panel.set_yticks(rows, [f"{rate:.3g}" for rate in curve["rate"]])
+    panel.set_xlabel(f"input ({given})")
+    panel.set_ylabel(f"rate of the input ({given}/s)")
+    bar = panel.figure.colorbar(image, ax=panel, pad=0.02)
+    bar.set_label(f"mean residual ({made})")
+    bar.outline.set_visible(False)
 
 
 def slow(axes: Sequence[Axes], paths: Sequence[dict[str, Any]], unit: str) -> None:
