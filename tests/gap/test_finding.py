@@ -17,7 +17,7 @@ from hystbench.gap.experiment import next_experiment
 from hystbench.gap.finding import _whole, decide, find
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, Look, Round
+from hystbench.gap.rounds import Candidate, Look, Round
 from hystbench.gap.separation import Pair
 from hystbench.gap.start import start_state
 from hystbench.gap.verdict import Left

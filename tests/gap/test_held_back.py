@@ -7,12 +7,11 @@ import pytest
 from scipy import optimize
 
 from hystbench.gap import score as scores
-from hystbench.gap.change import with_effect
-from hystbench.gap.effects import effects
-from hystbench.gap.fit import refit
+from hystbench.gap.fit import refit, score_of
 from hystbench.gap.folds import make_folds
-from hystbench.gap.held_back import cross_validated, gain_held_back
-from hystbench.gap.rank import make_score, rank
+from hystbench.gap.held_back import gain_held_back
+from hystbench.gap.rank import held_back, make_score, rank
+from hystbench.gap.rounds import Candidate
 from hystbench.gap.state import Free
 from hystbench.gap.thresholds import PAYS
 from tests.gap.made import multisine, record, steady
@@ -80,41 +79,38 @@ def test_the_gain_on_held_back_records_is_that_of_a_plain_cross_validation(gains
     assert gain_held_back(before, after, score) == pytest.approx(wanted, rel=2e-3)
 
 
-def test_what_the_records_do_not_agree_on_gains_less_on_the_others():
-    given = measured(lines(6), UNSURE)
+def candidate(gains):
+    """A model with a gain, fitted, as a finalist that is told to gain 50 in all."""
+    given = measured(lines(6), gains)
     before = state_of((block("gain", value=1.0),), given)
     score = plain_score(before, NOISE**2)
     after, value = refit(with_gain(before, 1.0), score)
-    gain = score.of(before.residual) - value
-    assert gain > 5.0
-    found, held_back = cross_validated(before, after, score, gain)
-    assert held_back < gain / 2
-    assert found == pytest.approx(held_back)
+    item = Candidate("any", "sensor", "", value, 50.0, after)
+    return item, before, score
+
+
+def test_what_the_records_do_not_agree_on_gains_less_on_the_others():
+    item, before, score = candidate(UNSURE)
+    assert score.of(before.residual) - item.score > 5.0
+    told = gain_held_back(before, item.state, score)
+    assert told < 0.0
+    judged = held_back(item, before, score)
+    assert judged.held_back == judged.gain == pytest.approx(told)
+    assert judged.score == pytest.approx(item.score + 50.0 - told)
 
 
 def test_folds_lower_a_gain_and_never_raise_it():
-    given = measured(lines(6), [1.1] * 6)
-    before = state_of((block("gain", value=1.0),), given)
-    score = plain_score(before, NOISE**2)
-    after, _ = refit(with_gain(before, 1.0), score)
-    found, held_back = cross_validated(before, after, score, 1.0)
-    assert held_back > 1.0
-    assert found == 1.0
+    item, before, score = candidate([1.1] * 6)
+    judged = held_back(item, before, score)
+    assert judged.held_back > 50.0
+    assert judged.gain == 50.0
+    assert judged.score == item.score
 
 
-def test_parameters_are_charged_on_folds_too():
-    given = measured(lines(6), [1.1] * 6)
-    before = state_of((block("gain", value=1.0),), given)
-    score = plain_score(before, NOISE**2)
-    variant = next(
-        x
-        for x in effects()["calibration-error"].variants(before.scene)
-        if x.form == "gain"
-    )
-    after, _ = refit(with_effect(before, variant, {"gain": 1.1}), score)
-    found, held_back = cross_validated(before, after, score, np.inf)
-    assert variant.freedom > 0
-    assert found == pytest.approx(held_back - scores.PARAMETER * variant.freedom)
+def test_what_does_not_pay_or_was_not_refitted_is_not_put_to_folds():
+    item, before, score = candidate([1.1] * 6)
+    for other in (replace(item, gain=PAYS - 0.1), replace(item, state=None)):
+        assert held_back(other, before, score) is other
 
 
 def test_finalists_are_ranked_by_records_held_back():
@@ -126,9 +122,10 @@ def test_finalists_are_ranked_by_records_held_back():
     assert len(judged) > 1
     assert judged[0] is ranking[0]
     for item in judged:
-        gain = gain_held_back(before, item.state, score)
-        charge = scores.PARAMETER * item.state.freedom
-        assert item.held_back == pytest.approx(gain)
-        assert item.gain <= gain - charge + 1e-9
+        told = gain_held_back(before, item.state, score)
+        assert item.held_back == pytest.approx(told)
+        on_all = score_of(before, score) - score_of(item.state, score)
+        assert item.gain == pytest.approx(min(on_all, told))
+        assert item.score + item.gain == pytest.approx(score_of(before, score))
     rest = [item for item in ranking if item.state is not None and item not in judged]
     assert all(item.gain < PAYS for item in rest)

@@ -16,7 +16,8 @@ from hystbench.gap import name as naming
 from hystbench.gap.effects import effects
 from hystbench.gap.finding import find
 from hystbench.gap.floor import Floor
-from hystbench.gap.rank import Candidate, make_score, rank
+from hystbench.gap.rank import make_score, rank
+from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State

@@ -6,7 +6,7 @@ import pytest
 
 from hystbench.gap.finding import find
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Round
+from hystbench.gap.rounds import Round
 from hystbench.gap.run import show
 from hystbench.gap.rungs import BASE, RETUNED, rungs
 from hystbench.gap.state import Added, Free

@@ -10,7 +10,8 @@ from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import refit
 from hystbench.gap.name import LITTLE, Named
-from hystbench.gap.rank import Round, make_score
+from hystbench.gap.rank import make_score
+from hystbench.gap.rounds import Round
 from hystbench.gap.say import silent
 from hystbench.gap.taken_out import TakenOut, needless, unknown, without_what_goes
 from hystbench.gap.thresholds import FURTHER, MOST_OF_IT, PAYS, SHAPE

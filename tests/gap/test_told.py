@@ -15,7 +15,7 @@ from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.finding import find
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, Look, Round, in_order
+from hystbench.gap.rounds import Candidate, Look, Round, in_order
 from hystbench.gap.schema import RANK
 from hystbench.gap.start import start_state
 from hystbench.gap.state import Added

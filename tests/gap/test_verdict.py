@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.rank import Candidate, near
+from hystbench.gap.rounds import Candidate, near
 from hystbench.gap.thresholds import TIE
 from hystbench.gap.verdict import (
     ABOVE,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from hystbench.gap.fit import refit
 from hystbench.gap.folds import make_folds
-from hystbench.gap.score import PARAMETER, Score
+from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.record import FloatArray
 
@@ -59,27 +59,6 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
         outside, within = _terms(fitted, score, fold.held)
         gain += float(np.sum(fold.outside - outside)) + (inside - within) / len(folds)
     return gain
-
-
-def cross_validated(
-    before: State, after: State, score: Score, gain: float
-) -> tuple[float, float]:
-    """Give an effect's gain as records held back tell it, and what it gains there.
-
-    The first is less the charge for its parameters, as ``gain`` is, and never more than
-    that: a fold that fits better than all records together shows no merit.
-
-    Parameters
-    ----------
-    before, after : State
-        Models without and with the effect, on the same records.
-    score : Score
-    gain : float
-        In the score of all records.
-    """
-    held_back = gain_held_back(before, after, score)
-    charge = PARAMETER * (after.freedom - before.freedom)
-    return min(gain, held_back - charge), held_back
 
 
 @lru_cache(maxsize=2)

@@ -16,7 +16,7 @@ from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
 from hystbench.gap.name import Progress
-from hystbench.gap.rank import Candidate, Look, Round, Tested
+from hystbench.gap.rounds import Candidate, Look, Round, Tested
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Added, Free, State

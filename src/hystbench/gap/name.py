@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hystbench.gap.fit import finished
-from hystbench.gap.rank import Candidate, Round, make_score, rank, reasons
+from hystbench.gap.rank import make_score, rank
 from hystbench.gap.reconsider import reconsidered
+from hystbench.gap.rounds import Candidate, Round, reasons
 from hystbench.gap.say import Say, silent
 from hystbench.gap.state import State
 from hystbench.gap.steps import above_floor

@@ -1,10 +1,9 @@
-"""One round: every effect beside a model, tried and ranked."""
+"""Every effect beside a model, tried and ranked."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,8 +12,9 @@ from hystbench.gap.change import at_end
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fit import score_of
-from hystbench.gap.held_back import cross_validated
+from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.reshape import orthonormal
+from hystbench.gap.rounds import Candidate, Tested, in_order
 from hystbench.gap.score import Score
 from hystbench.gap.search import Trial
 from hystbench.gap.state import State
@@ -25,128 +25,9 @@ from hystbench.gap.thresholds import (
     PAYS,
     SHAPE,
     STILL,
-    TIE,
     WORSE,
 )
 from hystbench.gap.work import IN_PROCESS, Tried, Work
-
-
-class Tested(NamedTuple):
-    """A variant of an effect: where and how it was tried, and its score."""
-
-    place: str
-    form: str
-    position: int | None
-    """Of its first block in the chain; None for a signal beside it."""
-    score: float
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """An effect as it did in one round.
-
-    Parameters
-    ----------
-    effect, place, form : str
-    score : float
-        Of the model with it: of a finalist that pays as records held back tell it, of
-        the others on all records.
-    gain : float
-        By how much it lowers the score.
-    state : State, optional
-        With the effect, jointly refitted; finalists have it.
-    declined : str
-        Why it could not be judged, if so.
-    held_back : float, optional
-        What a finalist that pays gains on records held back, without any charge.
-    variants : tuple of Tested
-        Every place and form of it that could be scored, best first.
-    """
-
-    effect: str
-    place: str
-    form: str = ""
-    score: float = np.inf
-    gain: float = 0.0
-    state: State | None = None
-    declined: str = ""
-    held_back: float | None = None
-    variants: tuple[Tested, ...] = ()
-
-
-@dataclass(frozen=True)
-class Look:
-    """A second look: an effect and its rivals in its place, now that others are there.
-
-    Parameters
-    ----------
-    instead_of : str
-        The effect in whose place they were tried.
-    beside : tuple of str
-        The other effects, which stayed.
-    ranking : tuple of Candidate
-        Best first.
-    taken : str, optional
-        The effect that has the place by this ranking. None where the one that was
-        there could not be judged again: it stays by the ranking that took it before.
-    """
-
-    instead_of: str
-    beside: tuple[str, ...]
-    ranking: tuple[Candidate, ...]
-    taken: str | None
-
-
-@dataclass(frozen=True)
-class Round:
-    """One round: the model before, every effect beside it, what was added.
-
-    Parameters
-    ----------
-    before : State
-    score : float
-        Of the model before.
-    ranking : tuple of Candidate
-        Best first.
-    taken : bool
-        Whether the first of the ranking was added.
-    looks : tuple of Look
-        At the effects that were there when it was, in their order.
-    """
-
-    before: State
-    score: float
-    ranking: tuple[Candidate, ...]
-    taken: bool
-    looks: tuple[Look, ...] = ()
-
-
-def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:
-    """Give the last ranking by which each effect was taken, or kept.
-
-    What scores better than a wrong shape that goes first is no rival of it: the shape
-    is needed beside it.
-    """
-    found: dict[str, tuple[Candidate, ...]] = {}
-    for one in rounds:
-        first = one.ranking[0]
-        if one.taken and first.effect == SHAPE:
-            found[SHAPE] = tuple(x for x in one.ranking if x.score >= first.score)
-        elif one.taken:
-            found[first.effect] = one.ranking
-        found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
-    return found
-
-
-def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
-    """Give the effects that score within the tie of one that was added."""
-    return tuple(
-        item.effect
-        for item in ranking
-        if item.effect != first.effect
-        and item.state is not None
-        and item.score < first.score + TIE
-    )
 
 
 def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
@@ -231,11 +112,6 @@ def rank(
     return (*in_order(candidates), *declined)
 
 
-def in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Put finalists first, and what scores least first among them."""
-    return sorted(candidates, key=lambda item: (item.state is None, item.score))
-
-
 def _tested(trial: Trial) -> Tested:
     variant = trial.variant
     position = variant.start + variant.positions[0] if variant.positions else None
@@ -282,9 +158,13 @@ def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:
 
 
 def held_back(item: Candidate, before: State, score: Score) -> Candidate:
-    """Judge a finalist that pays on records that did not fit it."""
+    """Judge a finalist that pays on records that did not fit it.
+
+    Freedom by itself gains nothing there, so it is not charged a second time. A fold
+    that fits better than all records together shows no merit.
+    """
     if item.state is None or item.gain < PAYS:
         return item
-    gain, held = cross_validated(before, item.state, score, item.gain)
-    worse = item.score + item.gain - gain
-    return replace(item, score=worse, gain=gain, held_back=held)
+    held = gain_held_back(before, item.state, score)
+    lost = max(item.gain - held, 0.0)
+    return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)

@@ -8,15 +8,8 @@ from dataclasses import replace
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import finished, score_of
-from hystbench.gap.rank import (
-    Candidate,
-    Look,
-    Round,
-    held_back,
-    in_order,
-    make_score,
-    rank,
-)
+from hystbench.gap.rank import held_back, make_score, rank
+from hystbench.gap.rounds import Candidate, Look, Round, in_order
 from hystbench.gap.say import Say
 from hystbench.gap.score import Score
 from hystbench.gap.state import Added, State

@@ -30,8 +30,6 @@ SLIGHT = 3.0
 
 MANY = 15
 """Points of a grid for each of which one more is looked at on all records."""
-SHORT = 6
-"""An axis of so few points is looked at whole: they need not be neighbours."""
 GLANCE = 4
 """Records of which half is enough to choose a point of a grid."""
 
@@ -244,11 +242,13 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
 
 
 def _walk(sizes: Sequence[int], scored: Callable[[Place], float]) -> None:
-    """Score every other point of a grid, then what is around the best, as it moves."""
-    axes = [
-        sorted({*range(0, n, 2), n - 1}) if n > SHORT else list(range(n)) for n in sizes
-    ]
-    known = {place: scored(place) for place in itertools.product(*axes)}
+    """Score a grid's first axis whole, then what is around the best, as it moves.
+
+    The first axis is that of a limit or a frequency, whose valley may be narrow.
+    """
+    rest = [(n // 2,) for n in sizes[1:]]
+    first = itertools.product(*(range(n) for n in sizes[:1]), *rest)
+    known = {place: scored(place) for place in first}
     best: Place | None = None
     while best != (least := min(known, key=lambda place: known[place])):
         best = least

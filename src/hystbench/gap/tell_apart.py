@@ -10,7 +10,7 @@ from hystbench.gap.augmented import augmented
 from hystbench.gap.experiment import Experiment, new_in_every_record, next_experiment
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, near
+from hystbench.gap.rounds import Candidate, near
 from hystbench.gap.separation import Rival, pairs_of, parameter_tangents
 from hystbench.gap.state import State
 from hystbench.model import Model

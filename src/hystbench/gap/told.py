@@ -13,7 +13,7 @@ from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.beside_errors import Errors
 from hystbench.gap.effects import effects
 from hystbench.gap.name import Named
-from hystbench.gap.rank import Candidate, near
+from hystbench.gap.rounds import Candidate, near
 from hystbench.gap.state import Added, State, beside_count
 from hystbench.gap.units import unit_behind, written
 from hystbench.gap.verdict import Left, confidence

@@ -8,7 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from hystbench.gap.rank import Candidate, make_score
+from hystbench.gap.rank import make_score
+from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 
