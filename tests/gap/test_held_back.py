@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 from scipy import optimize
 
+from hystbench.gap import rank as ranked
 from hystbench.gap import score as scores
 from hystbench.gap.fit import refit, score_of
 from hystbench.gap.folds import make_folds
 from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.rank import held_back, make_score, rank
+from hystbench.gap.rank import make_score, on_folds, rank
 from hystbench.gap.rounds import Candidate
 from hystbench.gap.state import Free
 from hystbench.gap.thresholds import PAYS
+from hystbench.gap.work import Work
 from tests.gap.made import multisine, record, steady
 from tests.gap.small import block, plain_score, state_of
 
@@ -94,23 +96,55 @@ def test_what_the_records_do_not_agree_on_gains_less_on_the_others():
     assert score.of(before.residual) - item.score > 5.0
     told = gain_held_back(before, item.state, score)
     assert told < 0.0
-    judged = held_back(item, before, score)
+    judged = on_folds(item, before, score)
     assert judged.held_back == judged.gain == pytest.approx(told)
     assert judged.score == pytest.approx(item.score + 50.0 - told)
 
 
 def test_folds_lower_a_gain_and_never_raise_it():
     item, before, score = candidate([1.1] * 6)
-    judged = held_back(item, before, score)
+    judged = on_folds(item, before, score)
     assert judged.held_back > 50.0
     assert judged.gain == 50.0
     assert judged.score == item.score
 
 
+def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
+    """Folds may put one first that was too far behind to be simulated exactly."""
+    given = measured(lines(6), [1.0] * 6, bend=0.03)
+    before = state_of((block("gain", value=1.0),), given)
+    score = make_score(before, NOISE)
+    plain, finished = rank(before, score), []
+    last = [item for item in plain if item.held_back is not None][-1]
+
+    class Noted(Work):
+        def finished(self, state, score):
+            finished.append(state.added[-1].effect)
+            return super().finished(state, score)
+
+    def told(before, after, score):
+        return 1e3 if after.added[-1].effect == last.effect else -1e3
+
+    monkeypatch.setattr(ranked, "gain_held_back", told)
+    monkeypatch.setattr(ranked, "EXACT", 1)
+    ranking = rank(before, score, work=Noted())
+    assert last.effect != plain[0].effect
+    assert ranking[0].effect == last.effect
+    assert finished == [plain[0].effect, last.effect]
+
+
+def test_a_model_that_runs_away_on_a_fold_is_told_in_finite_numbers(monkeypatch):
+    item, before, score = candidate([1.1] * 6)
+    monkeypatch.setattr(ranked, "gain_held_back", lambda *_: -np.inf)
+    judged = on_folds(item, before, score)
+    assert np.isfinite([judged.gain, judged.score, judged.held_back]).all()
+    assert judged.gain < 0
+
+
 def test_what_does_not_pay_or_was_not_refitted_is_not_put_to_folds():
     item, before, score = candidate([1.1] * 6)
     for other in (replace(item, gain=PAYS - 0.1), replace(item, state=None)):
-        assert held_back(other, before, score) is other
+        assert on_folds(other, before, score) is other
 
 
 def test_finalists_are_ranked_by_records_held_back():

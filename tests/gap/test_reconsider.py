@@ -105,7 +105,9 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
     def looked(short, score, known):
         assert {item.name for item in known} >= {"drive-lag", "sensor-lag"}
         assert [item.effect for item in short.added] == ["asymmetry"]
-        best = Candidate("sensor-lag", "sensor", score=-1e6, gain=9.0, state=other)
+        best = Candidate(
+            "sensor-lag", "sensor", score=-1e6, gain=90.0, state=other, held_back=90.0
+        )
         old = Candidate("drive-lag", "drive", score=50.0, gain=1.0, state=state)
         return (best, old)
 
@@ -123,6 +125,22 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
         (1, "drive-lag", ["asymmetry"], "drive-lag", False),
     ]
     assert [row["score"] for row in rows] == [-100.0, -1e6, 50.0]
+
+
+def test_a_rival_that_does_not_pay_is_not_put_to_folds_and_takes_no_place(
+    two, monkeypatch
+):
+    state, rounds = two
+
+    def looked(short, score, known):
+        rival = Candidate("creep", "mechanics", score=-1e6, gain=39.0, state=state)
+        own = Candidate(known[0].name, "drive", score=50.0, gain=1.0, state=state)
+        return rival, own
+
+    monkeypatch.setattr(reconsider, "rank", looked)
+    after, looks = reconsidered(state, rounds, NOISE, silent)
+    assert after is state
+    assert not [look for look in looks if look.taken == "creep"]
 
 
 def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch):

@@ -117,10 +117,12 @@ def test_the_ranking_gives_every_round_and_keeps_its_order():
 def told_by_rows(content, effect):
     """Confidence and ties of an effect, from the numbers in gap.json and no other.
 
-    The last ranking that has it taken counts. A rival is e times less likely for every
-    four of score (2 % are kept for what is not in the vocabulary), and what is left of
-    the gap lowers all, down to none at 70 %. A tie is less than six apart. What scores
-    better than a wrong shape that was added is needed beside it, and no rival.
+    The last ranking that has it taken counts, and what was refitted there: what was not
+    may score better than records held back let the others. A rival is e times less
+    likely for every four of score (2 % are kept for what is not in the vocabulary), and
+    what is left of the gap lowers all, down to none at 70 %. A tie is less than six
+    apart. What scores better than a wrong shape that was added is needed beside it, and
+    no rival.
     """
     rows = content["ranking"]
     *_, (number, look) = (
@@ -129,13 +131,12 @@ def told_by_rows(content, effect):
         if row["taken"] and row["name"] == effect
     )
     here = [row for row in rows if (row["round"], row["look"]) == (number, look)]
-    scores = {row["name"]: row["score"] for row in here if "score" in row}
+    scores = {row["name"]: row["score"] for row in here if row["refitted"]}
     own = scores.pop(effect)
     if effect == "hysteresis-shape" and look == 0:
         scores = {name: x for name, x in scores.items() if x >= own}
     odds = sum(math.exp(min((own - other) / 4, 100)) for other in scores.values())
-    refitted = [row["name"] for row in here if row["refitted"]]
-    ties = [name for name, x in scores.items() if name in refitted and x < own + 6]
+    ties = [name for name, x in scores.items() if x < own + 6]
     trust = max(0.0, 1 - content["fit"]["left"] / 0.7)
     return 0.98 * trust / (1 + odds), ties
 

@@ -166,8 +166,10 @@ def test_a_better_black_box_never_makes_a_name_hold(after, box, more):
 @given(st.lists(st.floats(0, 200), min_size=1, max_size=6), st.floats(0, 100))
 def test_confidence_is_a_probability_that_rivals_and_rest_take_from(gaps, after):
     first = Candidate("creep", "mechanics", score=-500.0)
+    state = state_of((block("gain", value=12.0),))
     others = [
-        Candidate(f"other {k}", "drive", score=-500.0 + g) for k, g in enumerate(gaps)
+        Candidate(f"other {k}", "drive", score=-500.0 + g, state=state)
+        for k, g in enumerate(gaps)
     ]
     sure = confidence(first, [first, *others], left(after))
     assert 0 <= sure <= 1
@@ -175,10 +177,16 @@ def test_confidence_is_a_probability_that_rivals_and_rest_take_from(gaps, after)
     assert sure <= confidence(first, [first, *others], left(after / 2))
     refused = Candidate("slew-limit", "drive", declined="too short")
     assert confidence(first, [first, *others, refused], left(after)) == sure
+    # What was not put to folds has no score that the others' can be held against.
+    no_finalist = Candidate("backlash", "mechanics", score=-600.0)
+    assert confidence(first, [first, *others, no_finalist], left(after)) == sure
 
 
 def test_two_that_score_alike_share_the_confidence():
-    one, other = (Candidate(name, "drive", score=-10.0) for name in ("a", "b"))
+    state = state_of((block("gain", value=12.0),))
+    one, other = (
+        Candidate(name, "drive", score=-10.0, state=state) for name in ("a", "b")
+    )
     both = [confidence(item, [one, other], left(0.0)) for item in (one, other)]
     assert both[0] == both[1] <= 0.5
 

@@ -38,8 +38,9 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
     them are, with a guard gap. On each fold the model with the effect is refitted to
     the rest; what reshaping could do is fitted to all of it, with the effect and
     without alike. A signal beside the chain has amplitudes of its own in every record,
-    which no other record knows: they are solved for in each, and the charge for them is
-    all that speaks against it.
+    which no other record knows: they are solved for in each, so that folds tell little
+    of it. The model without the effect stays as it was fitted to all records, to its
+    advantage.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
     return gain
 
 
-@lru_cache(maxsize=2)
+@lru_cache(maxsize=1)
 def _folds(before: State, score: Score) -> tuple[tuple[_Fold, ...], float]:
     """Give the folds, and the term of the directions without the effect.
 

@@ -29,6 +29,9 @@ from hystbench.gap.thresholds import (
 )
 from hystbench.gap.work import IN_PROCESS, Tried, Work
 
+RUNS_AWAY = -1e6
+"""What a model gains, at worst, that has no bounded output on records held back."""
+
 
 def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
     """Give the score for a model: what could be wrong in its shape is spanned anew.
@@ -102,13 +105,24 @@ def rank(
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
     declined += [item for item in judged if item.declined]
     candidates = in_order(item for item in judged if not item.declined)
-    candidates = [
-        exactly(item, score, now, work)
-        if place < EXACT and item.score < candidates[0].score + NEAR
-        else item
-        for place, item in enumerate(candidates)
+    exact = [
+        item.effect
+        for item in candidates[:EXACT]
+        if item.score < candidates[0].score + NEAR
     ]
-    candidates = [held_back(item, state, score) for item in candidates]
+    candidates = [
+        on_folds(
+            exactly(item, score, now, work) if item.effect in exact else item,
+            state,
+            score,
+        )
+        for item in candidates
+    ]
+    # Folds may put one first that was not among those.
+    while (first := in_order(candidates)[0]).effect not in exact and first.held_back:
+        exact.append(first.effect)
+        again = on_folds(exactly(first, score, now, work), state, score)
+        candidates = [again if item is first else item for item in candidates]
     return (*in_order(candidates), *declined)
 
 
@@ -157,14 +171,14 @@ def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:
     return replace(item, state=after, score=value, gain=now - value)
 
 
-def held_back(item: Candidate, before: State, score: Score) -> Candidate:
+def on_folds(item: Candidate, before: State, score: Score) -> Candidate:
     """Judge a finalist that pays on records that did not fit it.
 
-    Freedom by itself gains nothing there, so it is not charged a second time. A fold
-    that fits better than all records together shows no merit.
+    What it gained on all records, charged for its freedom, it can only lose: a fold
+    that fits better than all of them together shows no merit.
     """
     if item.state is None or item.gain < PAYS:
         return item
-    held = gain_held_back(before, item.state, score)
+    held = max(gain_held_back(before, item.state, score), RUNS_AWAY)
     lost = max(item.gain - held, 0.0)
     return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import finished, score_of
-from hystbench.gap.rank import held_back, make_score, rank
+from hystbench.gap.rank import make_score, on_folds, rank
 from hystbench.gap.rounds import Candidate, Look, Round, in_order
 from hystbench.gap.say import Say
 from hystbench.gap.score import Score
@@ -61,7 +61,8 @@ def reconsidered(
         best = ranking[0]
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)
         least = now if own is None else min(now, own.score)
-        if best.state and best.effect != item.effect and best.score < least - SWAP:
+        rival = best.effect != item.effect and best.held_back is not None
+        if rival and best.state and best.score < least - SWAP:
             say(f"{item.effect} gives way to {best.effect}: {least - best.score:.1f}")
             looks.append(Look(item.effect, have, ranking, best.effect))
             return best.state, tuple(looks)
@@ -88,7 +89,7 @@ def _as_it_is(
     state, value = finished(state, score)
     gain = score_of(short, score) - value
     one = Candidate(item.effect, item.place, item.form, value, gain, state)
-    return held_back(one, short, score)
+    return on_folds(one, short, score)
 
 
 def _with(

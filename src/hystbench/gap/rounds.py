@@ -30,7 +30,7 @@ class Candidate:
     ----------
     effect, place, form : str
     score : float
-        Of the model with it, and what it does not gain on records held back on top.
+        Of the model with it; raised by what records held back take off its gain.
     gain : float
         By how much it lowers the score: of a finalist that pays the less of what all
         records tell and what records held back do.

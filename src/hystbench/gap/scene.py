@@ -90,19 +90,19 @@ class Scene:
         return tuple(out)
 
     def _known(self, step: Block | Wrapped, z: FloatArray) -> Block | Wrapped:
-        """Put in what a hysteresis gives for a signal of the scene's own, if wrapped.
+        """Put in what the chain's own hysteresis gives for a signal, if it is wrapped.
 
-        What wraps it is tried in many ways, each of which would run it again.
+        Another shape of it is tried in many ways, each of which would run it again.
         """
         if not isinstance(step, Wrapped) or z.flags.writeable:
             return step
         inner = step.inner
         if isinstance(inner, Wrapped):
             return Wrapped(cast(Wrapped, self._known(inner, z)), step.by)
-        key = id(z), inner
-        if key not in self._outputs:
-            self._outputs[key] = _Known(inner, z)
-        return Wrapped(self._outputs[key], step.by)
+        if all(inner is not cast(Hysteresis, block) for block in self.chain):
+            return step
+        known = self._outputs.setdefault((id(z), inner), _Known(inner, z))
+        return Wrapped(known, step.by)
 
     @cached_property
     def _outputs(self) -> dict[tuple[int, Hysteresis], _Known]:

@@ -244,7 +244,8 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
 def _walk(sizes: Sequence[int], scored: Callable[[Place], float]) -> None:
     """Score a grid's first axis whole, then what is around the best, as it moves.
 
-    The first axis is that of a limit or a frequency, whose valley may be narrow.
+    The first axis is that of a limit or a frequency, whose valley may be narrow. Where
+    no point has a score, all are tried.
     """
     rest = [(n // 2,) for n in sizes[1:]]
     first = itertools.product(*(range(n) for n in sizes[:1]), *rest)
@@ -259,6 +260,10 @@ def _walk(sizes: Sequence[int], scored: Callable[[Place], float]) -> None:
         for place in itertools.product(*around):
             if place not in known:
                 known[place] = scored(place)
+    if not np.isfinite(known[best]):
+        for place in itertools.product(*(range(n) for n in sizes)):
+            if place not in known:
+                scored(place)
 
 
 @lru_cache(maxsize=1)

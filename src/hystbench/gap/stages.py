@@ -3,9 +3,9 @@
 The jobs compute; the choice decides, by the code that decides in one process too. One
 process searches around the likely variants alone and refits the finalists alone; an
 effect's job cannot know how well the others do, so it searches around all its variants
-and refits the best. The choice then looks up what one process would have computed, and
-simulates the finalists exactly. So both ways name the same, and the jobs together do
-more work.
+and refits the best. The choice then looks up what one process would have computed,
+simulates the likeliest exactly and judges them on folds. So both ways name the same,
+and the jobs together do more work.
 """
 
 from __future__ import annotations

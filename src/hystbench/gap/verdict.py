@@ -235,13 +235,13 @@ def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
 def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> float:
     """Give the probability that an effect is the one, among those that were tried.
 
-    Each rival counts by how much worse it scores; what stays unexplained speaks
+    Each finalist counts by how much worse it scores; what stays unexplained speaks
     against any name.
     """
     odds = sum(
         float(np.exp(min((first.score - item.score) / SCALE, SURE)))
         for item in ranking
-        if item.effect != first.effect and np.isfinite(item.score)
+        if item.effect != first.effect and item.state is not None
     )
     trust = max(0.0, 1.0 - left.loose / DISTRUST)
     return (1.0 - DOUBT) * trust / (1.0 + odds)

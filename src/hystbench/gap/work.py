@@ -14,10 +14,10 @@ Tried = tuple[Attempt, Trial]
 
 
 class Work:
-    """The four steps that take the time; all are computed here and now.
+    """The four steps that jobs can take elsewhere; all are computed here and now.
 
-    Naming decides by what they give and by nothing else, so that jobs which compute
-    them elsewhere lead to the same names.
+    Naming decides by what they give, and by folds, which are judged where it decides:
+    so jobs lead to the same names.
     """
 
     def tried(

@@ -13,7 +13,9 @@ from hystbench.record import FloatArray
 COLUMNS = 18
 """Cells along the input, of one width."""
 ROWS = 6
-"""Cells along the rate's magnitude, of equally many samples; as many for each sign."""
+"""Cells along the rate's magnitude, for each sign, of about as many samples each.
+
+Fewer where the input rests."""
 FEWEST = 5
 """Samples of a cell that is shown: the mean of fewer is mostly noise."""
 

@@ -106,8 +106,7 @@ def _shares(gap: dict[str, Any]) -> Picture | None:
 
 def _ranking(gap: dict[str, Any]) -> Picture | None:
     first = [x for x in gap["ranking"] if x["round"] == 1 and not x["look"]]
-    ranked = [item for item in first if "gain" in item]
-    ranked = sorted(ranked, key=lambda item: -item["gain"])[: pictures.BARS]
+    ranked = [item for item in first if "gain" in item][: pictures.BARS]
     if not ranked:
         return None
     named = {(effect["name"], effect["place"]) for effect in gap["effects"]}
@@ -126,11 +125,8 @@ def _ranking(gap: dict[str, Any]) -> Picture | None:
 
 
 def _ranked(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Give the rows that have a score, round by round, the largest gain first."""
-    return sorted(
-        (item for item in rows if "declined" not in item),
-        key=lambda item: (item["round"], -item.get("gain", float("-inf"))),
-    )
+    """Give the rows that have a score, in the order of their ranking."""
+    return [item for item in rows if "declined" not in item]
 
 
 def _looks(gap: dict[str, Any]) -> list[dict[str, Any]]:
