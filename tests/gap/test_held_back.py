@@ -8,6 +8,7 @@ from scipy import optimize
 
 from hystbench.gap import rank as ranked
 from hystbench.gap import score as scores
+from hystbench.gap.effects import effects
 from hystbench.gap.fit import refit, score_of
 from hystbench.gap.folds import make_folds
 from hystbench.gap.held_back import gain_held_back
@@ -131,6 +132,14 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     assert last.effect != plain[0].effect
     assert ranking[0].effect == last.effect
     assert finished == [plain[0].effect, last.effect]
+
+
+def test_a_ranking_of_effects_that_all_decline_is_no_ranking_of_folds():
+    given = measured(lines(6), [1.0] * 6)
+    before = state_of((block("gain", value=1.0),), given)
+    score = make_score(before, NOISE)
+    (only,) = rank(before, score, [effects()["hysteresis-shape"]])
+    assert only.declined
 
 
 def test_a_model_that_runs_away_on_a_fold_is_told_in_finite_numbers(monkeypatch):

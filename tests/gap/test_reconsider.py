@@ -8,8 +8,7 @@ import pytest
 from hystbench.gap import reconsider
 from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import finished, score_of
-from hystbench.gap.held_back import gain_held_back
+from hystbench.gap.fit import finished
 from hystbench.gap.name import Named
 from hystbench.gap.rank import make_score
 from hystbench.gap.reconsider import reconsidered
@@ -44,7 +43,7 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     """Its own candidate may decline there: at an end of its range, for example."""
     state, rounds = two
 
-    def looked(short, score, known):
+    def looked(short, score, known, folds):
         (name,) = (item.name for item in known)
         if declined and name == "drive-lag":
             return (Candidate(name, "drive", declined="fits best at the end"),)
@@ -67,34 +66,11 @@ def test_a_second_look_counts_only_where_the_effect_itself_could_be_judged(
     assert by_effect["drive-lag"] is last
     # The model that is there scores better than what the second look came to.
     (own,) = by_effect["asymmetry"]
-    short = without_effect(state, 1)
-    score = make_score(short, NOISE)
-    kept, now = finished(state, score)
+    kept, now = finished(state, make_score(without_effect(state, 1), NOISE))
     assert own.state.chain == kept.chain
     assert own.score == pytest.approx(now)
     assert own.score < 0.0
-    assert own.score + own.gain == pytest.approx(score_of(short, score))
-
-
-def test_the_model_that_is_there_is_judged_on_records_held_back(two, monkeypatch):
-    state, rounds = two
-
-    def looked(short, score, known):
-        return tuple(
-            Candidate(x.name, x.place, score=0.0, gain=1.0, state=state) for x in known
-        )
-
-    monkeypatch.setattr(reconsider, "rank", looked)
-    _, looks = reconsidered(state, rounds, NOISE, silent)
-    own = next(x for x in looks[0].ranking if x.effect == "drive-lag")
-    short = without_effect(state, 0)
-    score = make_score(short, NOISE)
-    after, value = finished(state, score)
-    gain = score_of(short, score) - value
-    held = gain_held_back(short, after, score)
-    assert min(gain, held) > PAYS
-    assert own.held_back == pytest.approx(held)
-    assert own.gain == pytest.approx(min(gain, held))
+    assert own.score + own.gain == pytest.approx(1.0)
 
 
 def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch):
@@ -102,18 +78,18 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
     state, rounds = two
     other = rounds[0].before  # any model: the search is replaced
 
-    def looked(short, score, known):
+    def looked(short, score, known, folds):
         assert {item.name for item in known} >= {"drive-lag", "sensor-lag"}
         assert [item.effect for item in short.added] == ["asymmetry"]
-        best = Candidate(
-            "sensor-lag", "sensor", score=-1e6, gain=90.0, state=other, held_back=90.0
-        )
+        best = Candidate("sensor-lag", "sensor", score=-1e6, gain=9.0, state=other)
         old = Candidate("drive-lag", "drive", score=50.0, gain=1.0, state=state)
         return (best, old)
 
     monkeypatch.setattr(reconsider, "rank", looked)
+    monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS + 50.0)
     after, (look,) = reconsidered(state, rounds, NOISE, silent, every=True)
     assert after is other
+    assert look.ranking[0].held_back == PAYS + 50.0
     assert (look.instead_of, look.taken) == ("drive-lag", "sensor-lag")
     rows = ranking_rows(Named(after, (replace(rounds[0], looks=(look,)),)))
     assert [
@@ -127,20 +103,25 @@ def test_a_rival_that_takes_a_place_is_seen_with_what_it_scored(two, monkeypatch
     assert [row["score"] for row in rows] == [-100.0, -1e6, 50.0]
 
 
-def test_a_rival_that_does_not_pay_is_not_put_to_folds_and_takes_no_place(
+def test_a_rival_that_does_not_pay_on_records_held_back_takes_no_place(
     two, monkeypatch
 ):
     state, rounds = two
 
-    def looked(short, score, known):
-        rival = Candidate("creep", "mechanics", score=-1e6, gain=39.0, state=state)
-        own = Candidate(known[0].name, "drive", score=50.0, gain=1.0, state=state)
-        return rival, own
+    def looked(short, score, known, folds):
+        assert not folds
+        rival = Candidate("creep", "mechanics", score=-1e6, gain=900.0, state=state)
+        own = [Candidate(x.name, "", score=50.0, gain=1.0, state=state) for x in known]
+        return rival, *own
 
     monkeypatch.setattr(reconsider, "rank", looked)
+    monkeypatch.setattr(reconsider, "gain_held_back", lambda *_: PAYS - 1.0)
     after, looks = reconsidered(state, rounds, NOISE, silent)
     assert after is state
-    assert not [look for look in looks if look.taken == "creep"]
+    assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]
+    for look in looks:
+        told = {item.effect: item.held_back for item in look.ranking}
+        assert told["creep"] == PAYS - 1.0
 
 
 def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch):
@@ -148,15 +129,8 @@ def test_the_model_that_is_there_stands_where_its_score_puts_it(two, monkeypatch
     state, rounds = two
     scores = []
 
-    def as_is(short, score):
-        after, now = finished(state, score)
-        gain = score_of(short, score) - now
-        if gain < PAYS:
-            return now
-        return now + max(gain - gain_held_back(short, after, score), 0.0)
-
-    def looked(short, score, known):
-        now = as_is(short, score)
+    def looked(short, score, known, folds):
+        _, now = finished(state, score)
         scores.append(now)
         rival = Candidate("creep", "mechanics", score=now + 1, gain=2.0, state=state)
         return rival, *(
@@ -178,7 +152,7 @@ def test_what_an_effect_does_is_not_free_for_its_rivals(two, monkeypatch):
     state, rounds = two
     free = {}
 
-    def looked(short, score, known):
+    def looked(short, score, known, folds):
         (gone,) = {x.effect for x in state.added} - {x.effect for x in short.added}
         does = short.residual - state.residual
         rest, _ = score.split(does)
@@ -208,7 +182,7 @@ def test_another_form_of_an_effect_is_taken_where_it_does_better(
     state, rounds = two
     anew = replace(state, added=state.added)
 
-    def looked(short, score, known):
+    def looked(short, score, known, folds):
         (gone,) = {x.effect for x in state.added} - {x.effect for x in short.added}
         if gone == "asymmetry":
             return (Candidate(gone, "", "", score=0.0, gain=1.0, state=state),)
@@ -223,7 +197,6 @@ def test_another_form_of_an_effect_is_taken_where_it_does_better(
 
     monkeypatch.setattr(reconsider, "rank", looked)
     monkeypatch.setattr(reconsider, "finished", fitted)
-    monkeypatch.setattr(reconsider, "score_of", lambda short, score: 30.0)
     found, looks = reconsidered(state, rounds, NOISE, silent)
     assert found is (anew if form else state)
     assert [look.taken for look in looks] == ["drive-lag", "asymmetry"]

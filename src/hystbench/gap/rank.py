@@ -53,8 +53,19 @@ def rank(
     score: Score,
     known: Sequence[Effect] | None = None,
     work: Work = IN_PROCESS,
+    folds: bool = True,
 ) -> tuple[Candidate, ...]:
     """Try every effect beside a model, the likely ones to the end.
+
+    Parameters
+    ----------
+    state : State
+    score : Score
+    known : sequence of Effect, optional
+        All by default.
+    work : Work
+    folds : bool
+        Whether finalists that pay are judged anew on records held back.
 
     Returns
     -------
@@ -110,20 +121,20 @@ def rank(
         for item in candidates[:EXACT]
         if item.score < candidates[0].score + NEAR
     ]
-    candidates = [
-        on_folds(
-            exactly(item, score, now, work) if item.effect in exact else item,
-            state,
-            score,
-        )
+    candidates = in_order(
+        exactly(item, score, now, work) if item.effect in exact else item
         for item in candidates
-    ]
-    # Folds may put one first that was not among those.
-    while (first := in_order(candidates)[0]).effect not in exact and first.held_back:
+    )
+    if not folds:
+        return (*candidates, *declined)
+    candidates = in_order(on_folds(item, state, score) for item in candidates)
+    # Folds may put one first that was not simulated exactly.
+    while candidates and candidates[0].effect not in exact and candidates[0].held_back:
+        first = candidates.pop(0)
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now, work), state, score)
-        candidates = [again if item is first else item for item in candidates]
-    return (*in_order(candidates), *declined)
+        candidates = in_order([again, *candidates])
+    return (*candidates, *declined)
 
 
 def _tested(trial: Trial) -> Tested:

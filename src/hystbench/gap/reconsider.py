@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import finished, score_of
-from hystbench.gap.rank import make_score, on_folds, rank
+from hystbench.gap.fit import finished
+from hystbench.gap.held_back import gain_held_back
+from hystbench.gap.rank import make_score, rank
 from hystbench.gap.rounds import Candidate, Look, Round, in_order
 from hystbench.gap.say import Say
-from hystbench.gap.score import Score
-from hystbench.gap.state import Added, State
-from hystbench.gap.thresholds import CLOSE, SHAPE, SWAP
+from hystbench.gap.state import State
+from hystbench.gap.thresholds import CLOSE, PAYS, SHAPE, SWAP
 
 
 def reconsidered(
@@ -52,28 +52,29 @@ def reconsidered(
         short = without_effect(state, number)
         # Other forms of the effect itself would do for a rival what the rival does not.
         score = make_score(short, floor_rms)
-        as_is = _as_it_is(item, state, short, score)
-        now = as_is.score
+        as_is, now = finished(state, score)
         have = tuple(other.effect for other in short.added)
         names = set(effects()) if every else _rivals(item.effect, rounds)
         known = [effects()[name] for name in sorted(names - set(have))]
-        ranking = rank(short, score, known)
+        ranking = rank(short, score, known, folds=False)
         best = ranking[0]
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)
         least = now if own is None else min(now, own.score)
-        rival = best.effect != item.effect and best.held_back is not None
-        if rival and best.state and best.score < least - SWAP:
-            say(f"{item.effect} gives way to {best.effect}: {least - best.score:.1f}")
-            looks.append(Look(item.effect, have, ranking, best.effect))
-            return best.state, tuple(looks)
+        if best.state and best.effect != item.effect and best.score < least - SWAP:
+            held_back = gain_held_back(short, best.state, score)
+            ranking = (replace(best, held_back=held_back), *ranking[1:])
+            if held_back > PAYS:
+                say(f"{item.effect} gives way to {best.effect}")
+                looks.append(Look(item.effect, have, ranking, best.effect))
+                return best.state, tuple(looks)
         if own is None:
             looks.append(Look(item.effect, have, ranking, None))
             continue
         if better is None and own.state and own.score < now - SWAP:
-            anew = _as_it_is(own, own.state, short, score)
-            if anew.state and anew.score < now - SWAP:
-                better = len(looks), anew.state, _with(ranking, own, anew)
-        shown = _with(ranking, own, as_is)
+            anew, least = finished(own.state, score)
+            if least < now - SWAP:
+                better = len(looks), anew, _with(ranking, own, own.form, least, anew)
+        shown = _with(ranking, own, item.form, now, as_is)
         looks.append(Look(item.effect, have, shown, item.effect))
     if better is not None:
         place, state, ranking = better
@@ -82,21 +83,12 @@ def reconsidered(
     return state, tuple(looks)
 
 
-def _as_it_is(
-    item: Added | Candidate, state: State, short: State, score: Score
-) -> Candidate:
-    """Refit a model and judge the effect in it as its rivals are."""
-    state, value = finished(state, score)
-    gain = score_of(short, score) - value
-    one = Candidate(item.effect, item.place, item.form, value, gain, state)
-    return on_folds(one, short, score)
-
-
 def _with(
-    ranking: Sequence[Candidate], own: Candidate, one: Candidate
+    ranking: Sequence[Candidate], own: Candidate, form: str, score: float, state: State
 ) -> tuple[Candidate, ...]:
     """Give a ranking in which an effect stands as a model has it."""
-    shown = replace(one, variants=own.variants)
+    gain = own.gain + own.score - score
+    shown = replace(own, form=form, score=score, gain=gain, state=state)
     return tuple(in_order(shown if x is own else x for x in ranking))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -35,8 +34,6 @@ GLANCE = 4
 
 Point = tuple[float, ...]
 """Values of the searched parameters."""
-Place = tuple[int, ...]
-"""Their numbers on the axes of a grid."""
 
 
 @dataclass(frozen=True)
@@ -214,22 +211,15 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     Declined
         If the blocks refuse every point of the grid: with what the last one said.
     """
-    axes = [axis.tolist() for axis in attempt.variant.grids.values()]
+    axes = attempt.variant.grids.values()
     look = attempt if glance is None or not axes else glance
     trials: list[tuple[float, Point]] = []
     refused: InputError | None = None
-
-    def scored(place: Place) -> float:
-        nonlocal refused
-        point = tuple(axis[k] for axis, k in zip(axes, place, strict=True))
+    for point in itertools.product(*(axis.tolist() for axis in axes)):
         try:
-            trials.append((look.at(point).score, point))
+            trials.append((look.at(tuple(point)).score, point))
         except InputError as error:
             refused = error  # values that the block itself refuses are no candidates
-            return np.inf
-        return trials[-1][0]
-
-    _walk([len(axis) for axis in axes], scored)
     found = []
     for _, point in sorted(trials)[: 1 + len(trials) // MANY]:
         try:
@@ -239,31 +229,6 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     if not found:
         raise Declined(str(refused)) from refused
     return min(found, key=lambda trial: trial.score)
-
-
-def _walk(sizes: Sequence[int], scored: Callable[[Place], float]) -> None:
-    """Score a grid's first axis whole, then what is around the best, as it moves.
-
-    The first axis is that of a limit or a frequency, whose valley may be narrow. Where
-    no point has a score, all are tried.
-    """
-    rest = [(n // 2,) for n in sizes[1:]]
-    first = itertools.product(*(range(n) for n in sizes[:1]), *rest)
-    known = {place: scored(place) for place in first}
-    best: Place | None = None
-    while best != (least := min(known, key=lambda place: known[place])):
-        best = least
-        around = [
-            range(max(k - 1, 0), min(k + 2, n))
-            for k, n in zip(best, sizes, strict=True)
-        ]
-        for place in itertools.product(*around):
-            if place not in known:
-                known[place] = scored(place)
-    if not np.isfinite(known[best]):
-        for place in itertools.product(*(range(n) for n in sizes)):
-            if place not in known:
-                scored(place)
 
 
 @lru_cache(maxsize=1)
