@@ -82,9 +82,11 @@ def twin(settings):
     return load_model(settings.model_file)
 
 
-@pytest.fixture(scope="module")
-def named(settings, twin, tmp_path_factory):
-    """Effects named beside the slow loop's model, on a few of the example's records."""
+@pytest.fixture(scope="module", params=["a few of the records", "all records"])
+def named(request, settings, twin, tmp_path_factory):
+    """Effects named beside the slow loop's model, on the example's records."""
+    whole = request.param == "all records"
+    fit = settings.config["gap"]["twin"]["fit"] if whole else FIT
 
     def recorded(name):
         signal = make_signal(name, **settings.signal_job(name))
@@ -94,7 +96,7 @@ def named(settings, twin, tmp_path_factory):
     identified = identify_slow_loop(slow, settings.identification_job)
     folder = tmp_path_factory.mktemp("example")
     held_out = [recorded("sine-020hz")]
-    write_example(list(map(recorded, FIT)), held_out, identified.to_dict(), folder)
+    write_example(list(map(recorded, fit)), held_out, identified.to_dict(), folder)
     evidence = load_evidence(folder / "dataset", "fit")
     base, _ = load_base(str(folder / "base.yaml"), evidence)
     content = find(evidence.name, evidence.fit, base, evidence.hold).content
