@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy import optimize
 
+from hystbench.gap import held_back
 from hystbench.gap import rank as ranked
 from hystbench.gap import score as scores
 from hystbench.gap.effects import effects
@@ -45,11 +46,11 @@ def measured(inputs, gains, noise=NOISE, bend=0.0):
     )
 
 
-def with_gain(state, value):
-    """A model with a gain behind it, free: one number, linear."""
-    gain = block("gain", value=value)
+def with_gain(state, value, count=1):
+    """A model with a gain behind it, free: one number, linear; or with several."""
+    gains = (block("gain", value=value),) * count
     return replace(
-        state, chain=(*state.chain, gain), free=(*state.free, Free(1, "value"))
+        state, chain=(*state.chain, *gains), free=(*state.free, Free(1, "value"))
     )
 
 
@@ -142,9 +143,15 @@ def test_a_ranking_of_effects_that_all_decline_is_no_ranking_of_folds():
     assert only.declined
 
 
-def test_a_model_that_runs_away_on_a_fold_is_told_in_finite_numbers(monkeypatch):
+@pytest.mark.parametrize("gains", [2, 7, 10])
+def test_a_model_that_runs_away_on_a_fold_is_told_in_finite_numbers(monkeypatch, gains):
+    """Its output may be beyond all numbers, or its square alone."""
     item, before, score = candidate([1.1] * 6)
-    monkeypatch.setattr(ranked, "gain_held_back", lambda *_: -np.inf)
+
+    def run_away(*_):
+        return with_gain(before, 1e30, gains), np.inf
+
+    monkeypatch.setattr(held_back, "refit", run_away)
     judged = on_folds(item, before, score)
     assert np.isfinite([judged.gain, judged.score, judged.held_back]).all()
     assert judged.gain < 0

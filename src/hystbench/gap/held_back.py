@@ -18,6 +18,9 @@ from hystbench.record import FloatArray
 ROUNDS = 1
 """Of least squares on a fold: the fit to all records is near."""
 
+RUNS_AWAY = -1e6
+"""What a model gains, at worst, that has no bounded output on records held back."""
+
 Used = tuple[NDArray[np.bool_], ...]
 """Of each record's scored samples, those that count."""
 
@@ -57,9 +60,11 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
     gain = 0.0
     for fold in folds:
         fitted, _ = refit(after, fold.train, ROUNDS)
-        outside, within = _terms(fitted, score, fold.held)
+        with np.errstate(over="ignore", invalid="ignore"):  # of one that runs away
+            rest, within = _split(fitted, score)
+            outside = _terms(rest, score, fold.held)
         gain += float(np.sum(fold.outside - outside)) + (inside - within) / len(folds)
-    return gain
+    return max(RUNS_AWAY, gain)
 
 
 @lru_cache(maxsize=1)
@@ -68,7 +73,8 @@ def _folds(before: State, score: Score) -> tuple[tuple[_Fold, ...], float]:
 
     All effects of a round share them.
     """
-    found, inside = [], 0.0
+    rest, inside = _split(before, score)
+    found = []
     for fold in make_folds(before.records):
         train, held = (
             tuple(
@@ -77,21 +83,26 @@ def _folds(before: State, score: Score) -> tuple[tuple[_Fold, ...], float]:
             )
             for masks in (fold.train, fold.validation)
         )
-        outside, inside = _terms(before, score, held)
+        outside = _terms(rest, score, held)
         found.append(_Fold(replace(score, used=train), held, outside))
     return tuple(found), inside
 
 
-def _terms(model: State, score: Score, held: Used) -> tuple[FloatArray, float]:
-    """Terms of the score of held-back samples, by record, and of the directions."""
+def _split(model: State, score: Score) -> tuple[FloatArray, float]:
+    """Give what the directions leave of a residual, and their term of the score."""
     columns = model.beside_columns
     amplitudes = score.amplitudes(model.residual, columns).values
     rest, inside = score.split(model.residual - columns @ amplitudes)
+    d = max(len(inside), 1)
+    power = max(float(inside @ inside) / d, score.floor)
+    return rest, d * float(np.log(power))
+
+
+def _terms(rest: FloatArray, score: Score, held: Used) -> FloatArray:
+    """Give the terms of the score of held-back samples, by record."""
     terms = []
     for part, used in zip(score.sample.slices, held, strict=True):
         if used.any():
             square = max(float(np.mean(rest[part][used] ** 2)), score.floor)
             terms.append(score.weight * used.mean() * np.log(square))
-    d = max(len(inside), 1)
-    power = max(float(inside @ inside) / d, score.floor)
-    return np.array(terms), d * float(np.log(power))
+    return np.array(terms)

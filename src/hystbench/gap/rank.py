@@ -29,9 +29,6 @@ from hystbench.gap.thresholds import (
 )
 from hystbench.gap.work import IN_PROCESS, Tried, Work
 
-RUNS_AWAY = -1e6
-"""What a model gains, at worst, that has no bounded output on records held back."""
-
 
 def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
     """Give the score for a model: what could be wrong in its shape is spanned anew.
@@ -190,6 +187,6 @@ def on_folds(item: Candidate, before: State, score: Score) -> Candidate:
     """
     if item.state is None or item.gain < PAYS:
         return item
-    held = max(gain_held_back(before, item.state, score), RUNS_AWAY)
+    held = gain_held_back(before, item.state, score)
     lost = max(item.gain - held, 0.0)
     return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)

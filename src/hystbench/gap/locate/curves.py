@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
+from hystbench.gap.locate.cells import cell_of
 from hystbench.gap.locate.coherence import coherence_curve, take_coherence
 from hystbench.gap.locate.distortion import KINDS, Distortion, Lines, take_distortion
 from hystbench.gap.locate.listed import IntArray, in_groups, listed
@@ -173,7 +174,7 @@ def _over_input(samples: Samples, floor: Floor) -> dict[str, Any]:
     """Average the residual over cells of the input, branch by branch."""
     u = samples.input
     edges = np.linspace(float(u.min()), float(u.max()), CELLS + 1)
-    cell = np.clip(np.searchsorted(edges, u, side="right") - 1, 0, CELLS - 1)
+    cell = cell_of(edges, u)
     branches = {}
     for name, chosen in (
         ("rising", samples.direction > 0),

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.gap.locate.cells import cell_of
 from hystbench.gap.locate.listed import listed
 from hystbench.gap.locate.samples import Samples
 from hystbench.record import FloatArray
@@ -41,7 +42,7 @@ def over_plane(samples: Samples) -> dict[str, Any] | None:
         return None
     columns = np.linspace(float(u.min()), float(u.max()), COLUMNS + 1)
     count = len(rate) - 1
-    cell = _place(columns, u) * count + _place(rate, speed)
+    cell = cell_of(columns, u) * count + cell_of(rate, speed)
     held = np.bincount(cell, minlength=COLUMNS * count)
     total = np.bincount(cell, samples.residual, COLUMNS * count)
     enough = held >= FEWEST
@@ -62,8 +63,3 @@ def rate_edges(speed: FloatArray) -> FloatArray | None:
     found = np.unique(np.quantile(size, np.linspace(0, 1, ROWS + 1)[1:]))
     found = found[found > 0]
     return np.concatenate([-found[::-1], [0.0], found]) if len(found) else None
-
-
-def _place(edges: FloatArray, values: FloatArray) -> Any:
-    """Number the cell of each value; the last one holds its upper edge."""
-    return np.clip(np.searchsorted(edges, values, "right") - 1, 0, len(edges) - 2)
