@@ -153,7 +153,7 @@ def test_a_variant_that_a_job_refused_is_missing_and_no_other(tiny, staged):
     restorer = Restorer(evidence.fit, model)
     state = restorer.progress(progress[0]).state
     some = {"calibration-error": tried[0]["calibration-error"] | {"variants": kept[1:]}}
-    work = Recorded(state, some, restorer)
+    work = Recorded(some, restorer)
     score = make_score(state, progress[0]["floor"]["rms"])
     found, why = work.tried(effects()["calibration-error"], state, score)
     assert not why

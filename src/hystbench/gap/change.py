@@ -95,6 +95,12 @@ def without_effect(state: State, number: int) -> State:
     )
 
 
+def last_to(state: State, number: int) -> State:
+    """Give the effect added last the number of the one whose place it takes."""
+    *others, last = state.added
+    return replace(state, added=(*others[:number], last, *others[number:]))
+
+
 def removable(state: State, number: int) -> bool:
     """Tell whether an added effect can be taken out with the others left in.
 

@@ -10,6 +10,7 @@ from hystbench.gap.rank import make_score, rank
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.rounds import Candidate, Round, reasons
 from hystbench.gap.say import Say, silent
+from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.steps import above_floor
 from hystbench.gap.taken_out import TakenOut, is_most_of_it, without_what_goes
@@ -145,7 +146,11 @@ def advance(
     """Try every effect beside the model and add the one that pays, if any does."""
     floor, state = floor_rms**2, progress.state
     score = make_score(state, floor_rms)
-    if state.added and above_floor(state, score) < FURTHER:
+    closed = _is_closed(state, score)
+    if not closed:
+        state = work.ready(state, score)
+        closed = _is_closed(state, score)
+    if closed:
         say("nothing is left that an effect could gain")
         return replace(progress, closed=True)
     ranking = rank(state, score, work=work)
@@ -159,6 +164,7 @@ def advance(
         say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
     taken = _pays(first, state, floor, progress.gap)
     one = Round(state, first.score + first.gain, ranking, taken)
+    state = progress.state
     if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)
         state = first.state
@@ -167,6 +173,11 @@ def advance(
             state, looks = reconsidered(state, rounds, floor_rms, say)
             one = replace(one, looks=looks)
     return Progress(state, progress.gap, (*progress.rounds, one), deferred)
+
+
+def _is_closed(state: State, score: Score) -> bool:
+    """Tell whether the effects that a model has leave nothing to gain."""
+    return bool(state.added) and above_floor(state, score) < FURTHER
 
 
 def _shape_takes_more(

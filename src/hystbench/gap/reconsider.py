@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hystbench.gap.change import removable, without_effect
+from hystbench.gap.change import last_to, removable, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.fit import finished
 from hystbench.gap.held_back import gain_held_back
@@ -66,13 +66,14 @@ def reconsidered(
             if held_back > PAYS:
                 say(f"{item.effect} gives way to {best.effect}")
                 looks.append(Look(item.effect, have, ranking, best.effect))
-                return best.state, tuple(looks)
+                return last_to(best.state, number), tuple(looks)
         if own is None:
             looks.append(Look(item.effect, have, ranking, None))
             continue
         if better is None and own.state and own.score < now - SWAP:
             anew, least = finished(own.state, score)
             if least < now - SWAP:
+                anew = last_to(anew, number)
                 better = len(looks), anew, _with(ranking, own, own.form, least, anew)
         shown = _with(ranking, own, item.form, now, as_is)
         looks.append(Look(item.effect, have, shown, item.effect))

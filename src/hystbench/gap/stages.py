@@ -92,6 +92,7 @@ def try_one(evidence: Evidence, base: Model, before: Mapped, name: str) -> Mappe
     if name in {item.effect for item in state.added}:
         return found | {"declined": "added already"}
     score = make_score(state, before["floor"]["rms"])
+    state = IN_PROCESS.ready(state, score)
     tried, declined = IN_PROCESS.tried(effects()[name], state, score)
     if declined:
         return found | {"declined": declined}
@@ -141,7 +142,7 @@ def choose(
     """
     restorer = Restorer(evidence.fit, base)
     progress = restorer.progress(before)
-    work = Recorded(progress.state, tried, restorer)
+    work = Recorded(tried, restorer)
     after = advance(progress, before["floor"]["rms"], say, work=work)
     return {"floor": before["floor"], **progress_mapping(after)}
 
@@ -178,17 +179,13 @@ class Recorded(Work):
 
     Parameters
     ----------
-    state : State
-        The model of the round.
     tried : mapping
         What the jobs wrote, by effect.
     restorer : Restorer
     """
 
-    def __init__(
-        self, state: State, tried: Mapping[str, Mapped], restorer: Restorer
-    ) -> None:
-        self._state, self._tried, self._restorer = state, tried, restorer
+    def __init__(self, tried: Mapping[str, Mapped], restorer: Restorer) -> None:
+        self._tried, self._restorer = tried, restorer
         self._variants: list[Variant] = []
         self._entries: list[Mapped] = []
 
@@ -196,7 +193,7 @@ class Recorded(Work):
         self, effect: Effect, state: State, score: Score
     ) -> tuple[list[Tried], str]:
         """Look up every variant of an effect over its grid."""
-        if state is not self._state or effect.name not in self._tried:
+        if effect.name not in self._tried:
             return super().tried(effect, state, score)
         content = self._tried[effect.name]
         if content["declined"]:
