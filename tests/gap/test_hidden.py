@@ -21,7 +21,7 @@ from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
-from hystbench.gap.thresholds import PAYS, TIE
+from hystbench.gap.thresholds import PAYS, SHAPE, TIE
 from hystbench.gap.verdict import LONE, judge, what_is_left
 from tests.gap.halved import first_halves
 
@@ -125,12 +125,35 @@ def test_where_nothing_is_hidden_nothing_is_named(family):
     assert verdict((), family) == ("no-gap", set())
 
 
-def unnamed(name, monkeypatch):
-    """What gap.json says of an effect outside the vocabulary."""
+def decided(name, family, monkeypatch):
+    """What gap.json says of one hidden effect, by all that decides."""
     # What would tell likely effects apart takes long and decides nothing.
     monkeypatch.setattr("hystbench.gap.finding.tell_apart", lambda *given: (None, ""))
-    records, base = hidden((name,), "gpi")
-    content = find("hidden", records, base).content
+    records, base = hidden((name,), family)
+    return find("hidden", records, base).content
+
+
+ALONE = [
+    ("saturation", "gpi"),
+    ("sensor-lag", "preisach"),
+    ("resonance", "jiles-atherton"),
+]
+
+
+@pytest.mark.parametrize(("name", "family"), ALONE)
+def test_a_hidden_effect_is_named_alone(name, family, monkeypatch):
+    """With the black box, lone samples and periods looked at; and nothing beside it.
+
+    What a wrong shape of the base leaves is no second effect.
+    """
+    content = decided(name, family, monkeypatch)
+    names = {item["name"] for item in content["effects"]} - {SHAPE}
+    assert (content["verdict"], names) == ("named", {name})
+
+
+def unnamed(name, monkeypatch):
+    """What gap.json says of an effect outside the vocabulary."""
+    content = decided(name, "gpi", monkeypatch)
     assert content["verdict"] == "unnamed"
     return content
 

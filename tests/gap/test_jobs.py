@@ -13,7 +13,7 @@ from hystbench.gap.evidence import load_evidence
 from hystbench.gap.example import slow_loop_model
 from hystbench.gap.jobs import DECISION, decide_in, show_in
 from hystbench.gap.run import close_gap
-from hystbench.gap.summary import write_adds, write_effects, write_summary
+from hystbench.gap.summary import write_adds, write_effects, write_records, write_summary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
 
@@ -83,6 +83,14 @@ def test_tables_hold_what_gap_json_holds(decided, tmp_path):
     )
     for key in ("before", "after", "noise_floor"):
         assert float(one[key]) == pytest.approx(content["gap"][key], rel=1e-3)
+    write_records([content], tmp_path / "records.csv")
+    (record,) = rows(tmp_path / "records.csv")
+    assert (record["record"], record["outside"]) == ("unseen", "")
+    assert float(record["before"]) == pytest.approx(content["gap"]["before"], rel=1e-3)
+    assert float(record["after"]) == pytest.approx(content["gap"]["after"], rel=1e-3)
+    assert float(record["black_box"]) == pytest.approx(
+        content["black_box"]["after"], rel=1e-3
+    )
     (parameter,) = rows(tmp_path / "effects.csv")
     assert parameter["parameter"] == "time_constant_s"
     assert float(parameter["value"]) == pytest.approx(LAG_S, rel=0.02)

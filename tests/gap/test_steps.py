@@ -1,5 +1,7 @@
 """Adding ends at noise and step error together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -60,6 +62,15 @@ def test_what_the_steps_miss_is_nothing_to_gain():
         gain = above_floor(state, score)
         assert gain < alone
         assert (gain == pytest.approx(0.0, abs=1e-9)) is nothing
+
+
+def test_of_a_simulator_whose_inside_is_not_seen_no_step_error_is_claimed():
+    """Its steps are its own; the noise alone is the floor then."""
+    state = left_with(NOISE, (block("gain", value=12.0),))
+    stored = block("simulated-column", column="any")
+    assert step_error(state) == pytest.approx(0.0, abs=1e-9)
+    assert step_error(replace(state, chain=(stored,))) is None
+    assert floor_with_steps(NOISE, None) == NOISE
 
 
 def test_without_steps_it_is_the_floor_of_the_noise():

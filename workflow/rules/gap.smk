@@ -284,6 +284,7 @@ rule gap_summary:
     output:
         summary=f"{GAP}/summary.csv",
         effects=f"{GAP}/effects.csv",
+        records=f"{GAP}/records.csv",
         adds=[f"{GAP}/twin-adds.csv"] if TWIN else [],
     log:
         f"{RESULTS}/logs/gap/summary.log",
@@ -299,7 +300,8 @@ rule gap_summary:
         "verdicts side by side"
     shell:
         "hystbench gap-summary {input.gaps:q} {params.twin}"
-        " --effects {output.effects:q} --out {output.summary:q} 2> {log:q}"
+        " --effects {output.effects:q} --records {output.records:q}"
+        " --out {output.summary:q} 2> {log:q}"
 
 
 rule gap:

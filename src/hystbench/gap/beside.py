@@ -41,7 +41,8 @@ def black_box_mapping(
         ``explained_on_folds``, and on hold-out records ``after`` (RMS), ``explained``,
         both with an interval, and ``records``; each of these has ``named`` (RMS after
         the named effects) and ``outside`` (in what the record lies outside the training
-        range). ``after`` and ``named`` are None where a model runs away.
+        range). ``outside`` has RMS over those that lie outside, None where none does.
+        ``after`` and ``named`` are None where a model runs away.
     """
     with np.errstate(over="ignore", invalid="ignore"):
         corrected = [
@@ -62,9 +63,22 @@ def black_box_mapping(
         "after": reached.after,
         "explained": plain(reached.explained),
         "records": rows,
+        "outside": _together([row for row in rows if row["outside"]]),
     }
     for key in ("after_interval", "interval"):
         ends = getattr(reached, key)
         if ends is not None:
             content[key] = list(ends)
     return content
+
+
+def _together(rows: Sequence[dict[str, Any]]) -> dict[str, float | None] | None:
+    """RMS over records alike, of the base, the black box and the named effects."""
+    if not rows:
+        return None
+    found: dict[str, float | None] = {}
+    for key in ("before", "after", "named"):
+        sizes = [row[key] for row in rows]
+        away = None in sizes
+        found[key] = None if away else float(np.sqrt(np.mean(np.square(sizes))))
+    return found

@@ -104,9 +104,10 @@ FIT = _object(
         "explained": OPTIONAL,
         "new_in_every_record": NUMBER,
         # RMS of the noise, of what the simulation of the model with its effects misses
-        # by its own steps, and of both: where that is reached no effect is added.
+        # by its own steps, and of both: where that is reached no effect is added. Null
+        # where a simulator whose inside is not seen is in the chain.
         "noise": NUMBER,
-        "step_error": NUMBER,
+        "step_error": OPTIONAL,
         "floor": NUMBER,
         # Share of the gap that no effect takes away; it lowers every confidence. Of the
         # whole gap, or of what no wrong hysteresis could do, whichever is less.

@@ -13,18 +13,24 @@ from hystbench.gap.score import Score
 from hystbench.gap.state import State
 
 
-def step_error(state: State) -> float:
+def step_error(state: State) -> float | None:
     """Measure what the plain simulation misses by its steps, RMS over scored samples.
 
-    The state's own residual is that of a simulation in short steps.
+    The state's own residual is that of a simulation in short steps. None where the
+    chain holds a simulator whose inside is not seen: nobody knows its steps.
     """
+    if not all(block.seen for block in state.chain):
+        return None
     plain = state.sample.take(Scene(state.chain, state.records, state.hold).output)
     return rms(plain - (state.measured - state.residual))
 
 
-def floor_with_steps(noise_rms: float, error: float) -> float:
-    """Give the RMS of noise and step error together: neither knows of the other."""
-    return float(np.hypot(noise_rms, error))
+def floor_with_steps(noise_rms: float, error: float | None) -> float:
+    """Give the RMS of noise and step error together: neither knows of the other.
+
+    Where the step error is not known it is that of the noise.
+    """
+    return noise_rms if error is None else float(np.hypot(noise_rms, error))
 
 
 def above_floor(state: State, score: Score) -> float:

@@ -28,6 +28,7 @@ COLUMNS = (
     "reason",
     "shortfall",
 )
+RECORD_COLUMNS = ("dataset", "record", "outside", "before", "black_box", "after")
 EFFECT_COLUMNS = (
     "dataset",
     "effect",
@@ -47,6 +48,24 @@ ADDS_COLUMNS = ("block", "parameter", "value", "unit")
 def write_summary(contents: Sequence[Content], path: Path) -> None:
     """Write one row a dataset: the verdict, and RMS over its hold-out records."""
     write_csv(path, COLUMNS, [_row(content) for content in contents])
+
+
+def write_records(contents: Sequence[Content], path: Path) -> None:
+    """Write one row a hold-out record: RMS, and in what it is outside what was fitted.
+
+    There a black box knows nothing, and effects that are the right ones still hold.
+    """
+    rows = [
+        [
+            content["dataset"],
+            item["name"],
+            " and ".join(item["outside"]),
+            *(_rms(item[key]) for key in ("before", "after", "named")),
+        ]
+        for content in contents
+        for item in content["black_box"]["records"]
+    ]
+    write_csv(path, RECORD_COLUMNS, rows)
 
 
 def write_effects(contents: Sequence[Content], path: Path) -> None:

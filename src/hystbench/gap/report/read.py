@@ -40,6 +40,15 @@ OPEN_PARTS: dict[str, Any] = {
                     named=OPTIONAL,
                     outside=NAMES,
                 ),
+                "outside": {
+                    "type": ["object", "null"],
+                    "required": ["before", "after", "named"],
+                    "properties": {
+                        "before": NUMBER,
+                        "after": OPTIONAL,
+                        "named": OPTIONAL,
+                    },
+                },
             }
         },
     }
