@@ -14,7 +14,7 @@ from hystbench.gap.rank import make_score
 from hystbench.gap.rounds import Round
 from hystbench.gap.say import silent
 from hystbench.gap.taken_out import TakenOut, needless, unknown, without_what_goes
-from hystbench.gap.thresholds import FURTHER, MOST_OF_IT, PAYS, SHAPE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE
 from hystbench.gap.uncertainty import (
     error_of_size,
     on_more_samples,
@@ -62,16 +62,21 @@ def test_a_curve_that_is_there_stays_and_one_that_is_not_goes():
 
 
 @pytest.mark.parametrize(
-    ("error", "kept"),
+    ("error", "held_back", "kept"),
     [
-        (0.4, ["drive-lag", "asymmetry"]),
-        (0.6, ["drive-lag"]),  # the first effect is not asked
-        (np.inf, ["drive-lag"]),
-        (np.nan, ["drive-lag"]),
+        (0.4, 0.0, ["drive-lag", "asymmetry"]),
+        (0.6, CERTAIN - 1, ["drive-lag"]),  # the first effect is not asked
+        (np.inf, 0.0, ["drive-lag"]),
+        (np.nan, 0.0, ["drive-lag"]),
+        (0.6, CERTAIN + 1, ["drive-lag", "asymmetry"]),
     ],
 )
-def test_an_error_of_more_than_half_the_size_decides(error, kept, monkeypatch):
+def test_an_error_of_more_than_half_the_size_decides(
+    error, held_back, kept, monkeypatch
+):
+    """Unless records that did not fit the effect are foretold beyond doubt."""
     monkeypatch.setattr(taken_out, "error_of_size", lambda *given: error)
+    monkeypatch.setattr(taken_out, "gain_held_back", lambda *given: held_back)
     found = unknown(with_two(BEND), NOISE)
     assert names(with_two(BEND) if found is None else found.state) == kept
 

@@ -277,3 +277,9 @@ def test_the_example_runs_from_identification_to_summary(workflow, config):
     assert float(row["before"]) == pytest.approx(content["gap"]["before"], rel=1e-3)
     names = [item["name"] for item in content["effects"]]
     assert row["effects"] == (" + ".join(names) or "none")
+    # A record that changes its role is the same input; the dataset is not.
+    assert workflow.would_run("results/gap/summary.csv") == {}
+    config["gap"]["twin"] = {"fit": ["sine-200hz"], "hold_out": ["sine-100hz"]}
+    workflow.configure(config)
+    planned = workflow.would_run("results/gap/summary.csv")
+    assert planned["gap_twin"] == planned["gap_decide"] == 1

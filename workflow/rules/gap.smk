@@ -49,6 +49,8 @@ if TWIN:
         params:
             fit=lambda wildcards, input: options("--fit", input.fit),
             hold_out=lambda wildcards, input: options("--hold-out", input.hold_out),
+            # A record that changes its role is still the same input.
+            roles=[config["gap"]["twin"][role] for role in ("fit", "hold_out")],
             folder=subpath(output.base, parent=True),
         message:
             "the twin's records and the model of its slow loop"

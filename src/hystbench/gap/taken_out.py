@@ -9,10 +9,11 @@ import numpy as np
 
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.fit import finished, score_of
+from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.rank import make_score
 from hystbench.gap.say import Say
 from hystbench.gap.state import Added, State
-from hystbench.gap.thresholds import FURTHER, MOST_OF_IT, PAYS, SHAPE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE
 from hystbench.gap.uncertainty import error_of_size, on_more_samples
 
 UNKNOWN = 0.5
@@ -94,9 +95,10 @@ def unknown(state: State, floor_rms: float) -> Without | None:
     """Find a further effect whose size the records do not know.
 
     Where its standard error is more than half of it, the records do not agree on the
-    effect: it takes away what another one leaves in some of them. The first effect
-    stays, as do those that are new in every record, and a hysteresis, which is judged
-    as what others reshape.
+    effect: it takes away what another one leaves in some of them. If few records show
+    it but others foretell it beyond doubt, it stays. So do the first effect, those
+    that are new in every record, and a hysteresis, which is judged as what others
+    reshape.
     """
     finer = on_more_samples(state)
     for number in reversed(range(1, len(state.added))):
@@ -107,7 +109,10 @@ def unknown(state: State, floor_rms: float) -> Without | None:
         if error <= UNKNOWN:
             continue
         short = without_effect(state, number)
-        short, _ = finished(short, make_score(short, floor_rms))
+        score = make_score(short, floor_rms)
+        short, _ = finished(short, score)
+        if gain_held_back(short, finished(state, score)[0], score) > CERTAIN:
+            continue
         reason = f"the standard error of its size is {error:.0%} of it"
         if np.isnan(error):
             reason = "the records show nothing of it"
