@@ -30,7 +30,9 @@ def test_black_box_beside_the_named_effects():
     assert inside["explained"] > 0.95 > beyond["explained"]
     assert inside["named"] == beyond["named"] == 0
     assert found["explained_on_folds"] == box.explained_on_folds
-    assert found["outside"] == {key: beyond[key] for key in ("before", "after", "named")}
+    assert found["outside"] == {
+        key: beyond[key] for key in ("before", "after", "named")
+    }
     # what is left, by hand
     left = [item.residual - box.predict(item.record, item.simulated) for item in held]
     assert found["after"] == pytest.approx(rms(np.concatenate(left)))

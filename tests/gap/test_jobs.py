@@ -13,7 +13,12 @@ from hystbench.gap.evidence import load_evidence
 from hystbench.gap.example import slow_loop_model
 from hystbench.gap.jobs import DECISION, decide_in, show_in
 from hystbench.gap.run import close_gap
-from hystbench.gap.summary import write_adds, write_effects, write_records, write_summary
+from hystbench.gap.summary import (
+    write_adds,
+    write_effects,
+    write_records,
+    write_summary,
+)
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
 
