@@ -417,7 +417,7 @@ def test_a_wider_loop_is_told_with_its_frequency_and_by_how_much():
     sentence = told_by(found, "branch")
     area = 5 * np.pi * np.sin(0.1)
     ends = re.search(
-        r"more area than the simulation's between (\S+) and (\S+) Hz", sentence
+        r"more area than the simulation's in bands from (\S+) to (\S+) Hz", sentence
     )
     assert 8 < float(ends[1]) < 80 < float(ends[2]) < 100
     assert f": {1.5 * area:.3g} against {area:.3g} A um a cycle, 50 % more" in sentence

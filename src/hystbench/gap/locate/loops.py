@@ -220,7 +220,8 @@ def _band(loops: Loops, here: FloatArray, word: str) -> str:
     elif simulated > 0:
         by = f", {percent(abs(measured / simulated - 1))} {word}"
     return (
-        f"{word} area than the simulation's between {number(float(loops.low[first]))} "
-        f"and {number(float(loops.high[last]))} Hz: {number(measured)} against "
+        f"{word} area than the simulation's in bands from "
+        f"{number(float(loops.low[first]))} to {number(float(loops.high[last]))} Hz: "
+        f"{number(measured)} against "
         f"{against}{by}, {percent(float(np.sum(here)))} of the gap"
     )

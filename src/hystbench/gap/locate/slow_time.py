@@ -42,8 +42,8 @@ def slow_time_view(samples: Samples) -> View:
         share_of_gap_power=share,
         p_value=fitted_p_value(samples, forms["creep and heat together"]),
         sentence=(
-            f"{percent(share)} of the gap is slow and follows the input like {kind}, "
-            f"with time constants from {number(times[0])} to {number(times[-1])} s "
+            f"{percent(share)} of the gap follows the input with a memory, like "
+            f"{kind}; time constants from {number(times[0])} to {number(times[-1])} s "
             f"tried; most of it lies between {number(start)} and {number(end)} s."
         ),
         saved=form.saved,
