@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.gap.bounded import bounded, reach
+from hystbench.gap.compared import rms
 from hystbench.gap.nuisance import Nuisance
 from hystbench.gap.shrink import Shrink, plain, records_mapping, shrink
 from hystbench.gap.yardstick import BlackBox
@@ -79,6 +80,5 @@ def _together(rows: Sequence[dict[str, Any]]) -> dict[str, float | None] | None:
     found: dict[str, float | None] = {}
     for key in ("before", "after", "named"):
         sizes = [row[key] for row in rows]
-        away = None in sizes
-        found[key] = None if away else float(np.sqrt(np.mean(np.square(sizes))))
+        found[key] = None if None in sizes else rms(np.array(sizes))
     return found

@@ -136,3 +136,12 @@ def finished(state: State, score: Score) -> tuple[State, float]:
     state = tuned(state, score)
     state = state.settled()
     return state, score_of(state, score)
+
+
+def ready(state: State, score: Score) -> State:
+    """Refit a model under the score that its further effects are to lower.
+
+    The score allows for other forms of the effects that the model has, which it was
+    fitted without: what a refit gains no further effect may count as its own.
+    """
+    return finished(state, score)[0] if state.added else state

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from hystbench.gap.fit import finished
+from hystbench.gap.fit import finished, ready
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.rounds import Candidate, Round, reasons
@@ -148,7 +148,7 @@ def advance(
     score = make_score(state, floor_rms)
     closed = _is_closed(state, score)
     if not closed:
-        state = work.ready(state, score)
+        state = ready(state, score)
         closed = _is_closed(state, score)
     if closed:
         say("nothing is left that an effect could gain")

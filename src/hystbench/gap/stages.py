@@ -17,7 +17,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect, Variant
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.fit import score_of
+from hystbench.gap.fit import ready, score_of
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import (
     Mapped,
@@ -92,7 +92,7 @@ def try_one(evidence: Evidence, base: Model, before: Mapped, name: str) -> Mappe
     if name in {item.effect for item in state.added}:
         return found | {"declined": "added already"}
     score = make_score(state, before["floor"]["rms"])
-    state = IN_PROCESS.ready(state, score)
+    state = ready(state, score)
     tried, declined = IN_PROCESS.tried(effects()[name], state, score)
     if declined:
         return found | {"declined": declined}

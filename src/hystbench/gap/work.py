@@ -14,19 +14,11 @@ Tried = tuple[Attempt, Trial]
 
 
 class Work:
-    """The steps that jobs can take elsewhere; all are computed here and now.
+    """The four steps that jobs can take elsewhere; all are computed here and now.
 
     Naming decides by what they give, and by folds, which are judged where it decides:
     so jobs lead to the same names.
     """
-
-    def ready(self, state: State, score: Score) -> State:
-        """Refit a model under the score that its further effects are to lower.
-
-        The score allows for other forms of the effects that the model has, which it
-        was fitted without: what a refit gains no further effect may count as its own.
-        """
-        return finished(state, score)[0] if state.added else state
 
     def tried(
         self, effect: Effect, state: State, score: Score
