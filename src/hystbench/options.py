@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -39,6 +40,34 @@ def limits(command: Command) -> Command:
     ):
         command = click.option(f"--limit-{name}", type=float, help=told)(command)
     return command
+
+
+def calls(command: Command) -> Command:
+    """Add what holds for a simulator that is a function: ``calls``, ``keep_calls``."""
+    command = click.option(
+        "--keep-calls/--no-keep-calls",
+        default=True,
+        help="Whether outputs of a slow function are kept in the user's cache folder, "
+        "so that another run need not call it again.",
+    )(command)
+    return click.option(
+        "--calls",
+        type=click.IntRange(min=1),
+        help="Calls of a function that are made at most; the search then ends.",
+    )(command)
+
+
+@contextmanager
+def counted_calls(
+    bound: int | None, keep: bool, say: Callable[[str], None]
+) -> Iterator[None]:
+    """Let calls of simulators within the block be counted, bounded and kept."""
+    from hystbench.blocks.calls import Calls, counted  # late: NumPy
+    from hystbench.blocks.kept_outputs import KeptOutputs, folder_of_user
+
+    kept = KeptOutputs(folder_of_user(), say) if keep else None
+    with counted(Calls(bound=bound, kept=kept, say=say)):
+        yield
 
 
 def asked_limits(

@@ -24,6 +24,7 @@ from hystbench.gap.wanted import write_wanted
 @click.option("--out", type=click.Path(path_type=Path), required=True)
 @options.write_experiment
 @options.limits
+@options.calls
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
 def gap(
     dataset: Path,
@@ -33,27 +34,34 @@ def gap(
     limit_low: float | None,
     limit_high: float | None,
     limit_rate: float | None,
+    calls: int | None,
+    keep_calls: bool,
     report: bool,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
 
     Writes OUT/gap.json, model.yaml, holdout/ and report.html.
     """
+
+    def say(line: str) -> None:
+        click.echo(line, err=True)
+
     if write_experiment is not None:
         check_writable(write_experiment.parent)
     evidence = load_evidence(dataset)
-    base, note = load_base(model, evidence)
-    if note:
-        click.echo(note)
-    finding = close_gap(
-        evidence,
-        base,
-        out,
-        place=model,
-        limits=options.asked_limits(limit_low, limit_high, limit_rate),
-        report=report,
-        say=lambda line: click.echo(line, err=True),
-    )
+    with options.counted_calls(calls, keep_calls, say):
+        base, note = load_base(model, evidence)
+        if note:
+            click.echo(note)
+        finding = close_gap(
+            evidence,
+            base,
+            out,
+            place=model,
+            limits=options.asked_limits(limit_low, limit_high, limit_rate),
+            report=report,
+            say=say,
+        )
     if write_experiment is not None:
         click.echo(write_wanted(finding, evidence.input, write_experiment))
     effects = [item["name"] for item in finding.content["effects"]]

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
 from hystbench.gap.augmented import augmented
 from hystbench.gap.beside_errors import beside_errors
@@ -181,6 +182,8 @@ def decide(
     untried = not_tried(named)
     reason += _whole(left) if state.added else ""
     reason += _untried(untried) if state.added else ""
+    used_up = _used_up(current())
+    reason += f"; {used_up}" if used_up else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -213,6 +216,8 @@ def decide(
     }
     if why_none:
         content["no_experiment"] = why_none
+    if used_up:
+        content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
     return Finding(
         base,
         model,
@@ -239,7 +244,18 @@ def _untried(names: Sequence[str]) -> str:
     """Tell which effects a name was not held against."""
     if not names:
         return ""
-    return f"; not tried, as the simulator cannot be run again: {', '.join(names)}"
+    why = USED_UP if current().refused() else "the simulator cannot be run again"
+    return f"; not tried, as {why}: {', '.join(names)}"
+
+
+def _used_up(calls: Calls) -> str:
+    """Tell that a bound on calls has ended the search, if so."""
+    if not calls.refused():
+        return ""
+    return (
+        f"the search ended early, as the {calls.bound} calls of the simulator that "
+        "--calls allows were used up"
+    )
 
 
 SAID = 0.1

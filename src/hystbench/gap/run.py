@@ -16,6 +16,7 @@ from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
+from hystbench.gap.foretell import keep_back
 from hystbench.gap.nuisance import Nuisance, degree_that_carries_on, path_and_mains
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
@@ -79,6 +80,7 @@ def close_gap(
     check_writable(folder)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
+    keep_back(evidence)
     finding = find(
         evidence.name,
         evidence.fit,

@@ -234,6 +234,8 @@ SCHEMA = _object(
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},
+    # Where --calls ended the search: how many were allowed.
+    calls_used_up=_object({"bound": {"type": "integer"}, "sentence": WORDS}),
     # Why next_experiment is null though effects cannot be told apart.
     no_experiment={"type": "string"},
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.blocks.calls import USED_UP
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.beside_errors import Errors
 from hystbench.gap.effects import effects
@@ -164,12 +165,15 @@ def _errors_of(
 
 
 def not_tried(named: Named) -> list[str]:
-    """Name the effects that no fit could try, as the simulator cannot be run again."""
+    """Name the effects that no fit could try: the simulator could not be run for them.
+
+    It cannot be run again at all, or not more often than was allowed.
+    """
     return [
         item.effect
         for one in named.rounds[:1]
         for item in one.ranking
-        if item.declined == NEEDS_RERUN
+        if item.declined == NEEDS_RERUN or USED_UP in item.declined
     ]
 
 

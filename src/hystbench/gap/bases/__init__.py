@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hystbench.blocks.calls import current
 from hystbench.blocks.external import FORM, External, called
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError, nearest
@@ -14,6 +15,7 @@ from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
 from hystbench.gap.evidence import Evidence, check_units
+from hystbench.gap.scene import Scene
 from hystbench.model import Model, load_model
 
 __all__ = [
@@ -125,7 +127,9 @@ def written_base(path: Path, evidence: Evidence) -> Model:
         )
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    _check_bounded(model.with_hold(evidence.hold), evidence, str(path))
+    held = model.with_hold(evidence.hold)
+    _check_bounded(held, evidence, str(path))
+    check_repeats(held, evidence)
     return model
 
 
@@ -166,16 +170,47 @@ def function_base(function: str, evidence: Evidence) -> tuple[Model, str]:
         sample, or something else when it is called again.
     """
     block = External(function=function)
-    first = evidence.fit[0]
-    outputs = [block.simulate(item.u, item.u, item.dt) for item in evidence.fit]
-    if not np.array_equal(called(function, first.u, first.dt), outputs[0]):
-        raise InputError(
-            f"{function}: called again with record {first.name} it gave another "
-            "output; expected the same one every time"
-        )
-    model = Model("external", evidence.input, evidence.output, (block,))
+    name = function.rpartition(":")[2]
+    model = Model(name, evidence.input, evidence.output, (block,))
+    check_repeats(model, evidence)
     units = f"from {evidence.input.unit} to {evidence.output.unit}"
     return model, f"base {function}, taken to be {units}"
+
+
+def check_repeats(model: Model, evidence: Evidence) -> None:
+    """Refuse a model with a function that gives another output when called again.
+
+    The function runs on all fit records, and on the first of them once more: so one
+    that draws at random is found, and one that goes on from where it was left.
+
+    Parameters
+    ----------
+    model : Model
+    evidence : Evidence
+        Only its fit records are used.
+
+    Raises
+    ------
+    InputError
+        With the name of the function.
+    """
+    first = evidence.fit[0]
+    for k, block in enumerate(model.chain):
+        if not isinstance(block, External):
+            continue
+        inputs = [
+            Scene(model.chain[:k], (item,), evidence.hold).output[0] if k else item.u
+            for item in evidence.fit
+        ]
+        pairs = zip(inputs, evidence.fit, strict=True)
+        outputs = [block.simulate(z, item.u, item.dt) for z, item in pairs]
+        again = current().fresh(block.function, inputs[0], first.dt, called)
+        if not np.array_equal(again, outputs[0]):
+            raise InputError(
+                f"{block.function}: called again with record {first.name} it gave "
+                "another output; expected the same one every time, with no state kept "
+                "from call to call and nothing drawn at random"
+            )
 
 
 def simulated_column(evidence: Evidence) -> tuple[Model, str]:
