@@ -243,6 +243,30 @@ def load_dataset(path: str | Path) -> Dataset:
     return dataset
 
 
+def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
+    """Read an input of one's own: a CSV file with the columns time_s and another.
+
+    Parameters
+    ----------
+    file : Path
+    column : str
+        Name of the input's column.
+
+    Returns
+    -------
+    dt : float
+        Sampling interval in seconds.
+    u : ndarray, shape (n,)
+
+    Raises
+    ------
+    InputError
+        If a column is missing, a cell is no finite number, or sampling is not uniform.
+    """
+    time, u = _read_columns(file, ["time_s", column])
+    return _sampling_interval(file, time, UNIFORM_TOLERANCE), u
+
+
 def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
     """Read named columns of a CSV file as numbers."""
     try:

@@ -11,7 +11,7 @@ import numpy as np
 
 from hystbench import options
 from hystbench.blocks.held import HOLDS, Hold
-from hystbench.dataset import load_dataset
+from hystbench.dataset import load_dataset, read_input
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_csv
 from hystbench.model import load_model
@@ -52,10 +52,12 @@ def simulate(
 ) -> None:
     """Run MODEL on RECORD and write time, input, measured and simulated output.
 
-    RECORD is a CSV file of a dataset, or an archive (.npz) of a record or a signal.
+    RECORD is a CSV file of a dataset, or an archive (.npz) of a record or a signal; or
+    a CSV file of one's own, with no dataset.yaml beside it, of two columns: time_s and
+    the model's input, named with its unit, such as current_A.
     """
     system = load_model(model)
-    run = _read(record, dataset)
+    run = _read(record, dataset, system.input)
     pairs = [("input", system.input, run.input), ("output", system.output, run.output)]
     for side, ours, theirs in pairs:
         if theirs is not None:
@@ -87,9 +89,9 @@ def simulate(
     )
 
 
-def _read(record: Path, dataset: Path | None) -> Run:
+def _read(record: Path, dataset: Path | None, expected: Channel) -> Run:
     if record.suffix != ".npz":
-        return _read_csv(record, dataset)
+        return _read_csv(record, dataset, expected)
     if dataset is not None:
         raise InputError(f"{record}: an archive; expected no --dataset with it")
     if _names(record) >= {"name", "dt", "u", "unit"}:
@@ -100,12 +102,11 @@ def _read(record: Path, dataset: Path | None) -> Run:
     return Run(found.dt, found.u, found.input, found.y, found.output, None, found)
 
 
-def _read_csv(record: Path, dataset: Path | None) -> Run:
+def _read_csv(record: Path, dataset: Path | None, expected: Channel) -> Run:
     beside = record.parent / "dataset.yaml"
     if dataset is None and not beside.is_file():
-        raise InputError(
-            f"{record}: no dataset.yaml beside it; expected one, or --dataset"
-        )
+        dt, u = read_input(record, _column(expected.name, expected.unit))
+        return Run(dt, u, expected, None, None, None)
     about = load_dataset(dataset or beside)
     for name, file in about.record_files.items():
         if file.resolve() == record.resolve():

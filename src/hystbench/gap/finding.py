@@ -35,6 +35,7 @@ from hystbench.gap.told import (
     effect_mapping,
     not_tried,
     ranking_rows,
+    simulator_mapping,
 )
 from hystbench.gap.uncertainty import on_more_samples, standard_errors
 from hystbench.gap.verdict import (
@@ -212,6 +213,7 @@ def decide(
         "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": base_parameters(base, state),
+        "simulator": simulator_mapping(model, records),
         "black_box": {"explained_on_folds": box.explained_on_folds},
     }
     if why_none:

@@ -64,7 +64,7 @@ def decide_in(
         ],
     }
     with whole_folder(folder, DECIDED) as fresh:
-        finding.model.save(fresh / "model.yaml")
+        finding.model.with_hold(evidence.hold).save(fresh / "model.yaml")
         write_json(fresh / "curves.json", finding.curves)
         write_json(fresh / NAMED, kept)
         write_json(fresh / DECISION, finding.content)

@@ -100,7 +100,7 @@ def close_gap(
         finding.rungs,
     )
     with whole_folder(folder, RESULT) as fresh:
-        finding.model.save(fresh / "model.yaml")
+        finding.model.with_hold(evidence.hold).save(fresh / "model.yaml")
         write_json(fresh / "curves.json", finding.curves)
         write_shown(fresh, finding.content, evidence.hold_out, shown)
         if report:

@@ -10,6 +10,7 @@ import numpy as np
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.calls import USED_UP
+from hystbench.blocks.external import External
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.beside_errors import Errors
 from hystbench.gap.effects import effects
@@ -175,6 +176,18 @@ def not_tried(named: Named) -> list[str]:
         for item in one.ranking
         if item.declined == NEEDS_RERUN or USED_UP in item.declined
     ]
+
+
+def simulator_mapping(model: Model, records: Sequence[Record]) -> dict[str, Any]:
+    """Tell what the model with its effects takes and gives, and how it can be run."""
+    channels = {"input": model.input, "output": model.output}
+    return {
+        side: {"name": item.name, "unit": item.unit} for side, item in channels.items()
+    } | {
+        "functions": [x.function for x in model.chain if isinstance(x, External)],
+        "runs_again": all(block.reruns for block in model.chain),
+        "sampling_interval_s": records[0].dt,
+    }
 
 
 def ranking_rows(named: Named) -> list[dict[str, Any]]:
