@@ -31,6 +31,11 @@ class Channel:
         return f"{self.name} ({self.unit})"
 
 
+def column_name(name: str, unit: str) -> str:
+    """Name a column by its channel and unit, such as ``coil_current_A``."""
+    return f"{name}_{unit}".replace("/", "_per_").replace(" ", "_")
+
+
 @dataclass(frozen=True, repr=False)
 class Record:
     """Input and output of an actuator at a uniform rate.

@@ -15,7 +15,7 @@ from hystbench.dataset import load_dataset, read_input
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_csv
 from hystbench.model import load_model
-from hystbench.record import Channel, FloatArray, Record, load_record
+from hystbench.record import Channel, FloatArray, Record, column_name, load_record
 from hystbench.signals import load_signal
 from hystbench.units import check_same_unit
 
@@ -76,11 +76,11 @@ def simulate(
             f"{record} on; expected a model that stays bounded"
         )
     time = np.arange(len(y)) * run.dt
-    columns = {"time_s": time, _column(run.input.name, run.input.unit): run.u}
+    columns = {"time_s": time, column_name(run.input.name, run.input.unit): run.u}
     if run.y is not None and run.output is not None:
-        columns[_column("measured", run.output.unit)] = run.y
+        columns[column_name("measured", run.output.unit)] = run.y
     unit = (run.output or system.output).unit  # one unit, in the record's spelling
-    columns[_column("simulated", unit)] = y
+    columns[column_name("simulated", unit)] = y
     cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
     write_csv(out, list(columns), zip(*cells, strict=True))
     click.echo(
@@ -105,7 +105,7 @@ def _read(record: Path, dataset: Path | None, expected: Channel) -> Run:
 def _read_csv(record: Path, dataset: Path | None, expected: Channel) -> Run:
     beside = record.parent / "dataset.yaml"
     if dataset is None and not beside.is_file():
-        dt, u = read_input(record, _column(expected.name, expected.unit))
+        dt, u = read_input(record, column_name(expected.name, expected.unit))
         return Run(dt, u, expected, None, None, None)
     about = load_dataset(dataset or beside)
     for name, file in about.record_files.items():
@@ -128,8 +128,3 @@ def _names(archive: Path) -> set[str]:
             return {Path(name).stem for name in content.namelist()}
     except (OSError, zipfile.BadZipFile) as error:
         raise InputError(f"{archive}: not an archive of NumPy ({error})") from error
-
-
-def _column(name: str, unit: str) -> str:
-    """Name of a column with its unit, as files of datasets have it."""
-    return f"{name}_{unit}".replace("/", "_per_").replace(" ", "_")

@@ -20,7 +20,7 @@ from hystbench.gap.state import Added, State, beside_count
 from hystbench.gap.units import unit_behind, written
 from hystbench.gap.verdict import Left, confidence
 from hystbench.model import Model
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
 OFFSET = "offset"
 """Of a plain gain."""

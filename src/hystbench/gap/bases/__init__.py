@@ -170,8 +170,7 @@ def function_base(function: str, evidence: Evidence) -> tuple[Model, str]:
         sample, or something else when it is called again.
     """
     block = External(function=function)
-    name = function.rpartition(":")[2]
-    model = Model(name, evidence.input, evidence.output, (block,))
+    model = Model(function, evidence.input, evidence.output, (block,))
     check_repeats(model, evidence)
     units = f"from {evidence.input.unit} to {evidence.output.unit}"
     return model, f"base {function}, taken to be {units}"
@@ -239,7 +238,7 @@ def simulated_column(evidence: Evidence) -> tuple[Model, str]:
             "'simulated: {column: .., unit: ..}' in its dataset.yaml"
         )
     block = SimulatedColumn(column=column, records=(*evidence.fit, *evidence.hold_out))
-    model = Model("simulated-column", evidence.input, evidence.output, (block,))
+    model = Model(column, evidence.input, evidence.output, (block,))
     note = (
         f"base from the column {column!r}; what acts before it declines, since it "
         "needs a simulator that can be run again"

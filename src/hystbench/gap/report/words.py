@@ -38,6 +38,32 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
     return sentence
 
 
+def advice(gap: dict[str, Any]) -> str:
+    """Say where to go on, where no experiment was computed; by the verdict."""
+    if gap["verdict"] == "no-gap":
+        return (
+            "A smaller gap than this would show only in records with a lower noise "
+            "floor, or where the actuator is driven harder than here."
+        )
+    if gap["verdict"] == "parameters":
+        return (
+            "Take over the values of model.yaml, and measure a record outside the "
+            "range of these to see whether they hold there."
+        )
+    if gap["verdict"] == "named":
+        return (
+            "A record outside the range of these, in amplitude or rate, is what would "
+            "put the names to the test."
+        )
+    first = next(iter(gap["where"]), None)
+    if first is None:
+        return ""
+    return (
+        "What is missing has no name yet; where it shows most is where to measure "
+        f"again: {first['sentence']}"
+    )
+
+
 def listed(names: list[str]) -> str:
     """Join names as in a sentence."""
     if len(names) < 2:
