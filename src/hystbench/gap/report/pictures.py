@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 from hystbench.figures.style import (
     BLACK,
@@ -35,6 +35,9 @@ RECORDS = 8
 PERIODS = 3
 #: Points of a line: more than a page has pixels.
 POINTS = 1500
+
+#: Numbers below a small picture.
+TICKS = 5
 
 BEFORE, AFTER, FLOOR = VERMILION, BLUE, BLACK
 
@@ -139,6 +142,7 @@ def glimpse(axes: Any, table: HoldOut, unit: str, after: str | None) -> None:
     panel.plot(time, table.before[part], "--", color=BEFORE, label="simulator")
     if after is not None:
         panel.plot(time, table.after[part], color=AFTER, label=after)
+    panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     panel.set_xlabel("time (s)")
     panel.set_ylabel(f"output ({unit_text(unit)})")
     lines = panel.get_legend_handles_labels()[0]
@@ -164,7 +168,8 @@ def sizes(
     ]
     labels = [f"{name}\n{text}" for (name, _), text in zip(rows, shown, strict=True)]
     panel.set_yticks(places, labels)
-    panel.invert_yaxis()
+    panel.set_ylim(max(len(rows), 2) - 0.5, -0.5)  # one bar is no thicker than two
+    panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     panel.set_xlim(0, 1.05 * max(*widths, floor))
     panel.set_xlabel(f"rms residual, all hold-out records ({unit_text(unit)})")
     panel.grid(visible=False, axis="y")
