@@ -485,7 +485,7 @@ def test_no_legend_lies_over_curves(over):
             assert box.x0 >= 0
             assert box.x1 <= figure.bbox.x1
             for panel in panels:
-                shared = Bbox.intersection(box.shrunk(0.99), panel.bbox)
+                shared = Bbox.intersection(box.shrunk(0.99, 0.99), panel.bbox)
                 assert shared is None or shared.height < 1
 
 
