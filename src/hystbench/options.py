@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import click
 
@@ -68,6 +69,17 @@ def counted_calls(
     kept = KeptOutputs(folder_of_user(), say) if keep else None
     with counted(Calls(bound=bound, kept=kept, say=say)):
         yield
+
+
+def kept_calls(command: Command) -> Command:
+    """Let a job of the workflow use what other jobs called a slow function for."""
+
+    @wraps(command)
+    def run(*arguments: Any, **named: Any) -> Any:
+        with counted_calls(None, True, lambda line: click.echo(line, err=True)):
+            return command(*arguments, **named)
+
+    return cast(Command, run)
 
 
 def asked_limits(

@@ -103,7 +103,7 @@ def test_files_are_whole_and_the_hold_out_tables_say_before_and_after(folder, to
     given = np.loadtxt(
         folder / "case/dataset/chirp.csv", delimiter=",", skiprows=1, usecols=1
     )
-    after = augmented.with_hold("band-limited").simulate(given, table[1, 0])
+    after = augmented.simulate(given, table[1, 0])  # the file alone says it all
     assert table[:, 3] == pytest.approx(after, abs=1e-6)
 
 

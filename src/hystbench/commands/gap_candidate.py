@@ -23,6 +23,7 @@ from hystbench.gap.stages import try_one
     "--before", type=options.FILE, required=True, help="Progress before the round."
 )
 @options.out
+@options.kept_calls
 def gap_candidate(
     effect: str, dataset: Path, base: Path, before: Path, out: Path
 ) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from hystbench import options
 from hystbench.gap.bases import IDENTIFIED, given_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.start import run_base
@@ -14,6 +15,7 @@ from hystbench.gap.start import run_base
 @click.command()
 @click.argument("dataset", type=click.Path(path_type=Path))
 @click.option("--model", required=True, help="As for hystbench gap.")
+@options.kept_calls
 def gap_check(dataset: Path, model: str) -> None:
     """Check all records of DATASET, those held out too, and the base MODEL on them.
 

@@ -21,6 +21,7 @@ from hystbench.gap.stages import choose
     "--before", type=options.FILE, required=True, help="Progress before the round."
 )
 @options.out
+@options.kept_calls
 def gap_choose(
     candidates: tuple[Path, ...], dataset: Path, base: Path, before: Path, out: Path
 ) -> None:

@@ -24,6 +24,7 @@ from hystbench.gap.wanted import write_wanted
 @options.write_experiment
 @options.limits
 @click.option("--out", type=click.Path(path_type=Path), required=True)
+@options.kept_calls
 def gap_decide(
     dataset: Path,
     base: Path,
