@@ -206,12 +206,15 @@ class Calls:
         if now - self._told < EVERY:
             return
         self._told = now
-        left = max(self.expected - self.asked, 0) * self.mean_seconds
+        total = self.expected
+        if self.bound is not None:
+            total = min(total, self.bound + self.found)
+        left = max(total - self.asked, 0) * self.mean_seconds
         spared = (
             f", {self.found:,} spared by outputs kept on disk" if self.found else ""
         )
         self.say(
-            f"{self.made:,} calls made{spared}; at most about {self.expected:,} in "
+            f"{self.made:,} calls made{spared}; at most about {total:,} in "
             f"all, {minutes(left)} left"
         )
 
