@@ -234,6 +234,18 @@ def test_the_digest_knows_the_function(rig):
     assert source_digest(rig.name) != source_digest(f"{module}:calls")
 
 
+def test_the_digest_asks_nothing_for_what_it_may_not_have(rig):
+    """An object may fail, and a package may warn, when it is asked for a name."""
+    rig.write(
+        "_helper.py",
+        "import click\nGAIN = 2.0\n\n\nclass Odd:\n"
+        "    def __getattr__(self, name):\n        raise RuntimeError(name)\n\n\n"
+        "ODD = Odd()\n",
+    )
+    assert rig.run((U, 2 * U))[1] == 2
+    assert rig.run((U, 2 * U))[1] == 1
+
+
 def test_a_bound_is_kept_and_told_in_one_line(rig):
     rig.restart()
     with counted(Calls(bound=3)) as calls:

@@ -14,8 +14,9 @@ import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from hashlib import blake2b
+from importlib import metadata
 from pathlib import Path
-from types import ModuleType
+from types import BuiltinFunctionType, FunctionType, ModuleType
 
 import numpy as np
 
@@ -160,8 +161,7 @@ def source_digest(name: str) -> str:
         content = own[label].read_bytes()
         whole.update(f"{label} {len(content)}\n".encode() + content)
     for package in sorted(set().union(*map(_named_packages, own), {"numpy"})):
-        version = getattr(sys.modules.get(package), "__version__", "")
-        whole.update(f"{package} {version}\n".encode())
+        whole.update(f"{package} {_version(package)}\n".encode())
     return whole.hexdigest()
 
 
@@ -182,12 +182,25 @@ def _own_modules(first: str) -> Iterator[tuple[str, Path]]:
             yield label, file
 
 
+def _version(package: str) -> str:
+    """Give the version of a package, empty where it tells none."""
+    # Not by getattr: a module may answer to that with a warning, or by importing more.
+    own = vars(sys.modules[package]) if package in sys.modules else {}
+    try:
+        return str(own.get("__version__") or metadata.version(package))
+    except metadata.PackageNotFoundError:
+        return ""
+
+
 def _named_packages(label: str) -> set[str]:
     """Give the packages whose modules, classes or functions a module names."""
     found = set()
     for value in vars(sys.modules[label]).values():
-        name = value.__name__ if isinstance(value, ModuleType) else None
-        name = name or getattr(value, "__module__", None)
+        name = None
+        if isinstance(value, ModuleType):
+            name = value.__name__
+        elif isinstance(value, type | FunctionType | BuiltinFunctionType):
+            name = value.__module__
         if isinstance(name, str):
             found.add(name.partition(".")[0])
     return found
