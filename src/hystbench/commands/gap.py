@@ -7,7 +7,6 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.files import check_writable
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
@@ -15,13 +14,13 @@ from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option(
     "--model",
     required=True,
     help="Model file, gpi, linear, column, or package.module:function.",
 )
-@click.option("--out", type=click.Path(path_type=Path), required=True)
+@options.out_folder
 @options.write_experiment
 @options.limits
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
@@ -39,8 +38,6 @@ def gap(
 
     Writes OUT/gap.json, model.yaml, holdout/ and report.html.
     """
-    if write_experiment is not None:
-        check_writable(write_experiment.parent)
     evidence = load_evidence(dataset)
     base, note = load_base(model, evidence)
     if note:
