@@ -1,4 +1,4 @@
-"""Wherever a result is written: inputs, and files of somebody else, stay as they are."""
+"""Wherever a result is written, inputs and files of somebody else stay as they are."""
 
 from __future__ import annotations
 
@@ -276,7 +276,12 @@ def test_records_that_are_held_out_no_more_go_and_notes_beside_them_stay(tmp_pat
 
 
 #: Folders that are looked into; and pages that are edited between their own marks.
-READ = {("gap-report", "folder"), ("blind-solve", "cases"), ("docs", "pages")}
+READ = {
+    ("gap-report", "folder"),
+    ("blind-solve", "cases"),
+    ("docs", "pages"),
+    ("clean", "folders"),
+}
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -60,6 +60,7 @@ COMMANDS = {
     "show": "Print the tables of a comparison.",
     "figure": "Draw one figure.",
     "docs": "Fill the tables of README.md and docs from results.",
+    "clean": "Remove what hystbench wrote, and nothing else.",
 }
 
 #: Errors of a full disk, told in one line though they name no file.
@@ -105,7 +106,8 @@ def run() -> int:
         if error.filename is not None:
             _tell(f"hystbench: {error.filename}: {error.strerror}")
         elif error.errno in FULL:
-            _tell(f"hystbench: {error.strerror}")
+            # Files of results are named; what is left is what was printed, mostly.
+            _tell(f"hystbench: standard output or a temporary file: {error.strerror}")
         else:
             raise
         return 2

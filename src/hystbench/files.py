@@ -18,15 +18,13 @@ from typing import Any
 from hystbench.interrupt import held
 from hystbench.written import (
     ENTRIES,
+    TEMPORARY,
     check_free,
     check_writable,
     forget,
     is_ours,
     will_write,
 )
-
-TEMPORARY = ".hystbench-"
-"""Beginning of the names of folders in which files grow."""
 
 
 @contextmanager

@@ -16,6 +16,7 @@ from __future__ import annotations
 import hashlib
 import os
 import re
+import shutil
 import stat
 import tempfile
 from collections.abc import Iterable, Iterator
@@ -29,6 +30,8 @@ from hystbench.errors import InputError
 ENTRIES = ".hystbench"
 """Folder of the entries, beside the files that they describe."""
 
+TEMPORARY = ".hystbench-"
+"""Beginning of the names of folders in which files grow; a killed run leaves them."""
 KEPT = 3
 """Digests of earlier contents that an entry keeps."""
 
@@ -129,8 +132,11 @@ def remove_below(folder: str | Path) -> list[Path]:
     logs = [mark.parent.parent for mark in top.rglob(f"{ENTRIES}/{LOGS}")]
     for place, folders, files in os.walk(top, topdown=False):
         here = Path(place)
-        if ENTRIES in here.relative_to(top).parts:
+        if any(part.startswith(ENTRIES) for part in here.relative_to(top).parts):
             continue  # seen to beside the files that it describes
+        for name in folders:
+            if name.startswith(TEMPORARY):
+                shutil.rmtree(here / name, ignore_errors=True)
         links = [name for name in folders if (here / name).is_symlink()]
         left += [here / name for name in sorted(links)]
         for file in (here / name for name in sorted(files)):
@@ -146,7 +152,7 @@ def remove_below(folder: str | Path) -> list[Path]:
             (here / ENTRIES).rmdir()
         for entry in (here / ENTRIES).glob("*.sha256"):
             forget(here / entry.stem)  # its file was gone before
-        if not any(here.iterdir()):
+        if not here.is_symlink() and not any(here.iterdir()):
             here.rmdir()
     return left
 
@@ -176,7 +182,8 @@ def check_replaceable(outputs: Iterable[str], inputs: Iterable[str]) -> None:
             for place, folders, files in os.walk(path):
                 here = Path(place)
                 links = [name for name in folders if (here / name).is_symlink()]
-                folders[:] = sorted({*folders} - {*links, ENTRIES})
+                hidden = [name for name in folders if name.startswith(ENTRIES)]
+                folders[:] = sorted({*folders} - {*links, *hidden})
                 for name in sorted({*files, *links} - NOTED):
                     check_free(here / name)
 
