@@ -9,6 +9,7 @@ from hystbench.commands.clean import clean
 from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.written import (
+    TEMPORARY,
     check_replaceable,
     claim_logs,
     entry_of,
@@ -28,6 +29,9 @@ def results(tmp_path):
     (folder / "logs" / "rule" / "x.log").write_text("told")
     (folder / "deep" / ".snakemake_timestamp").touch()
     (folder / "gone" / "d.json").unlink()  # as Snakemake does
+    growing = folder / "deep" / f"{TEMPORARY}x"  # as a killed run leaves it
+    growing.mkdir()
+    (growing / "b.json").write_text("hal")
     return folder
 
 

@@ -95,8 +95,8 @@ def test_gap_json_holds_the_rms_of_the_hold_out_record(whole):
 def test_a_job_an_effect_gives_the_same(whole, effects):
     stages = effects.folder / "results/gap/tiny/stages"
     rounds = [stages / f"round-{number}" for number in range(1, ROUNDS + 1)]
-    assert sorted(path for path in stages.iterdir() if path.is_dir()) == rounds
-    assert {path.stem for path in rounds[0].iterdir()} == {
+    assert sorted(path for path in stages.glob("round-*") if path.is_dir()) == rounds
+    assert {path.stem for path in rounds[0].glob("*.json")} == {
         item["name"] for item in load(whole)["ranking"]
     }
     written, as_written = whole.files(), effects.files()

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from hystbench.commands.clean import clean
 from hystbench.files import write_text
-from tests.test_layouts import content
+from tests.test_layouts import content, table
 
 from .conftest import ROOT
 
@@ -63,7 +63,7 @@ def test_results_of_an_older_hystbench_are_refused(workflow):
 
 def test_a_dataset_in_results_is_no_source(workflow):
     place = workflow.folder / "results/datasets/mine"
-    write_text(place / "a.csv", "time_s,current_A,displacement_um\n")
+    write_text(place / "a.csv", table(1.0))
     write_text(
         place / "dataset.yaml",
         "name: mine\n"

@@ -17,7 +17,7 @@ from hystbench.gap.start import run_base
 @click.argument("dataset", type=options.DATASET)
 @click.option("--model", required=True, help="As for hystbench gap.")
 @click.option("--out", type=options.NEW_FILE, help="File that tells of it; else none.")
-def gap_check(dataset: Path, model: str, out: Path | None) -> None:
+def gap_check(dataset: Path, model: str, out: Path | None = None) -> None:
     """Check all records of DATASET, those held out too, and the base MODEL on them.
 
     A base that is to be identified is not checked.
