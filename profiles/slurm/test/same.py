@@ -1,7 +1,8 @@
 """Whether two folders, or two files, hold the same results: same.py ONE OTHER.
 
-Every file but logs and lists of digests must be there in both and have the same bytes. Of JSON and CSV the
-times that a solver took are left out: the keys, columns and figures of TIMES.
+Every file but logs and lists of digests must be there in both and have the same bytes.
+Of JSON and CSV the times that a solver took are left out: the keys, columns and figures
+of TIMES.
 """
 
 import csv
