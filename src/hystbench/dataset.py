@@ -14,6 +14,7 @@ from hystbench.errors import InputError, nearest
 from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.schema import check_against_schema, load_yaml
 from hystbench.units import check_same_unit
+from hystbench.written import reads
 
 #: Steps may differ from their mean by this share where dataset.yaml does not say:
 #: printed times are rounded, and a clock that is off by more is no uniform clock.
@@ -221,6 +222,7 @@ def load_dataset(path: str | Path) -> Dataset:
                 f"{file}: records: no file {record.name!r}; "
                 f"{nearest(record.name, there)}"
             )
+        reads(record)
     named = about.get("identification")
     if named is not None and named not in files:
         raise InputError(

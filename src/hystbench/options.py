@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
@@ -10,6 +11,9 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import click
+
+from hystbench import written
+from hystbench.errors import InputError
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -30,6 +34,58 @@ class SettingsType(click.ParamType[dict[str, Any]]):
         if not isinstance(settings, dict):
             self.fail("expected a JSON object of settings", param, ctx)
         return settings
+
+
+class _Place(click.Path):
+    """A path that counts as an input or an output of its command."""
+
+    def convert(
+        self,
+        value: str | os.PathLike[str],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> Any:
+        """Check the path, and hold it against the other paths of the command."""
+        path = super().convert(value, param, ctx)
+        if ctx is not None and __name__ not in ctx.meta:
+            ctx.meta[__name__] = True
+            ctx.with_resource(written.one_run())
+        try:
+            self.take(Path(os.fsdecode(path)))
+        except InputError:
+            if ctx is not None:
+                ctx.close()
+            raise
+        return path
+
+    def take(self, path: Path) -> None:
+        """Tell what the path is for."""
+        raise NotImplementedError
+
+
+class InputPlace(_Place):
+    """A file, or a dataset's folder, that a command reads and must not write over."""
+
+    def take(self, path: Path) -> None:
+        """Hold a file safe; what a folder holds is held safe as it is read."""
+        if not path.is_dir():
+            written.reads(path)
+
+
+class OutputFile(_Place):
+    """A file that a command writes: refused before any work where it may not."""
+
+    def take(self, path: Path) -> None:
+        """Refuse a place that is not free, or that is an input of the command."""
+        written.writes(path)
+
+
+class OutputFolder(_Place):
+    """A folder that a command writes into."""
+
+    def take(self, path: Path) -> None:
+        """Refuse a folder that cannot be written into."""
+        written.check_writable(path)
 
 
 def limits(command: Command) -> Command:
@@ -92,18 +148,24 @@ def asked_limits(
 
 write_experiment = click.option(
     "--write-experiment",
-    type=click.Path(dir_okay=False, path_type=Path),
+    type=OutputFile(path_type=Path),
     help="Write the excitation that would tell likely effects apart, as CSV or .npz.",
 )
 
-FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-NEW_FILE = click.Path(path_type=Path)
+FILE = InputPlace(exists=True, dir_okay=False, path_type=Path)
+#: A dataset.yaml or its folder; what it refers to is held safe as it is read.
+DATASET = InputPlace(path_type=Path)
+NEW_FILE = OutputFile(path_type=Path)
+NEW_FOLDER = OutputFolder(path_type=Path)
 
 settings = click.option(
     "--settings", type=SettingsType(), required=True, help="Settings of the job."
 )
 out = click.option(
     "--out", type=NEW_FILE, required=True, help="File to write, whole or not at all."
+)
+out_folder = click.option(
+    "--out", type=NEW_FOLDER, required=True, help="Folder to write."
 )
 identified = click.option(
     "--identified", type=FILE, help="Identified envelope functions (JSON)."

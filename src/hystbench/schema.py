@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.errors import InputError, nearest
+from hystbench.written import reads
 
 
 def load_yaml(path: str | Path) -> Any:
@@ -20,6 +21,7 @@ def load_yaml(path: str | Path) -> Any:
     """
     import yaml  # late: kept out of jobs that read no YAML
 
+    reads(path)
     try:
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:

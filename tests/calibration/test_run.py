@@ -51,7 +51,7 @@ def test_it_writes_the_twin_its_like_and_a_report(tmp_path, monkeypatch):
     run_calibration(job(40, 100), **where)
     twin = load_model(where["model"])
     assert twin.value("calibration-error.offset") == START["offset"]
-    others = [load_model(path) for path in sorted(where["uncertainty"].iterdir())]
+    others = [load_model(path) for path in sorted(where["uncertainty"].glob("*.yaml"))]
     assert [other.name for other in others] == ["gma-01", "gma-02"]
     assert others[0].chain != others[1].chain
     report = read_json(where["report"])

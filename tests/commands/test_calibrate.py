@@ -17,6 +17,7 @@ from hystbench.commands.tried import tried
 from hystbench.files import read_json
 from hystbench.model import load_model
 from hystbench.settings import read_settings
+from hystbench.written import ENTRIES
 from tests.conftest import ROOT, run_hystbench
 
 
@@ -91,7 +92,8 @@ def test_an_interrupted_run_ends_as_an_uninterrupted_one(
 
         patch.setattr(fitting, "tune_steps", interrupt)
         assert call(job, tmp_path / "parts").exit_code == 1
-    assert [file.name for file in (tmp_path / "parts").iterdir()] == ["state.json"]
+    there = {file.name for file in (tmp_path / "parts").iterdir()}
+    assert there == {"state.json", ENTRIES}
     del starts[:]
     parts = call(job, tmp_path / "parts")
     assert parts.exit_code == 0, parts.output

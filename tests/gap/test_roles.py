@@ -17,6 +17,7 @@ from hystbench.challenge.writing import write_case
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.model import load_model
+from hystbench.written import ENTRIES
 
 READ_LAST = ("gap", "records", "ladder", "black_box", "shortfall")
 """Keys of gap.json that the hold-out records fill."""
@@ -45,7 +46,7 @@ def closed(folder, evidence, out):
     files = {
         str(item.relative_to(folder / out))
         for item in (folder / out).rglob("*")
-        if item.is_file()
+        if item.is_file() and ENTRIES not in item.parts
     }
     return content, (folder / out / "model.yaml").read_bytes(), files
 

@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from hystbench.written import ENTRIES
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -71,12 +73,12 @@ class Workflow:
         return self.run("--dry-run", *arguments)
 
     def files(self) -> dict[str, bytes]:
-        """Content of each file of results, logs aside."""
+        """Content of each file of results, logs and the list of them aside."""
         results = self.folder / "results"
         return {
             str(path.relative_to(results)): path.read_bytes()
             for path in sorted(results.rglob("*"))
-            if path.is_file() and "logs" not in path.parts
+            if path.is_file() and not {"logs", ENTRIES} & {*path.parts}
         }
 
 

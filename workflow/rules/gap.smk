@@ -81,6 +81,8 @@ for GIVEN in config["gap"]["datasets"]:
         "model": GIVEN["model"],
         "limits": GIVEN.get("limits", {}),
     }
+    keep_out("gap: datasets", [GAP_DATASET.path, *GAP_DATASET.record_files.values()])
+    keep_out("gap: datasets: model", model_files(GIVEN["model"]))
 
 
 wildcard_constraints:
@@ -100,7 +102,7 @@ rule gap_check:
         model=model_of_case,
         code=code("hystbench.commands.gap_check"),
     output:
-        touch(f"{STAGES}/checked"),
+        f"{STAGES}/checked",
     log:
         f"{RESULTS}/logs/gap/{{case}}/check.log",
     benchmark:
@@ -111,7 +113,8 @@ rule gap_check:
     message:
         "files of {wildcards.case}"
     shell:
-        "hystbench gap-check {input.dataset:q} --model {params.model:q} 2> {log:q}"
+        "hystbench gap-check {input.dataset:q} --model {params.model:q} --out {output:q}"
+        " 2> {log:q}"
 
 
 # The base, read or identified, and the floor.

@@ -9,6 +9,7 @@ import click
 
 from hystbench import options
 from hystbench.compare import comparison
+from hystbench.files import whole_folder
 
 
 @click.command()
@@ -20,7 +21,7 @@ from hystbench.compare import comparison
 @click.option("--twin-claims", type=options.FILE, help="Claims by twin (CSV).")
 @options.identified
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def compare(
     runs: tuple[Path, ...],
     records: tuple[Path, ...],
@@ -33,14 +34,15 @@ def compare(
     out: Path,
 ) -> None:
     """Compare runs with the paper: cells, claims, audit, summary and tables."""
-    comparison.compare(
-        out,
-        runs,
-        records,
-        order_sweep,
-        identified,
-        envelopes,
-        held_out=comparison.held_out_signals(settings["calibrated"]),
-        twin_errors=twin_errors,
-        twin_claims=twin_claims,
-    )
+    with whole_folder(out, comparison.WRITTEN) as fresh:
+        comparison.compare(
+            fresh,
+            runs,
+            records,
+            order_sweep,
+            identified,
+            envelopes,
+            held_out=comparison.held_out_signals(settings["calibrated"]),
+            twin_errors=twin_errors,
+            twin_claims=twin_claims,
+        )

@@ -7,7 +7,6 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.files import check_writable
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
@@ -15,13 +14,13 @@ from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option(
     "--model",
     required=True,
     help="Model file, gpi, linear, column, or package.module:function.",
 )
-@click.option("--out", type=click.Path(path_type=Path), required=True)
+@options.out_folder
 @options.write_experiment
 @options.limits
 @options.calls
@@ -46,8 +45,6 @@ def gap(
     def say(line: str) -> None:
         click.echo(line, err=True)
 
-    if write_experiment is not None:
-        check_writable(write_experiment.parent)
     evidence = load_evidence(dataset)
     with options.counted_calls(calls, keep_calls, say):
         base, note = load_base(model, evidence)

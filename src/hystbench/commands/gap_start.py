@@ -14,7 +14,7 @@ from hystbench.gap.stages import begin
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option("--model", required=True, help="As for hystbench gap.")
 @click.option("--base", type=options.NEW_FILE, required=True, help="Model to write.")
 @options.out

@@ -33,7 +33,7 @@ COLUMNS = (
 @click.argument("tried", type=options.FILE, nargs=-1, required=True)
 @click.option("--choice", type=options.FILE, required=True, help="Committed choice.")
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True)
+@options.out
 def held_out(
     tried: tuple[Path, ...], choice: Path, settings: dict[str, Any], out: Path
 ) -> None:

@@ -12,7 +12,7 @@ from hystbench.errors import InputError, nearest
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(exists=True, path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.argument("name")
 @options.out
 def load(dataset: Path, name: str, out: Path) -> None:

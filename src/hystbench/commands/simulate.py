@@ -38,7 +38,7 @@ class Run(NamedTuple):
 @click.argument("record", type=options.FILE)
 @click.option(
     "--dataset",
-    type=click.Path(exists=True, path_type=Path),
+    type=options.DATASET,
     help="The dataset.yaml of a CSV record; by default the one beside it.",
 )
 @click.option(

@@ -22,6 +22,11 @@ from hystbench.published.audit import write_audit
 
 __all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
 
+WRITTEN = (
+    *("cells.csv", "off.csv", "claims.csv", "audit.csv", "summary.json"),
+    *("verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
+)
+"""Files of a comparison, as names or patterns."""
 CELL_COLUMNS = (
     "table",
     "signal",

@@ -18,6 +18,7 @@ from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
 from hystbench.model import Model
+from hystbench.written import writes
 
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
@@ -48,6 +49,7 @@ def decide_in(
     say : callable
         Told a line of progress at a time.
     """
+    writes(*(folder / name for name in DECIDED))
     asked = Limits.within(evidence.fit, limits) if limits else None
     start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     if progress is None:
@@ -81,6 +83,8 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     evidence : Evidence
     base : Model
     """
+    tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
+    writes(*(folder / name for name in ("gap.json", *tables)))
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
     restorer = Restorer(evidence.fit, base)

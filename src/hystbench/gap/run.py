@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.files import check_writable, whole_folder, write_csv, write_json
+from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.evidence import Evidence, check_units
@@ -35,11 +35,13 @@ from hystbench.gap.state import State
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
+from hystbench.written import writes
 
 SHOWN = ("gap.json", "holdout/*.csv")
 """What the hold-out records show."""
-RESULT = (*SHOWN, "model.yaml", "curves.json", "report.html")
-"""Files of a folder that a later result replaces; any other stays."""
+FILES = ("gap.json", "model.yaml", "curves.json", "report.html")
+RESULT = (*FILES, "holdout/*.csv")
+"""Files of a folder, as names or patterns, that a later result replaces."""
 
 
 def close_gap(
@@ -60,7 +62,8 @@ def close_gap(
     base : Model
     folder : Path
         Gets gap.json, model.yaml, curves.json, holdout/ and report.html, all together
-        when the last is done. Those of an earlier result go; any other file stays.
+        when the last is done. Those of an earlier result go; any other file stays,
+        and where one stands in the way it is refused before the search.
     place : str
         Where the base came from, for messages.
     limits : mapping of str to float, optional
@@ -74,10 +77,12 @@ def close_gap(
     Raises
     ------
     InputError
-        If units do not match or the base does not run; nothing is written then.
+        If units do not match, the base does not run, or a file that hystbench did
+        not write, or an input, stands in the way; nothing is written then.
     """
     check_units(evidence, base, place)
-    check_writable(folder)
+    tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
+    writes(*(folder / name for name in (*FILES, *tables)))
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)

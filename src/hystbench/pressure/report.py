@@ -54,6 +54,10 @@ def write_twins(ensembles: Sequence[Ensemble], errors: Path, claims: Path) -> No
     write_csv(claims, CLAIM_COLUMNS, claim_rows)
 
 
+WRITTEN = ("claims.csv", "by-twin.csv", "summary.json", "claims.md")
+"""Files of the claims under pressure."""
+
+
 def write_pressure(
     pressed: Sequence[Pressed],
     counts: Sequence[Count],
