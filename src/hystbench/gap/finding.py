@@ -35,7 +35,7 @@ from hystbench.gap.told import (
     not_tried,
     ranking_rows,
 )
-from hystbench.gap.uncertainty import on_more_samples, standard_errors
+from hystbench.gap.uncertainty import on_more_samples, size_error, standard_errors
 from hystbench.gap.verdict import (
     Left,
     box_matters,
@@ -179,8 +179,11 @@ def decide(
         box.explained_on_folds,
     )
     untried = not_tried(named)
-    reason += _whole(left) if state.added else ""
     reason += _untried(untried) if state.added else ""
+    findings = new_in_every_record(state, left) if verdict == "named" else []
+    if findings:
+        verdict = "unnamed"
+        reason = "; ".join(item["sentence"] for item in findings)
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -197,14 +200,21 @@ def decide(
         "reason": reason,
         "effects": [
             effect_mapping(
-                item, state, errors, of_beside, by_effect.get(item.effect, ()), left
+                item,
+                state,
+                errors,
+                of_beside,
+                by_effect.get(item.effect, ()),
+                left,
+                size_error(finer, floor.rms, number),
             )
-            for item in state.added
+            for number, item in enumerate(state.added)
         ],
         "fit": _fit(start, state, floor)
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
+        "findings": findings,
         "not_tried": untried,
         "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
@@ -227,12 +237,23 @@ def decide(
     )
 
 
-def _whole(left: Left) -> str:
-    """Tell what stays of the whole gap, where that is far more than the reason says."""
-    if left.whole - left.loose < SAID:
-        return ""
-    also = "; with what a wrong shape of the base could leave as well"
-    return f"{also}, {100 * left.whole:.0f} %"
+def new_in_every_record(state: State, left: Left) -> list[dict[str, str]]:
+    """Tell of what accounts for a gap and yet is no name, if that is all there is.
+
+    A signal beside the chain that has no number in common to the records, such as a
+    path of drift, predicts nothing of another record. A tone does: its frequency.
+    """
+    alone = {beside.effect for beside, values in state.beside if not values}
+    if {item.effect for item in state.added} != alone:
+        return []
+    return [
+        {
+            "name": name,
+            "sentence": f"a {name} of its own in every record is all that pays, and "
+            f"it predicts no other record, so it is no name: {left.stays} beside it",
+        }
+        for name in sorted(alone)
+    ]
 
 
 def _untried(names: Sequence[str]) -> str:
@@ -240,10 +261,6 @@ def _untried(names: Sequence[str]) -> str:
     if not names:
         return ""
     return f"; not tried, as the simulator cannot be run again: {', '.join(names)}"
-
-
-SAID = 0.1
-"""Share of the gap that a wrong shape of the base could leave, to be told."""
 
 
 def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:

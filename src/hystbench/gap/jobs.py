@@ -12,7 +12,7 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
-from hystbench.gap.run import SHOWN, show, write_shown
+from hystbench.gap.run import SHOWN, outcome, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
@@ -21,7 +21,7 @@ from hystbench.model import Model
 
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
-DECIDED = ("model.yaml", "curves.json", NAMED, DECISION)
+DECIDED = ("curves.json", NAMED, DECISION)
 """What the first of the two writes."""
 
 
@@ -33,7 +33,7 @@ def decide_in(
     limits: Mapping[str, float] | None = None,
     say: Say = silent,
 ) -> Finding:
-    """Give the verdict and write it, the model and the curves to a folder.
+    """Decide on the fit records; write the decision and the curves to a folder.
 
     Parameters
     ----------
@@ -64,7 +64,6 @@ def decide_in(
         ],
     }
     with whole_folder(folder, DECIDED) as fresh:
-        finding.model.save(fresh / "model.yaml")
         write_json(fresh / "curves.json", finding.curves)
         write_json(fresh / NAMED, kept)
         write_json(fresh / DECISION, finding.content)
@@ -72,7 +71,9 @@ def decide_in(
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
-    """Read the hold-out records and write gap.json and holdout/; decide nothing.
+    """Read the hold-out records; write gap.json, model.yaml and holdout/.
+
+    They choose nothing: a model that is worse there than the base is taken back.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     ]
     start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
-    shown = show(base, state, floor, box, evidence.hold_out, steps)
     decided = read_json(folder / DECISION)
+    shown = outcome(base, decided, state, floor, box, evidence.hold_out, steps)
     with whole_folder(folder, SHOWN) as fresh:
-        write_shown(fresh, decided, evidence.hold_out, shown)
+        write_shown(fresh, evidence.hold_out, shown)

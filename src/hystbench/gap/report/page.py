@@ -22,6 +22,8 @@ OPTIONAL: dict[str, Any] = {
     "base_parameters": {},
     "taken_out": [],
     "shortfall": None,
+    "withdrawn": None,
+    "findings": [],
     "no_experiment": "",
     "not_tried": [],
     "runs_away": [],
