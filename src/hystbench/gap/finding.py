@@ -20,6 +20,8 @@ from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.lone import lone_share
 from hystbench.gap.name import LITTLE, Named, name
+from hystbench.gap.named_apart import named_apart
+from hystbench.gap.own_values import NONE, OwnValues
 from hystbench.gap.rank import make_score
 from hystbench.gap.repeats import unrepeated
 from hystbench.gap.rungs import Rung, rungs
@@ -70,6 +72,8 @@ class Finding:
         What would tell likely effects apart best.
     rungs : tuple of Rung
         The models on the way from the base to the last effect.
+    own : OwnValues
+        What some records have of their own.
     """
 
     base: Model
@@ -82,6 +86,7 @@ class Finding:
     curves: Mapping[str, Any]
     experiment: Experiment | None
     rungs: tuple[Rung, ...]
+    own: OwnValues
 
 
 def find(
@@ -119,7 +124,8 @@ def find(
     limits = Limits.within(records, asked) if asked else None
     start, floor = start_state(records, base, hold, declared)
     named = name(start, floor.rms, say)
-    return decide(dataset, base, start, floor, named, say, limits)
+    start, named, own = named_apart(start, floor.rms, named, say)
+    return decide(dataset, base, start, floor, named, say, limits, own)
 
 
 def decide(
@@ -130,6 +136,7 @@ def decide(
     named: Named,
     say: Say = silent,
     limits: Limits | None = None,
+    own: OwnValues = NONE,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
 
@@ -146,6 +153,8 @@ def decide(
         Told a line of progress at a time.
     limits : Limits, optional
         Of the next experiment; those of the records where none are given.
+    own : OwnValues
+        What was taken off the records of ``start``, as it is their own.
     """
     left = what_is_left(start, named.state, floor.rms)
     if named.state.added and left.little_named:
@@ -180,6 +189,7 @@ def decide(
     )
     untried = not_tried(named)
     reason += _untried(untried) if state.added else ""
+    reason += f"; beside {own.words} of some records' own" if own.records else ""
     findings = new_in_every_record(state, left) if verdict == "named" else []
     if findings:
         verdict = "unnamed"
@@ -215,6 +225,7 @@ def decide(
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
         "findings": findings,
+        "record_values": own.mapping(records[0].output.unit),
         "not_tried": untried,
         "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
@@ -234,6 +245,7 @@ def decide(
         curves(compared, floor),
         experiment,
         rungs(start, named),
+        own,
     )
 
 

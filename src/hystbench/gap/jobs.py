@@ -12,6 +12,8 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
+from hystbench.gap.named_apart import named_apart
+from hystbench.gap.own_values import OwnValues
 from hystbench.gap.run import SHOWN, outcome, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
@@ -54,7 +56,8 @@ def decide_in(
         named = name(start, floor.rms, say)
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
-    finding = decide(evidence.name, base, start, floor, named, say, asked)
+    start, named, own = named_apart(start, floor.rms, named, say)
+    finding = decide(evidence.name, base, start, floor, named, say, asked, own)
     kept = {
         "floor": floor_mapping(floor),
         "state": state_mapping(finding.state),
@@ -84,14 +87,16 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
-    restorer = Restorer(evidence.fit, base)
+    decided = read_json(folder / DECISION)
+    own = OwnValues.of_mapping(decided["record_values"])
+    fit = own.taken_off(evidence.fit, evidence.hold)
+    restorer = Restorer(fit, base)
     state = restorer.state(kept["state"])
     steps = [
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     ]
-    start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
+    start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
-    decided = read_json(folder / DECISION)
-    shown = outcome(base, decided, state, floor, box, evidence.hold_out, steps)
+    shown = outcome(base, decided, state, floor, box, evidence.hold_out, steps, own)
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

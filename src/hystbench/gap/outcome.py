@@ -1,7 +1,7 @@
 """What hold-out records do to a finding: they lead its reason, or take names back.
 
-They choose nothing. A model that is worse on them than the base goes as a whole: to keep
-those of its effects that do better there would be to choose by hold-out records.
+They choose nothing. A model that is worse on them than the base goes as a whole: to
+keep those of its effects that do better there would be to choose by hold-out records.
 """
 
 from __future__ import annotations
@@ -50,8 +50,9 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
     -------
     dict or None
         ``withdrawn`` of gap.json: ``names``, empty where only the base was re-tuned;
-        ``verdict`` and ``effects`` as the fit records decided; ``before`` and ``after``,
-        RMS on the hold-out records together, and of each in ``records``; ``why``.
+        ``verdict`` and ``effects`` as the fit records decided; ``before`` and
+        ``after``, RMS on the hold-out records together, and of each in ``records``;
+        ``why``.
     """
     gap, unit = content["gap"], content["unit"]
     before, after = gap["before"], gap["after"]

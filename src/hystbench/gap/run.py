@@ -19,6 +19,7 @@ from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
 from hystbench.gap.nuisance import Nuisance, degree_that_carries_on, path_and_mains
 from hystbench.gap.outcome import first_figure, withdrawal, without_names
+from hystbench.gap.own_values import NONE, OwnValues
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
@@ -100,6 +101,7 @@ def close_gap(
         finding.black_box,
         evidence.hold_out,
         finding.rungs,
+        finding.own,
     )
     with whole_folder(folder, RESULT) as fresh:
         write_json(fresh / "curves.json", finding.curves)
@@ -156,6 +158,7 @@ def outcome(
     box: BlackBox,
     records: tuple[Record, ...],
     steps: Sequence[Rung],
+    own: OwnValues = NONE,
 ) -> Outcome:
     """Show a finding on the hold-out records; take back what is worse there.
 
@@ -164,16 +167,16 @@ def outcome(
     base : Model
     decided : mapping
         What gap.json holds, but for what the hold-out records show.
-    state, floor, box, records, steps
+    state, floor, box, records, steps, own
         As for :func:`show`.
     """
-    shown = show(base, state, floor, box, records, steps)
+    shown = show(base, state, floor, box, records, steps, own)
     content = {**decided, "withdrawn": None, **shown.content}
     model = augmented(base, state)
     taken = withdrawal(content)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
-        alone = show(base, steps[0].state, floor, box, records, steps[:1])
+        alone = show(base, steps[0].state, floor, box, records, steps[:1], own)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content, model = without_names({**content, **kept}, taken), base
         shown = alone
@@ -206,6 +209,7 @@ def show(
     box: BlackBox,
     records: tuple[Record, ...],
     steps: Sequence[Rung],
+    own: OwnValues = NONE,
 ) -> Shown:
     """Compare base and model on hold-out records.
 
@@ -220,6 +224,8 @@ def show(
     records : tuple of Record
     steps : sequence of Rung
         Models on the way from the base to this one.
+    own : OwnValues
+        What fit records have of their own: a hold-out record may have the same.
 
     Returns
     -------
@@ -232,12 +238,28 @@ def show(
         finding stays: the record is told, and counts as nothing closed.
     """
     nuisance = what_is_new(state)
-    before = run_base(base, records, state.hold)
-    usual = reach(before, floor.rms)
-    after, lost = _run(_name(base, state), state, records, usual)
+    if own.kinds and nuisance is None:
+        nuisance = path_and_mains(None)  # nothing more, but the first part estimates
+
+    def as_recorded(outputs: Sequence[FloatArray | None]) -> list[FloatArray | None]:
+        return [
+            output
+            if output is None or not own.kinds
+            else own.fitted_first(record, output, floor.rms**2).of(output, record.dt)
+            for record, output in zip(records, outputs, strict=True)
+        ]
+
+    plain = run_base(base, records, state.hold)
+    usual = reach(plain, floor.rms)
+    before = [output for output in as_recorded(plain) if output is not None]
+    found_after, lost = _run(_name(base, state), state, records, usual)
+    after = as_recorded(found_after)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
     stages = [
-        (rung.name, _run(_name(base, rung.state), rung.state, records, usual)[0])
+        (
+            rung.name,
+            as_recorded(_run(_name(base, rung.state), rung.state, records, usual)[0]),
+        )
         for rung in steps
     ]
     content = {

@@ -129,13 +129,33 @@ SHORTFALL = _object(
     {"fit": OPTIONAL, "hold_out": OPTIONAL, "sentence": {"type": "string"}}
 )
 
-# What accounts for the gap and yet is no name, as it is new in every record and predicts
-# no other. Empty unless such effects are all that pays, and enough.
+# What accounts for the gap and yet is no name, as it is new in every record and
+# predicts no other. Empty unless such effects are all that pays, and enough.
 FOUND = _object({"name": WORDS, "sentence": WORDS})
 
-# Names that the hold-out records took back: the model with them is worse there than the
-# base. RMS over the hold-out records of the base and of that model, null where it has no
-# bounded output.
+# A delay, a gain or an offset that some fit records have of their own, by record: no
+# effect. `share_of_gap_power` is above the noise floor, on the fit records.
+RECORD_VALUES = _object(
+    {
+        "kinds": {
+            "type": "array",
+            "items": {"enum": ["delay", "gain", "offset"]},
+            "minItems": 1,
+        },
+        "records": {
+            "type": "array",
+            "items": _object(
+                {"name": WORDS, "delay_s": NUMBER, "gain": NUMBER, "offset": NUMBER}
+            ),
+        },
+        "share_of_gap_power": NUMBER,
+        "sentence": WORDS,
+    }
+)
+
+# Names that the hold-out records took back: the model with them is worse there than
+# the base. RMS over the hold-out records of the base and of that model, null where it
+# has no bounded output.
 WITHDRAWN = _object(
     {
         "names": NAMES,
@@ -255,6 +275,7 @@ SCHEMA = _object(
     fit=FIT,
     runs_away={"type": "array", "items": AWAY},
     findings={"type": "array", "items": FOUND},
+    record_values={"oneOf": [RECORD_VALUES, {"type": "null"}]},
     withdrawn={"oneOf": [WITHDRAWN, {"type": "null"}]},
     # Effects that need a simulator that can be run again, where it cannot.
     not_tried={"type": "array", "items": {"type": "string"}},

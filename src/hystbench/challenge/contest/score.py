@@ -41,8 +41,8 @@ class Row:
     truth, named : str
         Names with a space between, in the order hidden and named.
     verdict : str
-        Empty where the case is lost; ``named`` also where all effects are findings, told
-        beside unnamed as they are new in every record.
+        Empty where the case is lost; ``named`` also where all effects are findings,
+        told beside unnamed as they are new in every record.
     lost : str
         Why there is no answer; empty where there is one.
     confidence : float or None

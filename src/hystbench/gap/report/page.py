@@ -24,6 +24,7 @@ OPTIONAL: dict[str, Any] = {
     "shortfall": None,
     "withdrawn": None,
     "findings": [],
+    "record_values": None,
     "no_experiment": "",
     "not_tried": [],
     "runs_away": [],
