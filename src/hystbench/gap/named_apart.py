@@ -11,9 +11,10 @@ from hystbench.gap.own_values import KINDS, NONE, OwnValues, own_values
 from hystbench.gap.rank import make_score
 from hystbench.gap.say import Say
 from hystbench.gap.scene import Scene
+from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
 
 def named_apart(
@@ -22,10 +23,12 @@ def named_apart(
     """Name anew beside what records have of their own, where that explains them better.
 
     Effects go first: they are laws, with few numbers, that hold for every record. What
-    records have of their own is looked for beside the base and beside the effects that
-    were named. Where it lowers the score by as much as a first effect has to, all its
-    numbers charged, it is taken off the records and naming begins again; and the better
-    of both explanations stays, by the same score.
+    records have of their own is looked for beside the effects that were named, and
+    beside the base alone. It is taken off the records and naming begins again; what is
+    named then tells better what the records have of their own, and so on while the
+    score falls. The whole has to lower the score of the first names by as much as a
+    first effect has to lower it, all numbers charged; of names that are themselves new
+    in every record, such as a drift, it only has to be the better one.
 
     Parameters
     ----------
@@ -45,25 +48,42 @@ def named_apart(
     own : OwnValues
     """
     score = make_score(start, floor_rms, forms=False)
-    least = score_of(named.state, score) - PAYS
-    kinds = kinds_of(start)
-    tried: list[tuple[float, OwnValues]] = []
-    for state in (start, named.state):
-        own = own_values(start.records, simulated(state), floor_rms**2, kinds)
+    found = (start, named, NONE)
+    least = score_of(named.state, score)
+    least -= 0.0 if any(not values for _, values in named.state.beside) else PAYS
+    likely = _likely(start, (named.state, start), score)
+    for _ in range(ROUNDS):
+        value, own = next((item for item in likely if item[0] < least), (least, NONE))
+        if not own.records:
+            break
+        say(f"records have {own.words} of their own: naming beside that")
+        apart = on_records(start, own.taken_off(start.records, start.hold))
+        again = name(apart, floor_rms, say)
+        value = score_of(again.state, score) + own.charge
+        if value >= least:
+            break
+        square = floor_rms**2
+        share = apart.share(start, square, start.power(square))
+        found, least = (apart, again, replace(own, share=share)), value
+        likely = _likely(start, (on_records(again.state, start.records),), score)
+    return found
+
+
+ROUNDS = 3
+"""Of naming, after each of which what records have of their own is known better."""
+
+
+def _likely(
+    start: State, models: Sequence[State], score: Score
+) -> list[tuple[float, OwnValues]]:
+    """Find what records have of their own beside models, and the scores with it."""
+    found = []
+    for state in models:
+        own = own_values(start.records, simulated(state), score.floor, kinds_of(start))
         if own.records:
-            value = score_of(on_records_without(state, own), score) + own.charge
-            tried.append((value, own))
-    value, own = min(tried, key=lambda item: item[0], default=(least, NONE))
-    if value >= least:
-        return start, named, NONE
-    say(f"records have {' and '.join(own.kinds)} of their own: naming beside that")
-    apart = on_records_without(start, own)
-    again = name(apart, floor_rms, say)
-    if score_of(again.state, score) + own.charge >= least:
-        return start, named, NONE
-    square = floor_rms**2
-    share = apart.share(start, square, start.power(square))
-    return apart, again, replace(own, share=share)
+            apart = on_records(state, own.taken_off(start.records, start.hold))
+            found.append((score_of(apart, score) + own.charge, own))
+    return found
 
 
 def kinds_of(state: State) -> tuple[str, ...]:
@@ -72,9 +92,8 @@ def kinds_of(state: State) -> tuple[str, ...]:
     return KINDS if reruns else tuple(kind for kind in KINDS if kind != "delay")
 
 
-def on_records_without(state: State, own: OwnValues) -> State:
-    """Give a model on records from which what is their own is taken off."""
-    records = own.taken_off(state.records, state.hold)
+def on_records(state: State, records: tuple[Record, ...]) -> State:
+    """Give a model on other records of the same lengths."""
     return replace(state, records=records, correction=None).settled()
 
 
