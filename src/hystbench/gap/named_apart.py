@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.gap.change import removable, without_effect
 from hystbench.gap.fit import ENOUGH, finished, score_of
 from hystbench.gap.name import Named, name
 from hystbench.gap.own_values import KINDS, NONE, OwnValues, own_values
@@ -25,12 +26,13 @@ def named_apart(
     """Name anew beside what records have of their own, where that explains them better.
 
     Effects go first: they are laws, with few numbers, that hold for every record. What
-    records have of their own is looked for beside the effects that were named, and
-    beside the base alone. It is taken off the records and naming begins again; what is
-    named then tells better what the records have of their own, and so on while the
-    score falls. The whole has to lower the score of the first names by as much as a
-    first effect has to lower it, all numbers charged; of names that are themselves new
-    in every record, such as a drift, it only has to be the better one.
+    records have of their own is looked for beside the effects that were named, beside
+    those of them that do not do the same to all records, and beside the base alone. It
+    is taken off the records and naming begins again; what is named then tells better
+    what the records have of their own, and so on while the score falls. The whole has
+    to lower the score of the first names by as much as a first effect has to lower it,
+    all numbers charged; of names that are themselves new in every record, such as a
+    drift, it only has to be the better one.
 
     Parameters
     ----------
@@ -53,7 +55,8 @@ def named_apart(
     found = (start, named, NONE)
     least = score_of(named.state, score)
     least -= 0.0 if any(not values for _, values in named.state.beside) else PAYS
-    likely = _likely(start, (named.state, start), score)
+    models = dict.fromkeys((named.state, without_shared(named.state), start))
+    likely = _likely(start, tuple(models), score)
     for _ in range(ROUNDS):
         value, own = next((item for item in likely if item[0] < least), (least, NONE))
         if not own.records:
@@ -69,6 +72,21 @@ def named_apart(
         found, least = (apart, again, replace(own, share=share)), value
         likely = _likely(start, (on_records(again.state, start.records),), score)
     return found
+
+
+SHARED = {"input-delay", "calibration-error"}
+"""Effects that do to all records what each may have of its own."""
+
+
+def without_shared(state: State) -> State:
+    """Give a model without a delay, a gain or an offset that all records share.
+
+    Beside one that was named it would not be seen that each record has its own.
+    """
+    for number in reversed(range(len(state.added))):
+        if state.added[number].effect in SHARED and removable(state, number):
+            state = without_effect(state, number)
+    return state
 
 
 ROUNDS = 3
@@ -99,7 +117,7 @@ def _likely(
             state = on_records(apart, start.records)
         if best[1].records:
             found.append(best)
-    return found
+    return sorted(found, key=lambda item: item[0])
 
 
 def kinds_of(state: State) -> tuple[str, ...]:
