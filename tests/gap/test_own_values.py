@@ -8,16 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
+from hystbench.gap.change import with_effect
+from hystbench.gap.effects import effects
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.finding import find
 from hystbench.gap.jobs import decide_in, show_in
+from hystbench.gap.named_apart import without_shared
 from hystbench.gap.own_values import NONE, Own, OwnValues, fitted, own_values
 from hystbench.gap.run import close_gap
 from hystbench.gap.schema import RECORD_VALUES
 from hystbench.model import Model
 from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
-from tests.gap.small import block
+from tests.gap.small import block, state_of
 
 DT, COUNT, NOISE = 1e-3, 800, 0.02
 GAIN, LAG_S = 12.0, 0.006
@@ -155,3 +158,22 @@ def test_late_triggers_alone_are_no_gap_and_hold_out_records_have_theirs(tmp_pat
     show_in(two, evidence, rig())
     for file in ("gap.json", "model.yaml", "holdout/hr0.csv"):
         assert (one / file).read_bytes() == (two / file).read_bytes()
+
+
+def test_a_delay_that_all_share_hides_those_of_each():
+    """With it, some records would be early; without, each is as late as it is."""
+    start = state_of((block("gain", value=GAIN),), made(NOTHING))
+    both = start
+    for name, values in (
+        ("drive-lag", {"time_constant_s": 0.01}),
+        ("input-delay", LATE),
+    ):
+        variant = next(effects()[name].variants(both.scene))
+        both = with_effect(both, variant, values)
+    left = without_shared(both)
+    assert [item.effect for item in left.added] == ["drive-lag"]
+    assert without_shared(start) is start
+
+
+LATE = {"delay_s": 0.002}
+NOTHING = [(0, 1, 0)] * 3

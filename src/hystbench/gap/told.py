@@ -104,7 +104,9 @@ def effect_mapping(
     """
     own = next((x for x in ranking if x.effect == item.effect), None)
     parameters = _parameters(item, state, errors, of_beside)
-    error = error_of(size_error, parameters)
+    # Of a shape each number stands in for its neighbours: only all together say much.
+    shape = any(state.chain[k].hysteretic for k in item.blocks)
+    error = error_of(size_error, {} if shape else parameters)
     return {
         "name": item.effect,
         "place": item.place,
