@@ -20,6 +20,7 @@ from hystbench.gap.verdict import (
     WIDE,
     Left,
     confidence,
+    error_of,
     judge,
     what_is_left,
 )
@@ -126,11 +127,11 @@ def test_an_upper_bound_of_the_noise_never_shows_that_there_is_no_gap(
 @pytest.mark.parametrize("named", [False, True])
 def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are(named):
     reasons = [judge(left(90.0), named, box)[1] for box in (-0.3, None, 0.3, 0.0)]
-    what = "that" if named else "it"
-    assert f"a black box makes {what} worse on folds" in reasons[0]
+    what = "what stays" if named else "it"
+    assert f"a black box makes {what} worse on folds of the fit records" in reasons[0]
     assert "is not known" in reasons[1]
-    assert f"takes 30 % of {what} away" in reasons[2]
-    assert f"takes 0 % of {what} away" in reasons[3]
+    assert f"takes 30 % of the power of {what} away on folds" in reasons[2]
+    assert f"takes 0 % of the power of {what} away on folds" in reasons[3]
 
 
 @given(st.floats(1.01 * ABOVE, 1e6), st.none() | SHARES)
@@ -180,6 +181,34 @@ def test_confidence_is_a_probability_that_rivals_and_rest_take_from(gaps, after)
     # What was not put to folds has no score that the others' can be held against.
     no_finalist = Candidate("backlash", "mechanics", score=-600.0)
     assert confidence(first, [first, *others, no_finalist], left(after)) == sure
+
+
+def test_no_name_is_surer_than_that_its_numbers_are_anything():
+    """Two thirds of a normal distribution lie within one standard error."""
+    one = Candidate("creep", "mechanics", score=-500.0)
+    sure = [confidence(one, [one], left(0.0), e) for e in (0.0, 0.1, 1.0, 3.0, 1e9)]
+    assert sure[:2] == [0.98, 0.98]
+    assert sure[2] == pytest.approx(0.6827, abs=1e-4)
+    assert sure[3] == pytest.approx(0.2611, abs=1e-4)
+    assert sure[4] < 1e-6
+
+
+def number(value, error):
+    return {"value": value, "standard_error": error, "unit": "s"}
+
+
+def test_the_error_of_an_effect_is_that_of_its_size_or_of_its_best_known_number():
+    loose = {"level": number(2.0, 6.0), "sharpness": number(4.0, 8.0)}
+    assert error_of(0.1, loose) == 2.0
+    assert error_of(None, loose) == 2.0
+    # A mode may be told by its frequency; that it is there at all, its size tells.
+    mode = {"frequency_hz": number(60.0, 0.6), "participation": number(0.1, 0.4)}
+    assert error_of(4.0, mode) == 4.0
+    assert error_of(None, mode) == pytest.approx(0.01)
+    many = {"times": number([1.0, -2.0], [3.0, 1.0]), "shape": number("slab", None)}
+    assert error_of(0.2, many) == 0.5
+    assert error_of(None, {"times": number([1.0, 2.0], [None, None])}) == 0.0
+    assert error_of(0.1, {"slope": number(0.0, 1.0)}) == np.inf
 
 
 def test_two_that_score_alike_share_the_confidence():

@@ -29,10 +29,18 @@ FLOORS = {
 
 def verdict_sentence(gap: dict[str, Any]) -> str:
     """Say the verdict in plain words."""
+    if gap["withdrawn"] and gap["verdict"] == "unnamed":
+        return _withdrawn_sentence(gap["withdrawn"])
     names = [effect["name"].replace("-", " ") for effect in gap["effects"]]
     sentence = VERDICTS[gap["verdict"]].format(
         effects=listed(names), reason=gap["reason"].rstrip(".")
     )
+    if gap["findings"]:
+        found = [item["name"].replace("-", " ") for item in gap["findings"]]
+        return (
+            f"The simulator lacks no effect that the records show; {listed(found)} "
+            "of each record's own accounts for what differs."
+        )
     if gap["verdict"] == "unnamed" and names:
         sentence += f" A part of the gap looks like {listed(names)}."
     return sentence
@@ -61,6 +69,23 @@ def advice(gap: dict[str, Any]) -> str:
     return (
         "What is missing has no name yet; where it shows most is where to measure "
         f"again: {first['sentence']}"
+    )
+
+
+def _withdrawn_sentence(taken: dict[str, Any]) -> str:
+    """Say that names were withdrawn, and why."""
+    names = listed([name.replace("-", " ") for name in taken["names"]])
+    what = f"{names[:1].upper()}{names[1:]}" if names else "The re-tuning of the base"
+    were = "were" if len(taken["names"]) > 1 else "was"
+    they = "they make" if len(taken["names"]) > 1 else "it makes"
+    if taken["after"] is None:
+        return (
+            f"No name stands. {what} {were} withdrawn: with that, the model cannot be "
+            "run to the end of the hold-out records."
+        )
+    return (
+        f"No name stands. {what} {were} withdrawn: {they} the gap on the hold-out "
+        "records wider."
     )
 
 
