@@ -30,7 +30,6 @@ OPTIONAL: dict[str, Any] = {
     "not_tried": [],
     "runs_away": [],
     "fit": None,
-    "withdrawn": None,
     "simulator": None,
     "calls_used_up": None,
 }
