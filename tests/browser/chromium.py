@@ -11,6 +11,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -20,12 +21,33 @@ from typing import Any
 #: Names under which Debian and others install it.
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 EXECUTABLE = next(filter(None, map(shutil.which, NAMES)), None)
+#: Entries of the console that are faults.
+BAD = ("error", "warning", "assert")
 #: A browser that is silent as long as this is broken (seconds).
 PATIENCE = 120
 
-_QUIET = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run
---disable-background-networking --disable-component-update --disable-sync
---hide-scrollbars --remote-debugging-pipe""".split()
+_QUIET = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--hide-scrollbars",
+    "--remote-debugging-pipe",
+)
+
+#: Put the ends of the pipes where Chromium looks for them, by way of numbers that are
+#: neither.
+_START = """\
+import fcntl, os, sys
+ends = [fcntl.fcntl(int(end), fcntl.F_DUPFD, 10) for end in sys.argv[1:3]]
+for place, end in zip((3, 4), ends):
+    os.dup2(end, place)
+os.execv(sys.argv[3], sys.argv[3:])
+"""
 
 
 class Chromium:
@@ -38,9 +60,10 @@ class Chromium:
         read_by_it, self._out = os.pipe()
         self._in, written_by_it = os.pipe()
         self._process = subprocess.Popen(
-            # The shell puts the pipe where Chromium looks for it.
-            ["sh", "-c", f'exec "$@" 3<&{read_by_it} 4>&{written_by_it}', "sh"]
-            + [EXECUTABLE, *_QUIET, f"--user-data-dir={self._profile.name}"],
+            [
+                *(sys.executable, "-c", _START, str(read_by_it), str(written_by_it)),
+                *(EXECUTABLE, *_QUIET, f"--user-data-dir={self._profile.name}"),
+            ],
             pass_fds=(read_by_it, written_by_it),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -52,11 +75,15 @@ class Chromium:
         self._number = 0
         self._session: str | None = None
         self.events: list[dict[str, Any]] = []
+
+    def __enter__(self) -> Chromium:
+        """Open its tab."""
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
         self._session = attached["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
+        return self
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
         """Call a method and wait for its answer; events that come are kept."""
@@ -116,22 +143,13 @@ class Chromium:
 
     def complaints(self) -> list[str]:
         """List errors of the console and exceptions since the page was opened."""
-        said = []
-        for event in self.events:
-            about = event.get("params", {})
-            if event.get("method") == "Runtime.exceptionThrown":
-                said.append(str(about["exceptionDetails"]))
-            elif event.get("method") == "Runtime.consoleAPICalled":
-                if about["type"] in ("error", "warning", "assert"):
-                    said.append(str(about["args"]))
-            elif event.get("method") == "Log.entryAdded":
-                if about["entry"]["level"] in ("error", "warning"):
-                    said.append(about["entry"]["text"])
-        return said
+        return [said for said in map(_complaint, self.events) if said]
 
     def fetched(self) -> list[str]:
         """List what the page asked for, itself and what stands inside it aside."""
-        sent = [e for e in self.events if e.get("method") == "Network.requestWillBeSent"]
+        sent = [
+            e for e in self.events if e.get("method") == "Network.requestWillBeSent"
+        ]
         urls = [event["params"]["request"]["url"] for event in sent[1:]]
         return [url for url in urls if not url.startswith("data:")]
 
@@ -146,10 +164,6 @@ class Chromium:
             self._buffer += part
         message, _, self._buffer = self._buffer.partition(b"\0")
         return json.loads(message)
-
-    def __enter__(self) -> Chromium:
-        """Give the browser."""
-        return self
 
     def __exit__(
         self,
@@ -166,3 +180,16 @@ class Chromium:
             self._process.wait()
         os.close(self._in)
         self._profile.cleanup()
+
+
+def _complaint(event: dict[str, Any]) -> str:
+    """Tell what an event complains of; most do not."""
+    about = event.get("params", {})
+    method = event.get("method")
+    if method == "Runtime.exceptionThrown":
+        return str(about["exceptionDetails"])
+    if method == "Runtime.consoleAPICalled" and about["type"] in BAD:
+        return str(about["args"])
+    if method == "Log.entryAdded" and about["entry"]["level"] in BAD:
+        return str(about["entry"]["text"])
+    return ""

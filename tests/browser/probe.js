@@ -1,6 +1,6 @@
 (() => {
   // What lies in a scroll container, or is folded away, may lie outside the window.
-  const held = (element) => element.closest(".scroll, .skip") ;
+  const held = (element) => element.closest(".scroll, pre");
   const width = document.documentElement.clientWidth;
   const outside = [];
   const clipped = [];
@@ -11,16 +11,16 @@
     if (box.left < -0.5 || box.right > width + 0.5 || box.top + scrollY < -0.5) outside.push(name);
     // Text that is larger than its box, where what is larger is hidden.
     const style = getComputedStyle(element);
-    if (!element.matches(".scroll") && style.overflowX !== "visible"
+    if (!element.matches(".scroll, pre") && style.overflowX !== "visible"
         && (element.scrollWidth > element.clientWidth + 1)) clipped.push(name);
   }
-  const box = document.querySelector(".verdict .sentence")?.getBoundingClientRect();
+  const box = document.querySelector(".verdict .sentence, .verdict h1")?.getBoundingClientRect();
   return {
     width, height: innerHeight, scrolled: scrollY,
     document_width: document.documentElement.scrollWidth,
     outside, clipped,
     headline: box ? [box.left, box.top, box.right, box.bottom] : null,
-    headline_text: document.querySelector(".verdict .sentence")?.textContent.trim() ?? "",
+    headline_text: document.querySelector(".verdict .sentence, .verdict h1")?.textContent.trim() ?? "",
     images: [...document.images].map((image) => ({
       name: image.closest("figure")?.id ?? "", alt: image.alt,
       natural: image.naturalWidth, width: image.getBoundingClientRect().width,

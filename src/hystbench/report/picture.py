@@ -16,6 +16,9 @@ _SIZE_TURNED = re.compile(
     r'<svg[^>]*?\sheight="([\d.]+)pt"[^>]*?\swidth="([\d.]+)pt"', re.S
 )
 
+#: A column of a journal is 3.5 inches wide, a page 7.2 (CSS pixels, 96 an inch).
+WIDE = 500
+
 
 @dataclass(frozen=True)
 class Link:
@@ -51,6 +54,11 @@ class Picture:
     width: int
     height: int
     files: tuple[Link, ...] = ()
+
+    @property
+    def wide(self) -> bool:
+        """Whether it is as wide as a page of a journal, not as a column."""
+        return self.width > WIDE
 
 
 def embedded(

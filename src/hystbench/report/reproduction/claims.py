@@ -30,6 +30,10 @@ _PLACED = {
 }
 #: Held-out evidence leads; an empty basis is that of theory and notation.
 BASES = ("held-out", "fitted", "constrained", "built-in", "")
+#: What can fail leads where claims do not say what their verdict rests on.
+KINDS = ("result", "condition", "theory")
+#: The verdict of a claim that is fitted in part, on held-out signals alone.
+ALONE = "on_held_out"
 
 
 def has_basis(claims: Sequence[Row]) -> bool:
@@ -39,18 +43,23 @@ def has_basis(claims: Sequence[Row]) -> bool:
 
 def counts_table(claims: Sequence[Row]) -> Table:
     """Count verdicts by what they rest on, held-out first; nothing is added up."""
-    key, title = ("basis", "rests on") if has_basis(claims) else ("kind", "kind")
+    key, title = ("basis", "basis") if has_basis(claims) else ("kind", "kind")
     verdicts = list(dict.fromkeys(row["verdict"] for row in claims))
-    order = {basis: place for place, basis in enumerate(BASES)}
-    groups = dict.fromkeys(row[key] for row in claims)
-    rows = []
-    for group in sorted(groups, key=lambda each: order.get(each, len(order))):
-        counted = Counter(row["verdict"] for row in claims if row[key] == group)
-        shown = group or "theory and notation"
-        rows.append([words(shown), *(number(counted[each]) for each in verdicts)])
+    counted: dict[str, Counter[str]] = {}
+    for row in _in_order(claims):
+        shown = row[key] or "nothing: theory, notation, or not testable"
+        counted.setdefault(shown, Counter())[row["verdict"]] += 1
+    if alone := Counter(row[ALONE] for row in claims if row.get(ALONE)):
+        counted["fitted in part, on the held-out signals alone"] = alone
+        verdicts += [verdict for verdict in alone if verdict not in verdicts]
+    rows = [
+        [words(shown), *(number(found[each]) for each in verdicts)]
+        for shown, found in counted.items()
+    ]
     return Table(
         "claims-counted",
-        f"Claims by what their verdict {title}. The rows are not added up."
+        "Claims by what the twin knew of them before they were judged. Rows are not "
+        "added up: only the held-out ones were open."
         if key == "basis"
         else "Claims by kind. The rows are not added up: a condition holds by the way "
         "the signals are made, a result can fail.",
@@ -73,14 +82,10 @@ def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
         Column("holds on twins"),
         *(Column(key.replace("_", " ")) for key in more),
     ]
-    order = {name: place for place, name in enumerate(BASES)}
-    listed = (
-        sorted(claims, key=lambda row: order.get(row["basis"], 0)) if basis else claims
-    )
     rows = [
         [
             _verdict(row["verdict"]),
-            *([words(row["basis"] or "theory")] if basis else []),
+            *([words(row["basis"] or "none")] if basis else []),
             words(row["kind"]),
             _claim(row),
             words(row["evidence"]),
@@ -88,7 +93,7 @@ def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
             words(row.get("holds_on", "")),
             *(words(row[key]) for key in more),
         ]
-        for row in listed
+        for row in _in_order(claims)
     ]
     return Table(
         "claims",
@@ -99,6 +104,13 @@ def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
         filtered=("verdict", "basis", "kind"),
         cards=True,
     )
+
+
+def _in_order(claims: Sequence[Row]) -> list[Row]:
+    """Put first what rests on held-out signals, or else the results."""
+    key, order = ("basis", BASES) if has_basis(claims) else ("kind", KINDS)
+    places = {name: place for place, name in enumerate(order)}
+    return sorted(claims, key=lambda row: places.get(row[key], len(places)))
 
 
 def _verdict(verdict: str) -> Cell:

@@ -136,7 +136,7 @@ def _text(path: Path) -> str:
 def _cell(row: Row) -> ComparedCell:
     """Read a row of cells.csv; what is empty is None."""
     values: dict[str, Any] = {key: row[key] for key in _CELLS}
-    for key in ("ours", "spread_low", "spread_high"):
-        text = values[key]
-        values[key] = float("inf" if text == "diverged" else text) if text else None
+    for key, text in row.items():
+        if key == "ours" or key.endswith(("_low", "_high")):
+            values[key] = float("inf" if text == "diverged" else text) if text else None
     return ComparedCell(**values | {"table": int(row["table"])})
