@@ -34,7 +34,8 @@ class Seen:
             yield "no headline"
         else:
             left, top, right, bottom = about["headline"]
-            if left < 0 or top < 0 or right > width or bottom > height:
+            inside = 0 <= left < right <= width and 0 <= top < bottom <= height
+            if not inside:
                 yield f"the headline is at {about['headline']} in {width} x {height}"
         for image in about["images"]:
             if not (image["natural"] and image["width"]):

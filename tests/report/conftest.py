@@ -2,7 +2,6 @@ import shutil
 
 import pytest
 
-from tests.browser.chromium import EXECUTABLE, Chromium
 from tests.report.made import make_page, make_results
 
 
@@ -19,11 +18,3 @@ def copied(results, tmp_path):
     folder = tmp_path / "results"
     shutil.copytree(results, folder)
     return folder
-
-
-@pytest.fixture(scope="session")
-def browser():
-    if EXECUTABLE is None:
-        pytest.skip("no Chromium here (on Debian: the package chromium)")
-    with Chromium() as started:
-        yield started

@@ -38,8 +38,9 @@ def make_runs(folder: Path, names, models=MODELS, origin="twin") -> list[Path]:
 def draw(folder: Path, name: str, **given) -> Path:
     with style.in_style():
         figure = drawer(name)(**given)
-        for suffix in (".png", ".svg"):
-            style.save(figure, folder / f"{name}{suffix}")
+        style.save(figure, folder / f"{name}.svg")
+    # The page links the PNG beside it and does not read it.
+    (folder / f"{name}.png").touch()
     return folder / f"{name}.svg"
 
 
@@ -48,8 +49,7 @@ def make_results(folder: Path, names=SIGNALS, models=MODELS) -> list[Path]:
     runs = make_runs(folder, names, models)
     held_out = held_out_signals(CALIBRATION_SIGNALS)
     compare(folder / "compare", runs, held_out=held_out)
-    table = folder / "compare" / "cells.csv"
-    figures = [draw(folder / "figures", "errors-heat-map", table=table)]
+    figures = [draw(folder / "figures", "figure-03-play")]
     if "gpo" in models:
         records = [folder / "records" / f"{name}.npz" for name in names]
         own = [run for run in runs if run.stem == "gpo"]

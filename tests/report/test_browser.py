@@ -78,32 +78,24 @@ def test_the_switch_turns_the_colours(browser, results):
     assert browser.evaluate(colour) == light
 
 
+SENTENCE = '<p class="sentence"'
+IMAGE = "data:image/svg+xml;base64,"
+
+
 @pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
-        (
-            '<p class="sentence">',
-            '<p class="sentence" style="margin-top:-9rem">',
-            "headl",
-        ),
-        (
-            '<p class="sentence">',
-            '<p class="sentence" style="margin-top:999px">',
-            "headl",
-        ),
+        (SENTENCE, f'{SENTENCE} style="margin-top:-9rem"', "the headline is at"),
+        (SENTENCE, f'{SENTENCE} style="margin-top:999px"', "the headline is at"),
+        (SENTENCE, f'{SENTENCE} style="display:none"', "the headline is at"),
         ("<main", '<main style="width:2500px"', "wide in"),
         ("<h2", '<h2 style="margin-left:-5rem"', "outside of the window: h2"),
-        ("<h2", '<h2 style="white-space:nowrap;overflow:hidden;width:9rem"', "cut off"),
-        (
-            "data:image/svg+xml;base64,PD94",
-            "data:image/svg+xml;base64,x",
-            "missing pic",
-        ),
+        ("<h2", '<h2 style="overflow:hidden;width:2rem"', "cut off in its box: h2"),
+        (f"{IMAGE}PD94", f"{IMAGE}x", "missing picture"),
         ('alt="', 'alt="" title="', "no alternative text"),
         ("</main>", "</main><script>nothing.there</script>", "the console says"),
-        ("</main>", "<script>console.error('no')</script></main>", "the console says"),
+        ("</main>", "<script>console.error(1)</script></main>", "the console says"),
         ("</main>", '<img src="a.png" alt="a"></main>', "the console says"),
-        ("light dark;", "light;", "dark: the background is"),
     ],
 )
 def test_the_check_sees_what_is_wrong(browser, copied, old, new, fault):
@@ -111,4 +103,12 @@ def test_the_check_sees_what_is_wrong(browser, copied, old, new, fault):
     text = page.read_text(encoding="utf-8")
     assert old in text
     page.write_text(text.replace(old, new), encoding="utf-8")
-    assert any(fault in found for found in all_faults(browser, page))
+    found = list(look(browser, page, SIZES[0]).faults())
+    assert any(fault in each for each in found), found
+
+
+def test_the_check_sees_a_page_without_dark_colours(browser, copied):
+    page = copied / "report.html"
+    text = page.read_text(encoding="utf-8")
+    page.write_text(text.replace("light dark;", "light;"), encoding="utf-8")
+    assert any("dark: the ink is" in each for each in all_faults(browser, page))

@@ -3,7 +3,7 @@
 PAGE_TABLES = [*rules.envelopes.output]
 if TWIN and "rdgpi" in SETTINGS.models:
     PAGE_TABLES += rules.rdgpi_published.output
-# One source of captions, for this page and for `snakemake --report`.
+# `snakemake --report` takes the same captions.
 CAPTIONS = Path(os.path.relpath(Path(workflow.current_basedir, "../report")))
 
 

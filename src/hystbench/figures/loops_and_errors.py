@@ -47,7 +47,7 @@ def loops_and_errors(
             "sharex": first.get("loop"),
             "sharey": first.get(kind),
         }
-        axes = figure.add_subplot(grid[row, column], **shared)
+        axes: Axes = figure.add_subplot(grid[row, column], **shared)
         axes.tick_params(labelleft=column == 0)
         first.setdefault(kind, axes)
         return axes

@@ -36,6 +36,5 @@ def plain(text: str) -> str:
 
 def first_sentence(text: str) -> str:
     """Give the first sentence of a text, without marks."""
-    return (
-        re.split(r"(?<=[a-z0-9)])[.:]\s", plain(text), maxsplit=1)[0].rstrip(".") + "."
-    )
+    first, *_ = re.split(r"\.\s(?=[A-Z])", plain(text), maxsplit=1)
+    return f"{first.rstrip('.')}."

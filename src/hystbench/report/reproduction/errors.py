@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import FACTOR, nearness
@@ -131,7 +131,7 @@ def _near(name: str, part: Sequence[ComparedCell]) -> list[Cell]:
     ]
 
 
-def paper_table(shown: Shown, halves: dict[str, str]) -> Table:
+def paper_table(shown: Shown, halves: Mapping[str, str]) -> Table:
     """Show a table of the paper with ours beside it; MSE and RE stand apart."""
     given = [key for key in shown.rows[0] if key not in ("signal", "error", "note")]
     columns = [Column("signal"), Column("twin")]
