@@ -53,7 +53,6 @@ rivals slurm: %: .venv-%/ready
 
 reproduce: $(READY)
 	$(BIN)/snakemake --cores all
-	$(BIN)/snakemake --report results/report.html
 
 lint: $(READY)
 	$(BIN)/ruff format --check .

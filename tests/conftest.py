@@ -12,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from hystbench import kernels
+from tests.browser.chromium import EXECUTABLE, Chromium
 
 ROOT = Path(__file__).parents[1]
 
@@ -43,6 +44,15 @@ def _no_cache_of_the_users(tmp_path_factory):
 @pytest.fixture(scope="session")
 def root() -> Path:
     return ROOT
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """A headless Chromium, where there is one."""
+    if EXECUTABLE is None:
+        pytest.skip("no Chromium here (on Debian: the package chromium)")
+    with Chromium() as started:
+        yield started
 
 
 @pytest.fixture

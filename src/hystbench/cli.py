@@ -59,6 +59,7 @@ COMMANDS = {
     "rival": "Run a rival of the gap's solver on a dataset.",
     "show": "Print the tables of a comparison.",
     "figure": "Draw one figure.",
+    "report": "Write the front page of the results.",
     "docs": "Fill the tables of README.md and docs from results.",
     "clean": "Remove what hystbench wrote, and nothing else.",
 }

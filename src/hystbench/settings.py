@@ -319,6 +319,18 @@ class Settings:
             "filters": {name: self.filter_job(name) for name in self.filters},
         }
 
+    @property
+    def page_job(self) -> dict[str, Any]:
+        """Settings of the front page: what its words depend on."""
+        factor = self.config["order_sweep"]["convergence_factor"]
+        return {
+            "dataset": None if self.dataset is None else self.dataset.name,
+            "order_sweep": {
+                "signal": self.order_sweep_signal,
+                "convergence_factor": factor,
+            },
+        }
+
     def filter_job(self, model: str) -> dict[str, Any]:
         """Give the settings on which one filter's run depends."""
         filters = self.config["filters"]

@@ -196,15 +196,17 @@ class Inputs:
         """Give a figure what it is drawn from."""
         one = {"records": self.record(SIGNALS[0])}
         pair = one | {"runs": self.runs(SIGNALS[:1], ("gpo",))}
+        loops = {
+            "records": self.record(*SIGNALS),
+            "runs": self.runs(SIGNALS, ("gpo",)),
+        }
         everything = {"runs": self.runs(SIGNALS, MODELS)}
         return {
             "figure-03-play": {},
             "figure-04-generalized-play": {},
             "figure-07-order": one | {"table": self.folder / "errors.csv"},
-            "figure-08-loops": {
-                "records": self.record(*SIGNALS),
-                "runs": self.runs(SIGNALS, ("gpo",)),
-            },
+            "figure-08-loops": loops,
+            "headline": loops,
             "figure-09-chirp": pair,
             "figure-10-sum": pair,
             "figure-11-sum": pair,

@@ -24,6 +24,7 @@ NAMES = (
     "figure-10-sum",
     "figure-11-sum",
     "figure-12-random-sum",
+    "headline",
     "identification",
     "learning-curves",
     "errors-heat-map",
