@@ -23,7 +23,8 @@ from hystbench.blocks.wrapping import HystereticBlock, Wrapped, WrappingBlock
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_text
 from hystbench.record import Channel, FloatArray, Record
-from hystbench.schema import load_yaml
+from hystbench.units import check_known
+from hystbench.yaml_files import load_yaml
 
 Source = Literal["published", "derived", "calibrated"]
 SOURCES: tuple[str, ...] = get_args(Source)
@@ -395,6 +396,7 @@ def _channel(content: object, place: str) -> Channel:
     for key in keys:
         if not isinstance(content[key], str):
             raise InputError(f"{place}{key}: expected a word, got {content[key]!r}")
+    check_known(f"{place}unit", content["unit"])
     return Channel(**content)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -47,6 +47,12 @@ def asked_limits(
     """Give the limits that were asked for, by name."""
     asked = {"low": limit_low, "high": limit_high, "rate": limit_rate}
     return {name: value for name, value in asked.items() if value is not None}
+
+
+def warn(lines: Iterable[str]) -> None:
+    """Show warnings on the terminal, one line each."""
+    for line in lines:
+        click.echo(f"hystbench: warning: {line}", err=True)
 
 
 write_experiment = click.option(

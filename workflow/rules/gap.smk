@@ -65,7 +65,7 @@ for GIVEN in config["gap"]["datasets"]:
         if GAP_DATASET.name in GAP_CASES:
             raise InputError(f"a second dataset {GAP_DATASET.name!r}; expected one")
     except InputError as error:
-        sys.exit(f"hystbench: {PLACE}: gap: datasets: {error}")
+        refuse(f"{PLACE}: gap: datasets: {error}")
     GAP_CASES[GAP_DATASET.name] = {
         "dataset": str(GAP_DATASET.path),
         "fit": [

@@ -42,6 +42,7 @@ def gap(
     if write_experiment is not None:
         check_writable(write_experiment.parent)
     evidence = load_evidence(dataset)
+    options.warn(evidence.warnings)
     base, note = load_base(model, evidence)
     if note:
         click.echo(note)
