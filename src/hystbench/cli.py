@@ -9,6 +9,9 @@ from __future__ import annotations
 import importlib
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
 
 import click
 
@@ -63,8 +66,33 @@ COMMANDS = {
 }
 
 
+@contextmanager
+def _one_line() -> Iterator[None]:
+    """Turn what Click says of wrong options, in four lines, into one."""
+    try:
+        yield
+    except click.exceptions.NoArgsIsHelpError:
+        raise
+    except click.UsageError as error:
+        command = error.ctx.info_name if error.ctx is not None else None
+        said = " ".join(error.format_message().split())
+        raise InputError(f"{command}: {said}" if command else said) from error
+
+
 class LazyGroup(click.Group):
     """A group that imports a command when it is called."""
+
+    def make_context(
+        self, info_name: str | None, args: list[str], *rest: Any, **extra: Any
+    ) -> click.Context:
+        """Read the options of the group; a mistake in them is one line."""
+        with _one_line():
+            return super().make_context(info_name, args, *rest, **extra)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; a mistake in its options is one line."""
+        with _one_line():
+            return super().invoke(ctx)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Name the commands in the order of the workflow."""

@@ -229,7 +229,11 @@ def load_dataset(path: str | Path) -> Dataset:
     file = Path(path)
     if file.is_dir():
         file = file / "dataset.yaml"
-    about = load_yaml(file)
+    about = load_yaml(file, "a dataset.yaml or its folder")
+    if not isinstance(about, dict):
+        beside = file.parent / "dataset.yaml"
+        hint = f"; did you mean {str(beside)!r}?" if beside.is_file() else ""
+        raise InputError(f"{file}: expected a dataset.yaml or its folder{hint}")
     check_against_schema(about, SCHEMA, str(file))
     dataset = Dataset(file, about["name"], about)
     files = dataset.record_files

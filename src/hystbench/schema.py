@@ -89,9 +89,13 @@ def _is_finite_number(_: object, value: object) -> bool:
 
 
 def _hint(value: object) -> str:
-    """Explain why YAML read a number as a word."""
-    try:
-        float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+    """Explain why a number was read as a word."""
+    if not isinstance(value, str):
         return ""
-    return " (YAML wants 1.0e-2 for 1e-2)" if isinstance(value, str) else ""
+    try:
+        float(value)
+    except ValueError:
+        return ""
+    if "e" in value.lower():
+        return " (YAML wants 1.0e-2 for 1e-2)"
+    return " without quotes"

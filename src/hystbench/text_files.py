@@ -66,6 +66,10 @@ def _looks_like_utf_16(content: bytes) -> bool:
     return half > 8 and max(zeros) > 0.9 * half and min(zeros) < 0.1 * half
 
 
+def _kind(suffix: str) -> str:
+    return suffix.lower().replace(".yml", ".yaml")
+
+
 def _beside(path: Path, expected: str) -> str:
     """Name the file beside it that may be meant."""
     folder = path.parent
@@ -74,6 +78,6 @@ def _beside(path: Path, expected: str) -> str:
     kin = sorted(
         item.name
         for item in folder.iterdir()
-        if item.suffix == path.suffix and item.is_file()
+        if item.is_file() and _kind(item.suffix) == _kind(path.suffix)
     )
     return nearest(path.name, kin) if kin else f"expected {expected}"

@@ -24,7 +24,11 @@ LONGEST = 40
 _SIMPLE = re.compile(f"([{''.join(PREFIXES)}]?)({'|'.join(SYMBOLS)})")
 _MICRO = re.compile("[\u00b5\u03bc]")  # the sign, and the Greek letter
 _EXPONENT = r"(?:\*\*|\^)\s*[-+]?(?:\d(?:\.\d)?|\(\s*[-+]?\d(?:[./]\d)?\s*\))"
-_OTHERS = ("min", "h", "mm", "kN", "deg", "percent", "bar", "ohm", "Oe", "gauss")
+_WORDS = (
+    *("ampere", "amp", "volt", "newton", "meter", "metre", "millimeter", "micrometer"),
+    *("second", "millisecond", "minute", "degree", "percent", "ohm", "pascal", "tesla"),
+    *("millivolt", "milliampere", "kilonewton", "radian", "hertz", "kelvin", "gauss"),
+)
 
 
 def plain(unit: str) -> str:
@@ -171,11 +175,15 @@ def _nearest_unit(unit: str) -> str:
     """Name the unit that may be meant, or say where they are listed."""
     import pint
 
-    usual = [f"{prefix}{symbol}" for symbol in SYMBOLS for prefix in PREFIXES]
-    usual += _OTHERS
-    names = [*usual, *pint.application_registry]
-    for name in names:
-        if name.lower() == plain(unit).lower():
+    said = plain(unit)
+    symbols = [f"{prefix}{symbol}" for symbol in SYMBOLS for prefix in PREFIXES]
+    rare = list(pint.application_registry)
+    for name in (*symbols, *_WORDS, *rare):
+        if name.lower() == said.lower():
             return f"did you mean {name!r}?"
-    told = nearest(plain(unit), names)
-    return told if told.startswith("did") else "expected one such as V, mA, um or N/m"
+    # What is spelt out is near to words, whatever symbols it shares letters with.
+    for known in (_WORDS, rare) if len(said) > 3 else (symbols,):
+        told = nearest(said.lower(), known)
+        if told.startswith("did"):
+            return told
+    return "expected one such as V, mA, um or N/m"

@@ -19,9 +19,10 @@ LARGEST = 10_000_000
 MOST_REPEATED = 100_000
 """Items that aliases (``*name``) may add to what is written."""
 
+_QUOTES = "a tab or a sign that begins no text; expected spaces, or text in quotes"
 _HINTS = {
-    "found character '\\t' that cannot start any token": "a tab; expected spaces",
-    "found character that cannot start any token": "expected text in quotes",
+    "found character '\\t' that cannot start any token": _QUOTES,
+    "found character that cannot start any token": _QUOTES,
     "mapping values are not allowed in this context": (
         "a second ':' in one line; expected one key a line, or text in quotes"
     ),
@@ -31,8 +32,14 @@ _HINTS = {
 }
 
 
-def load_yaml(path: str | Path) -> Any:
+def load_yaml(path: str | Path, expected: str = "a YAML file") -> Any:
     """Read a YAML file as plain data; nothing in it is executed.
+
+    Parameters
+    ----------
+    path : str or Path
+    expected : str
+        What the file should be, for messages.
 
     Raises
     ------
@@ -47,7 +54,7 @@ def load_yaml(path: str | Path) -> Any:
             f"{path}: {path.stat().st_size / 1e6:.3g} MB; expected a YAML file of at "
             f"most {LARGEST / 1e6:g} MB"
         )
-    return parse_yaml(read_text(path, "a YAML file"), str(path))
+    return parse_yaml(read_text(path, expected), str(path))
 
 
 def parse_yaml(text: str, place: str) -> Any:
@@ -71,7 +78,7 @@ def parse_yaml(text: str, place: str) -> Any:
             if node is None:
                 return None
             _check_keys(loader, node, place)
-            return loader.construct_document(node)
+            return _constructed(loader, node, place)
         finally:
             loader.dispose()
     except yaml.YAMLError as error:
@@ -82,9 +89,15 @@ def parse_yaml(text: str, place: str) -> Any:
             if problem.startswith(known):
                 problem = hint
         raise InputError(f"{place}: {where}{problem}") from error
-    except (ValueError, OverflowError) as error:
-        # A date such as 2024-13-45, or an integer of thousands of digits.
-        raise InputError(f"{place}: not YAML: {error}; expected quotes") from error
+
+
+def _constructed(loader: Any, node: Node, place: str) -> Any:
+    try:
+        return loader.construct_document(node)
+    except ValueError as error:  # a date such as 2024-13-45, or too many digits
+        raise InputError(
+            f"{place}: a date or number that is none ({error}); expected text in quotes"
+        ) from error
 
 
 def _check_bounds(events: Any, place: str) -> None:

@@ -8,8 +8,10 @@ import click
 
 from hystbench import options
 from hystbench.files import check_writable
+from hystbench.gap.asked import check_base
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
+from hystbench.gap.limits import Limits
 from hystbench.gap.run import close_gap
 from hystbench.gap.wanted import write_wanted
 
@@ -41,8 +43,11 @@ def gap(
     """
     if write_experiment is not None:
         check_writable(write_experiment.parent)
+    limits = options.asked_limits(limit_low, limit_high, limit_rate)
+    check_base(model)
     evidence = load_evidence(dataset)
     options.warn(evidence.warnings)
+    Limits.within(evidence.fit, limits)  # refuses, before work is paid
     base, note = load_base(model, evidence)
     if note:
         click.echo(note)
@@ -51,7 +56,7 @@ def gap(
         base,
         out,
         place=model,
-        limits=options.asked_limits(limit_low, limit_high, limit_rate),
+        limits=limits,
         report=report,
         say=lambda line: click.echo(line, err=True),
     )

@@ -7,7 +7,8 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases import IDENTIFIED, given_base
+from hystbench.gap.asked import IDENTIFIED, check_base
+from hystbench.gap.bases import given_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.start import run_base
 
@@ -20,6 +21,7 @@ def gap_check(dataset: Path, model: str) -> None:
 
     A base that is to be identified is not checked. Writes nothing.
     """
+    check_base(model)
     evidence = load_evidence(dataset)
     options.warn(evidence.warnings)
     if model not in IDENTIFIED:
