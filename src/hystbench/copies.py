@@ -13,6 +13,8 @@ DIGITS = 12
 """Digits behind which numbers count as not rounded."""
 PROBED = 2000
 """Samples of a record from which its last digit is read."""
+FINE = 0.05
+"""Share of an input's rms beyond which rounding leaves no record to compare."""
 MOST_PLACES = 20
 """Places at which a piece is compared in full; a periodic record has many alike."""
 MOST_RATIO = 64
@@ -86,12 +88,17 @@ def _shared(one: Rows, two: Rows) -> Piece | None:
     least = count // 2 + count % 2
     if count < 4:
         return None
-    steps = [np.stack([_last_digit(row) for row in rows]) for rows in (one, two)]
     # A run of half the samples holds the second quarter of them or the third.
     quarter = count // 4
-    for first in (count // 4, count // 2):
-        block = slice(first, first + quarter)
-        for place in _places(one[:, block], two, steps[0][:, block], steps[1]):
+    blocks = {first: slice(first, first + quarter) for first in (quarter, count // 2)}
+    near = {first: _near(one[0, blocks[first]], two[0]) for first in blocks}
+    if not any(map(len, near.values())):
+        return None
+    steps = [np.stack([_last_digit(row) for row in rows]) for rows in (one, two)]
+    for first, block in blocks.items():
+        for place in _places(
+            near[first], one[:, block], two, steps[0][:, block], steps[1]
+        ):
             away = place - first
             low, high = max(0, -away), min(count, two.shape[1] - away)
             ours, theirs = slice(low, high), slice(low + away, high + away)
@@ -138,25 +145,31 @@ def _equal(a: Rows, b: Rows, a_step: Rows, b_step: Rows) -> NDArray[np.bool_]:
     return np.asarray(near.all(axis=0))
 
 
-def _places(block: Rows, rows: Rows, block_step: Rows, step: Rows) -> list[int]:
-    """Find where a block of samples may stand in longer rows."""
-    count, length = rows.shape[1], block.shape[1]
-    middle = rows[0].mean()
-    piece, long = block[0] - middle, rows[0] - middle
+def _near(block: FloatArray, row: FloatArray) -> NDArray[np.intp]:
+    """Find where in a longer row a block may stand, up to any rounding that is fine."""
+    count, length = len(row), len(block)
+    middle = row.mean()
+    piece, long = block - middle, row - middle
     size = 2 ** int(np.ceil(np.log2(count + length)))
     spectrum = np.fft.rfft(long, size) * np.conj(np.fft.rfft(piece, size))
     product = np.fft.irfft(spectrum, size)[: count - length + 1]
     squares = np.concatenate([[0.0], np.cumsum(long**2)])
     apart = squares[length:] - squares[:-length] - 2 * product + piece @ piece
-    rounding = length * (0.51 * max(block_step[0].max(), step[0].max())) ** 2
-    found = np.flatnonzero(apart <= rounding + 1e-9 * squares[-1])
-    # Few samples sort out nearly all of them before any is compared in full.
-    for k in np.linspace(0, length - 1, 32).astype(int):
+    return np.flatnonzero(apart <= length * FINE**2 * squares[-1] / count)
+
+
+def _places(
+    found: NDArray[np.intp], block: Rows, rows: Rows, block_step: Rows, step: Rows
+) -> list[int]:
+    """Sort out places of a block by a few of its samples, before any is compared."""
+    for k in np.linspace(0, block.shape[1] - 1, 32).astype(int):
+        if not len(found):
+            break
         there = found + k
+        own = slice(k, k + 1)
         found = found[
-            _equal(block[:, k : k + 1], rows[:, there],
-                   block_step[:, k : k + 1], step[:, there])
-        ]  # fmt: skip
+            _equal(block[:, own], rows[:, there], block_step[:, own], step[:, there])
+        ]
     return [int(place) for place in found[:MOST_PLACES]]
 
 

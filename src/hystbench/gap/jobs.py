@@ -93,4 +93,4 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     shown = show(base, state, floor, box, evidence.hold_out, steps)
     decided = read_json(folder / DECISION)
     with whole_folder(folder, SHOWN) as fresh:
-        write_shown(fresh, decided, evidence.hold_out, shown)
+        write_shown(fresh, decided, evidence.hold_out, shown, evidence.warnings)

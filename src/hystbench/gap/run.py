@@ -100,7 +100,7 @@ def close_gap(
     with whole_folder(folder, RESULT) as fresh:
         finding.model.save(fresh / "model.yaml")
         write_json(fresh / "curves.json", finding.curves)
-        write_shown(fresh, finding.content, evidence.hold_out, shown)
+        write_shown(fresh, finding.content, evidence.hold_out, shown, evidence.warnings)
         if report:
             from hystbench.gap.report import write_report  # late: it draws
 
@@ -113,6 +113,7 @@ def write_shown(
     decided: Mapping[str, Any],
     records: tuple[Record, ...],
     shown: Shown,
+    warnings: Sequence[str] = (),
 ) -> None:
     """Write gap.json and the hold-out records before and after.
 
@@ -124,12 +125,14 @@ def write_shown(
     records : tuple of Record
         The hold-out records.
     shown : Shown
+    warnings : sequence of str
+        What of the dataset is hardly meant.
     """
     for record, (before, after) in zip(records, shown.outputs, strict=True):
         _write_hold_out(
             folder / "holdout" / f"{record.name}.csv", record, before, after
         )
-    content = {**decided, **shown.content}
+    content = {**decided, **shown.content, "warnings": list(warnings)}
     content["shortfall"] = shortfall(content)
     write_json(folder / "gap.json", content)
 

@@ -234,6 +234,8 @@ SCHEMA = _object(
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},
+    # What of the dataset is hardly meant: copies, strange times, sizes and units.
+    warnings={"type": "array", "items": WORDS},
     # Why next_experiment is null though effects cannot be told apart.
     no_experiment={"type": "string"},
 )

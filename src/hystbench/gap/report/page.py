@@ -25,6 +25,7 @@ OPTIONAL: dict[str, Any] = {
     "no_experiment": "",
     "not_tried": [],
     "runs_away": [],
+    "warnings": [],
     "fit": None,
 }
 #: And its parts with figures, where a bootstrap tells nothing.
