@@ -10,7 +10,7 @@ import re
 from contextlib import suppress
 from typing import Any
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, nearest, short
 
 PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
 """SI prefixes by a thousand; ``u`` is micro."""
@@ -166,7 +166,7 @@ def _parsed(place: str, unit: str) -> Any:
         with suppress(Exception):
             return registry.parse_units(each)
     raise InputError(
-        f"{place}: {unit!r} is no unit; {_nearest_unit(unit)} ('-' stands for a number "
+        f"{place}: {short(unit)} is no unit; {_nearest_unit(unit)} ('-' stands for a number "
         "without a unit)"
     )
 
