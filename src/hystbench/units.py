@@ -166,8 +166,8 @@ def _parsed(place: str, unit: str) -> Any:
         with suppress(Exception):
             return registry.parse_units(each)
     raise InputError(
-        f"{place}: {short(unit)} is no unit; {_nearest_unit(unit)} ('-' stands for a number "
-        "without a unit)"
+        f"{place}: {short(unit)} is no unit; {_nearest_unit(unit)} "
+        "('-' stands for a number without a unit)"
     )
 
 

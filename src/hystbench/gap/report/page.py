@@ -67,7 +67,7 @@ def page(content: Content) -> str:
     if gap["black_box"]:
         gap["black_box"] = INTERVALS | gap["black_box"]
     drawn, missing = _where(content)
-    return environment.get_template(TEMPLATE).render(
+    page = environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(gap),
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
@@ -85,6 +85,7 @@ def page(content: Content) -> str:
         drawn=min(len(content.hold_out), pictures.RECORDS),
         held=len(content.hold_out),
     )
+    return words.one_micro(page)
 
 
 def _shares(gap: dict[str, Any]) -> Picture | None:
