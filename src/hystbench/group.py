@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
 
 import click
 
 from hystbench import __version__
 from hystbench.errors import InputError, nearest
+
+
+@contextmanager
+def _one_line() -> Iterator[None]:
+    """Turn what Click says of wrong options, in four lines, into one."""
+    try:
+        yield
+    except click.exceptions.NoArgsIsHelpError:
+        raise
+    except click.UsageError as error:
+        command = error.ctx.info_name if error.ctx is not None else None
+        said = " ".join(error.format_message().split())
+        raise InputError(f"{command}: {said}" if command else said) from error
 
 
 class LazyGroup(click.Group):
@@ -26,6 +41,18 @@ class LazyGroup(click.Group):
             help="Benchmark rate-dependent hysteresis models of smart actuators.",
         )
         self.lines = lines
+
+    def make_context(
+        self, info_name: str | None, args: list[str], *rest: Any, **extra: Any
+    ) -> click.Context:
+        """Read the options of the group; a mistake in them is one line."""
+        with _one_line():
+            return super().make_context(info_name, args, *rest, **extra)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command; a mistake in its options is one line."""
+        with _one_line():
+            return super().invoke(ctx)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Name the commands in the order of the workflow."""

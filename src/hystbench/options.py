@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
@@ -141,9 +142,31 @@ def kept_calls(command: Command) -> Command:
 def asked_limits(
     limit_low: float | None, limit_high: float | None, limit_rate: float | None
 ) -> dict[str, float]:
-    """Give the limits that were asked for, by name."""
-    asked = {"low": limit_low, "high": limit_high, "rate": limit_rate}
-    return {name: value for name, value in asked.items() if value is not None}
+    """Give the limits that were asked for, by name.
+
+    Raises
+    ------
+    InputError
+        If one is no finite number, or nothing lies between them.
+    """
+    given = {"low": limit_low, "high": limit_high, "rate": limit_rate}
+    asked = {name: value for name, value in given.items() if value is not None}
+    for name, value in asked.items():
+        if not math.isfinite(value) or (name == "rate" and value <= 0):
+            least = " above 0" if name == "rate" else ""
+            raise InputError(f"--limit-{name}: {value:g}; expected a number{least}")
+    if limit_low is not None and limit_high is not None and limit_low >= limit_high:
+        raise InputError(
+            f"--limit-low {limit_low:g} and --limit-high {limit_high:g}; expected the "
+            "lower one first"
+        )
+    return asked
+
+
+def warn(lines: Iterable[str]) -> None:
+    """Show warnings on the terminal, one line each."""
+    for line in lines:
+        click.echo(f"hystbench: warning: {line}", err=True)
 
 
 write_experiment = click.option(

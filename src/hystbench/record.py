@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hystbench.errors import InputError
 from hystbench.files import atomic_path
+from hystbench.units import plain
 
 FloatArray = NDArray[np.float64]
 Origin = Literal["twin", "measured"]
@@ -24,6 +25,10 @@ class Channel:
 
     name: str
     unit: str
+
+    def __post_init__(self) -> None:
+        """Keep a unit in its one spelling."""
+        object.__setattr__(self, "unit", plain(self.unit))
 
     @property
     def label(self) -> str:

@@ -13,12 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.dataset import Dataset, load_dataset
+from hystbench.doubts import doubts
 from hystbench.envelope import fewest_samples
 from hystbench.errors import InputError, nearest
 from hystbench.published import load
 from hystbench.published.split import CALIBRATION_SIGNALS
-from hystbench.schema import check_against_schema, load_yaml
+from hystbench.schema import check_against_schema
 from hystbench.signals import Signal, make_signal
+from hystbench.units import plain
+from hystbench.yaml_files import load_yaml
 
 #: The four LMS filters, in the order of the paper's tables.
 FILTER_NAMES = ("gpo", "backlash", "volterra", "delayed")
@@ -41,10 +44,13 @@ class Settings:
         The content, as the schema has it.
     dataset : Dataset or None
         The measured dataset, or None where the twin is the source.
+    warnings : tuple of str
+        What of its records is hardly meant, one line each.
     """
 
     config: Mapping[str, Any]
     dataset: Dataset | None
+    warnings: tuple[str, ...] = ()
 
     @property
     def results(self) -> str:
@@ -403,13 +409,14 @@ def read_settings(
     dataset = load_dataset(config["source"])
     known = [*dataset.record_files, *excitations]
     _check_names(place, named[: len(config["signals"])], known)
-    for name in dataset.record_files:
+    records = [dataset.read(name) for name in dataset.record_files]
+    for record in records:
         _check_length(
-            str(dataset.record_files[name]),
-            len(dataset.read(name)),
+            str(dataset.record_files[record.name]),
+            len(record),
             config["filters"]["order"],
         )
-    return Settings(config, dataset)
+    return Settings(config, dataset, doubts(dataset, records))
 
 
 def _gap_signals(place: str, config: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -486,7 +493,7 @@ def _check_twin(place: str, config: Mapping[str, Any]) -> None:
 
     for file in _model_files(config["twin"]["model"]):
         unit = load_model(file).input.unit
-        if unit != config["excitation"]["unit"]:
+        if unit != plain(config["excitation"]["unit"]):
             raise InputError(
                 f"{place}: excitation: unit: {config['excitation']['unit']!r}; "
                 f"expected {unit!r}, the input of {file}"

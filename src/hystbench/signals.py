@@ -18,6 +18,7 @@ import numpy as np
 from hystbench.errors import InputError, nearest
 from hystbench.files import atomic_path
 from hystbench.record import FloatArray
+from hystbench.units import plain
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,10 @@ class Signal:
     dt: float
     u: FloatArray
     unit: str
+
+    def __post_init__(self) -> None:
+        """Keep a unit in its one spelling."""
+        object.__setattr__(self, "unit", plain(self.unit))
 
     def save(self, path: str | Path) -> None:
         """Write the signal as a NumPy archive, all of it or nothing."""

@@ -248,7 +248,10 @@ def test_an_input_that_rests_is_no_fault(tmp_path, shape, frequency_hz, damping)
         "ramps and drops": drop,
     }[shape]
     y = respond(u, frequency_hz, damping)
-    made = [record(u, y, name=k, use=use) for k, use in USES.items()]
+    sizes = dict(zip(USES, (1.0, 0.9, 0.8), strict=True))
+    made = [
+        record(sizes[k] * u, sizes[k] * y, name=k, use=use) for k, use in USES.items()
+    ]
     load_evidence(write_folder(tmp_path / "rests", made))
 
 

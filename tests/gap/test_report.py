@@ -10,7 +10,7 @@ from matplotlib.transforms import Bbox
 
 from hystbench.errors import InputError
 from hystbench.figures.style import PAGE, in_style
-from hystbench.gap.report import pictures, where, write_report
+from hystbench.gap.report import pictures, where, words, write_report
 from hystbench.gap.report.page import OPTIONAL, headline
 from hystbench.gap.report.read import Content
 from hystbench.gap.report.words import number, with_error
@@ -712,3 +712,10 @@ def test_values_are_rounded_to_their_errors(value, error, shown):
 def test_a_number_keeps_its_digits_in_the_source():
     assert 'value="0.123456789"' in number(0.123456789)
     assert "10<sup>\u22127</sup>" in number(2.5e-7)
+
+
+def test_micro_is_written_one_way_in_sentences():
+    """Whatever the sentence says; names of columns and files keep their letters."""
+    page = "from 2 um to 0.3 um rms (um), a 4 us step of displacement_um at b.um"
+    wanted = "from 2 µm to 0.3 µm rms (µm), a 4 µs step of displacement_um at b.um"
+    assert words.one_micro(page) == wanted

@@ -12,9 +12,6 @@ def page(tmp_path_factory):
     return write_report(write_folder(tmp_path_factory.mktemp("page")))
 
 
-@pytest.mark.xfail(
-    reason="its tables reach out of a phone's window, and it has no dark colours"
-)
 def test_nothing_is_cut_off_at_any_width_in_light_or_dark(browser, page):
     assert all_faults(browser, page) == []
 

@@ -26,6 +26,8 @@ PLACE = ", ".join(
         + ["--config"] * bool(workflow.config_settings.config)
     )
 )
+
+
 KERNELS = sorted(PACKAGE.glob("kernels/*.so"))
 
 try:
@@ -45,7 +47,9 @@ try:
     for argument in sys.argv[1:]:
         SETTINGS.check_target(argument)
 except InputError as error:
-    sys.exit(f"hystbench: {error}")
+    refuse(error)
+for line in SETTINGS.warnings:
+    print(f"hystbench: warning: {line}", file=sys.stderr)
 
 
 # Before files of the package are replaced: what is committed can be had again.
@@ -170,7 +174,7 @@ def structures_tried(wildcards):
     try:
         asked = asked_structures(SETTINGS.structures)
     except InputError as error:
-        sys.exit(f"hystbench: {PLACE}: structures: tried: {error}")
+        refuse(f"{PLACE}: structures: tried: {error}")
     return [f"{RESULTS}/structures/{each.name}.json" for each in asked]
 
 

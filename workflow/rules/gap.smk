@@ -2,6 +2,7 @@
 # `snakemake gap` runs the worked example (config: gap: twin) and the datasets listed
 # there; `all` leaves it out for its time.
 from hystbench.dataset import load_dataset
+from hystbench.gap.asked import check_base
 
 GAP = f"{RESULTS}/gap"
 GAP_CASE = f"{GAP}/{{case}}"
@@ -64,8 +65,9 @@ for GIVEN in config["gap"]["datasets"]:
         GAP_DATASET = load_dataset(GIVEN["dataset"])
         if GAP_DATASET.name in GAP_CASES:
             raise InputError(f"a second dataset {GAP_DATASET.name!r}; expected one")
+        check_base(GIVEN["model"])
     except InputError as error:
-        sys.exit(f"hystbench: {PLACE}: gap: datasets: {error}")
+        refuse(f"{PLACE}: gap: datasets: {error}")
     GAP_CASES[GAP_DATASET.name] = {
         "dataset": str(GAP_DATASET.path),
         "fit": [

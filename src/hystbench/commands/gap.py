@@ -7,8 +7,10 @@ from pathlib import Path
 import click
 
 from hystbench import options
+from hystbench.gap.asked import check_base
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
+from hystbench.gap.limits import Limits
 from hystbench.gap.run import close_gap
 from hystbench.gap.wanted import write_wanted
 
@@ -45,7 +47,11 @@ def gap(
     def say(line: str) -> None:
         click.echo(line, err=True)
 
+    asked = options.asked_limits(limit_low, limit_high, limit_rate)
+    check_base(model)
     evidence = load_evidence(dataset)
+    options.warn(evidence.warnings)
+    Limits.within(evidence.fit, asked)  # refuses, before work is paid
     with options.counted_calls(calls, keep_calls, say):
         base, note = load_base(model, evidence)
         if note:
@@ -55,7 +61,7 @@ def gap(
             base,
             out,
             place=model,
-            limits=options.asked_limits(limit_low, limit_high, limit_rate),
+            limits=asked,
             report=report,
             say=say,
         )

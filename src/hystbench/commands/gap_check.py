@@ -8,7 +8,8 @@ import click
 
 from hystbench import options
 from hystbench.files import write_text
-from hystbench.gap.bases import IDENTIFIED, given_base
+from hystbench.gap.asked import IDENTIFIED, check_base
+from hystbench.gap.bases import given_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.start import run_base
 
@@ -23,7 +24,9 @@ def gap_check(dataset: Path, model: str, out: Path | None = None) -> None:
 
     A base that is to be identified is not checked.
     """
+    check_base(model)
     evidence = load_evidence(dataset)
+    options.warn(evidence.warnings)
     if model not in IDENTIFIED:
         base, _ = given_base(model, evidence)
         run_base(base, evidence.hold_out, evidence.hold)

@@ -16,7 +16,7 @@ from hystbench.errors import InputError, nearest
 from hystbench.files import read_json, write_csv
 from hystbench.published import FILTERS, load
 from hystbench.published.consistency import check
-from hystbench.schema import load_yaml
+from hystbench.yaml_files import load_yaml
 
 COLUMNS = (
     "structure",

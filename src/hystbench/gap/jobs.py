@@ -101,6 +101,16 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     ]
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
-    shown = outcome(base, decided, state, floor, box, evidence.hold_out, steps, own)
+    shown = outcome(
+        base,
+        decided,
+        state,
+        floor,
+        box,
+        evidence.hold_out,
+        steps,
+        own,
+        evidence.warnings,
+    )
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

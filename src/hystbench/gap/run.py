@@ -111,6 +111,7 @@ def close_gap(
         evidence.hold_out,
         finding.rungs,
         finding.own,
+        evidence.warnings,
     )
     with whole_folder(folder, RESULT) as fresh:
         write_json(fresh / "curves.json", finding.curves)
@@ -168,6 +169,7 @@ def outcome(
     records: tuple[Record, ...],
     steps: Sequence[Rung],
     own: OwnValues = NONE,
+    warnings: Sequence[str] = (),
 ) -> Outcome:
     """Show a finding on the hold-out records; take back what is worse there.
 
@@ -178,9 +180,16 @@ def outcome(
         What gap.json holds, but for what the hold-out records show.
     state, floor, box, records, steps, own
         As for :func:`show`.
+    warnings : sequence of str
+        What of the dataset is hardly meant.
     """
     shown = show(base, state, floor, box, records, steps, own)
-    content = {**decided, "withdrawn": None, **shown.content}
+    content = {
+        **decided,
+        "withdrawn": None,
+        **shown.content,
+        "warnings": list(warnings),
+    }
     model = augmented(base, state).with_hold(state.hold)
     taken = withdrawal(content)
     if taken is not None:

@@ -297,6 +297,8 @@ SCHEMA = _object(
     ),
     # Where --calls ended the search: how many were allowed.
     calls_used_up=_object({"bound": {"type": "integer"}, "sentence": WORDS}),
+    # What of the dataset is hardly meant: copies, strange times, sizes and units.
+    warnings={"type": "array", "items": WORDS},
     # Why next_experiment is null though effects cannot be told apart.
     no_experiment={"type": "string"},
 )

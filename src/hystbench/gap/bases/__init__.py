@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.blocks.calls import current
-from hystbench.blocks.external import FORM, External, called
+from hystbench.blocks.external import External, called
 from hystbench.blocks.simulated_column import SimulatedColumn
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError
+from hystbench.gap.asked import kind_of_base
 from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
@@ -28,11 +29,6 @@ __all__ = [
     "simulated_column",
     "written_base",
 ]
-
-IDENTIFIED = ("gpi", "linear")
-"""Words for a base that is identified from the fit records."""
-WORDS = (*IDENTIFIED, "column")
-"""What may stand in the place of a model file."""
 
 
 def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
@@ -94,16 +90,10 @@ def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
     """
     if text == "column":
         return simulated_column(evidence)
-    if Path(text).is_file() or text.endswith((".yaml", ".yml")):
+    if kind_of_base(text) == "file":
         model = written_base(Path(text), evidence)
         return model, f"base {model.name} from {text}"
-    if FORM.fullmatch(text):
-        return function_base(text, evidence)
-    files = [str(item) for item in Path(text).parent.glob("*.yaml")]
-    raise InputError(
-        f"--model: {text!r} is no model file, none of {', '.join(WORDS)}, and no "
-        f"package.module:function; {nearest(text, [*WORDS, *files])}"
-    )
+    return function_base(text, evidence)
 
 
 def written_base(path: Path, evidence: Evidence) -> Model:

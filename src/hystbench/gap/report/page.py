@@ -29,6 +29,7 @@ OPTIONAL: dict[str, Any] = {
     "no_experiment": "",
     "not_tried": [],
     "runs_away": [],
+    "warnings": [],
     "fit": None,
     "simulator": None,
     "calls_used_up": None,
@@ -72,7 +73,7 @@ def page(content: Content) -> str:
     if gap["black_box"]:
         gap["black_box"] = INTERVALS | gap["black_box"]
     drawn, missing = _where(content)
-    return environment.get_template(TEMPLATE).render(
+    page = environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(gap),
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
@@ -93,6 +94,7 @@ def page(content: Content) -> str:
         drawn=min(len(content.hold_out), pictures.RECORDS),
         held=len(content.hold_out),
     )
+    return words.one_micro(page)
 
 
 def headline(gap: dict[str, Any], content: Content) -> list[Picture]:
