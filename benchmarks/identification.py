@@ -31,7 +31,7 @@ from hystbench.measurement import measure
 from hystbench.model import load_model
 from hystbench.operators import generalized_prandtl_ishlinskii
 from hystbench.record import FloatArray, Record
-from hystbench.schema import load_yaml
+from hystbench.yaml_files import load_yaml
 from hystbench.signals import make_signal
 
 COLUMNS = (

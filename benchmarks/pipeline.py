@@ -18,7 +18,7 @@ from pathlib import Path
 from time import perf_counter
 
 from benchmarks.timing import least_and_median, write_table
-from hystbench.schema import load_yaml
+from hystbench.yaml_files import load_yaml
 
 ROOT = Path(__file__).parents[1]
 CORES = 2

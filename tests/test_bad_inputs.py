@@ -491,9 +491,9 @@ BAD_WORDS = {
     "a function of complex numbers": (base("bad_fn:complex"), ["complex"]),
     "a function that throws dice": (base("bad_fn:random"), ["the same one every time"]),
     "no such record": (("load", "data", "oen", *LOAD[3:]), ["did you mean 'one'?"]),
-    "a record of no dataset": (
+    "a record that is a model": (
         ("simulate", "model.yaml", "model.yaml", "--out", "out"),
-        ["model.yaml", "no dataset.yaml beside it"],
+        ["model.yaml", "no column 'time_s'"],
     ),
     "a hold that is none": ((*SIMULATE, "--hold", "zoh"), ["--hold", "zero-order"]),
     "a model in the place of a record": (

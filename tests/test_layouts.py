@@ -8,7 +8,7 @@ import tempfile
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from types import SimpleNamespace
+from typing import Any
 
 import click
 import numpy as np
@@ -173,6 +173,21 @@ def content(root: Path) -> dict[str, str]:
     return found
 
 
+@dataclass(frozen=True)
+class Found:
+    """What a search would give, as far as it is written."""
+
+    model: Any
+    curves: dict
+    content: dict
+    state: None = None
+    floor: None = None
+    black_box: None = None
+    rungs: tuple = ()
+    own: None = None
+    experiment: None = None
+
+
 @contextmanager
 def searched():
     """Replace the search; count how often it was paid."""
@@ -180,25 +195,19 @@ def searched():
 
     def find(name, records, base, *others):
         calls.append(name)
-        return SimpleNamespace(
+        return Found(
             model=base,
             curves={"run": len(calls)},
             content={"verdict": "no-gap", "effects": [], "run": len(calls)},
-            state=None,
-            floor=None,
-            black_box=None,
-            rungs=(),
-            experiment=None,
         )
 
-    def show(base, state, floor, box, records, steps):
+    def outcome(base, decided, state, floor, box, records, *others):
         outputs = [(record.y, record.y) for record in records]
-        return run_module.Shown({}, outputs)
+        return run_module.Outcome(base, decided, outputs)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run_module, "find", find)
-        patch.setattr(run_module, "show", show)
-        patch.setattr(run_module, "shortfall", lambda content: None)
+        patch.setattr(run_module, "outcome", outcome)
         yield calls
 
 
@@ -280,6 +289,8 @@ READ = {
     ("gap-report", "folder"),
     ("blind-solve", "cases"),
     ("docs", "pages"),
+    ("report", "compare"),
+    ("report", "captions"),
     ("clean", "folders"),
 }
 

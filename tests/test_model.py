@@ -213,8 +213,11 @@ def put(value, *path):
         (without("chain"), "missing key 'chain'"),
         (put([], "chain"), "chain: expected at least one block"),
         (put({}, "chain"), "chain: expected a list of blocks"),
-        (put("gain", "chain", 0), "chain: block 1: expected one block and its"),
-        (put({"a": 1, "b": 2}, "chain", 0), "chain: block 1: expected one block"),
+        (put(7, "chain", 0), "chain: block 1: 7; expected one block and its"),
+        (
+            put({"gain": {}, "value": 2}, "chain", 0),
+            "chain: block 1: 2 keys (gain, value); expected one block",
+        ),
         (
             put({"resonanse": {}}, "chain", 1),
             "chain: block 2: unknown block 'resonanse'; did you mean 'resonance'?",

@@ -96,7 +96,7 @@ def test_archives_of_records_and_signals(tmp_path, model):
     [
         ("mA", "multiply the record's column by 0.001 and say 'A'"),
         ("V", "expected the same unit"),
-        ("furlongz", "expected the same unit"),
+        ("furlong", "expected the same unit"),
     ],
 )
 def test_units_that_differ_are_refused(tmp_path, model, write_dataset, unit, expected):

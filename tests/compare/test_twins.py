@@ -82,8 +82,9 @@ def test_holdings_are_counted_by_family(holdings):
 
 def test_where_a_claim_holds_stands_beside_its_verdict(holdings, tmp_path):
     evidence = Evidence(runs=published_runs(), holdings=holdings)
-    write_claims(judge_all(evidence), tmp_path / "claims.csv")
-    with (tmp_path / "claims.csv").open(encoding="utf-8") as stream:
+    judged = tmp_path / "judged.csv"
+    write_claims(judge_all(evidence), judged)
+    with judged.open(encoding="utf-8") as stream:
         rows = {row["id"]: row for row in csv.DictReader(stream)}
     assert rows["sums-gpo-best"]["verdict"] == "reproduced"
     assert rows["sums-gpo-best"]["holds_on"] == "gpi 1 of 2, preisach 0 of 1"
