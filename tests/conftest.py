@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,6 +31,20 @@ settings.load_profile("hystbench")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the workflows: each takes long, and two workers end together."""
     items.sort(key=lambda item: "pipeline" not in item.path.parts)
+
+
+def shorten(config: dict[str, Any], duration_s: float) -> None:
+    """Make a config's records short, the random sum with the sines that they hold."""
+    config["excitation"]["duration_s"] = duration_s
+    random = config["excitations"]["multisine-random-0-100hz"]["random-sum-of-sines"]
+    random["sines"] = min(random["sines"], round(100 * duration_s))
+    config["random_sum"] |= {"draws": 2, "other_sines": [5]}
+    config["step_sweep"] |= {"ratio": 2.0}
+    config["pressure"] |= {
+        "members": 1,
+        "zero_errors": [0.0],
+        "constant_taps": [0.0, 1.0],
+    }
 
 
 @pytest.fixture(scope="session")
