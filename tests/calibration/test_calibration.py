@@ -229,9 +229,7 @@ def test_the_committed_twin_keeps_the_margin_on_every_calibration_signal():
         for name, most in problem.corrections(values, model, signals).items():
             assert most <= 1.7 + 1e-3, (model, name)
     # None of what the twin is made of stands at an end of what the search allows.
-    places = dict(
-        zip([item.name for item in UNKNOWNS], to_point(values), strict=True)
-    )
+    places = dict(zip([item.name for item in UNKNOWNS], to_point(values), strict=True))
     assert {name for name, place in places.items() if not 0.01 < place < 0.99} == set()
 
 

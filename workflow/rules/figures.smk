@@ -11,7 +11,7 @@ if SETTINGS.filters:
     FIGURE_INPUTS |= {
         "figure-07-order": {
             "record": [record(SETTINGS.order_sweep_signal)],
-            "table": rules.order_sweep.output,
+            "table": [rules.order_sweep.output.configured],
         },
         "learning-curves": {
             "run": [
@@ -27,6 +27,7 @@ if TWIN:
         "figure-03-play": {},
         "figure-04-generalized-play": {},
         "errors-heat-map": {"table": [rules.tables.output.cells]},
+        "step-edges": {"table": [rules.step_sweep.output.edges]},
     }
     # The paper's figures of the GPO filter, and their signals.
     FIGURE_INPUTS |= {

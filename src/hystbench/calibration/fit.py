@@ -131,7 +131,7 @@ def jacobian(
         if name in owner:
             place = models.index(owner[name])
             errors = np.arange(len(targets)) * len(models) + place
-            # After the errors come an RMS for each target, then a margin for each model.
+            # After the errors come an RMS a target, then a margin a model.
             rows = [*errors, len(targets) * (len(models) + 1) + place]
             after = objective.step_residuals(values, targets, owner[name])
             columns[rows, k] = (after - now[rows]) / h

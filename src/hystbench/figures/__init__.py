@@ -28,6 +28,7 @@ NAMES = (
     "learning-curves",
     "errors-heat-map",
     "contest",
+    "step-edges",
     "loops",
     "errors-by-record",
     "blind-confusion",

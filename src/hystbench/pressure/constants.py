@@ -139,8 +139,6 @@ def vary_constants(
         }
         configured = (zero, size) == (usual, tap)
         found.append(
-            Constant(
-                twin.name, twin.family, zero, size, configured, ordered, published
-            )
+            Constant(twin.name, twin.family, zero, size, configured, ordered, published)
         )
     return found

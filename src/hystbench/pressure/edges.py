@@ -66,7 +66,7 @@ def sweep(
         Result of Algorithm 1, for identified envelopes.
     """
     edges, points = [], []
-    for name, record in records.items():
+    for record in records.values():
         for model, job in filter_jobs(settings).items():
             adaptive = make_filter(model, job, record, identified)
             own = _run(adaptive, record, factors(settings["sweep"]), job)
@@ -104,9 +104,7 @@ def _run(
     return found
 
 
-def _edge(
-    adaptive: AdaptiveFilter, record: Record, points: Sequence[Point]
-) -> Edge:
+def _edge(adaptive: AdaptiveFilter, record: Record, points: Sequence[Point]) -> Edge:
     beyond = [point for point in points if point.re >= 1]
     bounds = step_bounds(adaptive, record.u)
     names = step_names(adaptive.name)

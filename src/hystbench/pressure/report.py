@@ -8,10 +8,11 @@ from typing import Any
 
 from tabulate import tabulate
 
+from hystbench.compare.claims.halves import holds
 from hystbench.compare.evidence import Evidence
 from hystbench.compare.twins import CLAIM_COLUMNS, ERROR_COLUMNS
 from hystbench.files import write_csv, write_json, write_text
-from hystbench.pressure.judging import Count, Pressed, born_out, holds, pressed_claims
+from hystbench.pressure.judging import Count, Pressed, born_out, pressed_claims
 from hystbench.pressure.runs import Ensemble
 
 COLUMNS = (
