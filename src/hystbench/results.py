@@ -115,24 +115,6 @@ def save_run(
     write_json(path, result)
 
 
-def convergence_time(error: FloatArray, dt: float, smoothing_fraction: float) -> float:
-    """Time (s) after which the smoothed e^2 stays near its end.
-
-    It stays below twice its median over the record's last quarter.
-
-    Parameters
-    ----------
-    error : ndarray, shape (n,)
-        At least one sample.
-    dt : float
-        Sampling interval (s).
-    smoothing_fraction : float
-        Part of the record over which e^2 is averaged.
-    """
-    window = max(1, round(smoothing_fraction * len(error)))
-    return _convergence(smoothed_squared_error(error, window), dt)
-
-
 def _convergence(smoothed: FloatArray, dt: float) -> float:
     final = np.median(smoothed[-max(1, len(smoothed) // 4) :])
     above = np.flatnonzero(smoothed > 2 * final)

@@ -31,8 +31,8 @@ class Edge:
         Least step size of the sweep at which the error is as large as the
         displacement or the filter diverges; None where the sweep found none.
     speed_trend : float or None
-        Rank correlation of the convergence time with the step size, well below the
-        edge; None where the time does not change.
+        Rank correlation with the step size, up to half of the edge, of the time after
+        which the error is small; None where the time does not change.
     """
 
     signal: str

@@ -15,18 +15,22 @@ from typing import Any
 import numpy as np
 
 from hystbench.adaptive import make_filter, step_bounds, step_names
-from hystbench.compare.claims.statistics import rank_correlation
 from hystbench.compare.edges import Edge
 from hystbench.filters import AdaptiveFilter, run_many
-from hystbench.metrics import mean_square_error, relative_error
+from hystbench.metrics import (
+    mean_square_error,
+    relative_error,
+    smoothed_squared_error,
+)
 from hystbench.pressure.runs import Settings, filter_jobs
-from hystbench.record import Record
-from hystbench.results import convergence_time
+from hystbench.record import FloatArray, Record
 
 BATCH = 32
 """Runs held in memory at a time."""
-SETTLED = 0.5
-"""Convergence times are compared up to this part of the edge: there e^2 still falls."""
+WELL_BELOW = 0.5
+"""Convergence times are compared up to this part of the edge."""
+CONVERGED = 0.1
+"""Relative error at which a filter counts as converged: 20 dB down."""
 
 
 @dataclass(frozen=True)
@@ -95,13 +99,33 @@ def _run(
                 found.append(Point(*place, math.inf, math.inf, None))
                 continue
             error = result.error
-            time = convergence_time(error, record.dt, job["smoothing_fraction"])
+            time = _convergence_time(error, record, job["smoothing_fraction"])
             mse, re = mean_square_error(error), relative_error(error, record.y)
             found.append(Point(*place, mse, re, time))
         # Far beyond the edge nothing more is learned.
         if all(point.re >= 1 for point in found[-len(batch) :]):
             break
     return found
+
+
+def _convergence_time(
+    error: FloatArray, record: Record, smoothing_fraction: float
+) -> float | None:
+    """Time (s) at which the smoothed error first is small; None where it never is."""
+    window = max(1, round(smoothing_fraction * len(record)))
+    smoothed = smoothed_squared_error(error, window)
+    small = smoothed <= CONVERGED**2 * np.mean(record.y**2)
+    return float(np.argmax(small) * record.dt) if small.any() else None
+
+
+def _trend(points: Sequence[Point]) -> float | None:
+    """Rank correlation of the convergence time with mu; None where it is one time."""
+    timed = [(p.mu, p.convergence_s) for p in points if p.convergence_s is not None]
+    if len({time for _, time in timed}) < 2:
+        return None
+    # Equal times have equal ranks.
+    mu, times = (np.unique(v, return_inverse=True)[1] for v in zip(*timed, strict=True))
+    return float(np.corrcoef(mu, times)[0, 1])
 
 
 def _edge(adaptive: AdaptiveFilter, record: Record, points: Sequence[Point]) -> Edge:
@@ -112,12 +136,7 @@ def _edge(adaptive: AdaptiveFilter, record: Record, points: Sequence[Point]) -> 
     share = sum(getattr(adaptive, own) / bounds[key] for key, own in names.items())
     correction = adaptive.correction(adaptive.largest_power(record.u))
     edge = beyond[0].mu if beyond else None
-    below = [p for p in points if edge is not None and p.mu <= SETTLED * edge]
-    timed = [(p.mu, p.convergence_s) for p in below if p.convergence_s is not None]
-    times = [time for _, time in timed]
-    trend = None
-    if len(set(times)) > 1:
-        trend = rank_correlation([mu for mu, _ in timed], times)
+    below = [p for p in points if edge is not None and p.mu <= WELL_BELOW * edge]
     return Edge(
         signal=record.name,
         model=adaptive.name,
@@ -126,5 +145,5 @@ def _edge(adaptive: AdaptiveFilter, record: Record, points: Sequence[Point]) -> 
         at_trace=adaptive.step_size / share,
         at_power=2 * adaptive.step_size / correction,
         edge=edge,
-        speed_trend=trend,
+        speed_trend=_trend(below),
     )

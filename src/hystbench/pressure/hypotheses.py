@@ -32,11 +32,11 @@ START_UP_S = 0.1
 OFFSETS_UM = (0.25, 0.5, 1.0)
 """Constants added to the displacement, within what a sensor's zero may be off."""
 DRIFTS_UM = (0.5, 0.75, 1.0)
-"""Drifts that die away over the record: exp(-3 t / T), a twentieth at its end."""
+"""Drifts that die away over the record, evenly from its start to its end."""
 FAST = ("sine-100hz", "sine-150hz", "sine-200hz")
 VOLTERRA_FACTORS = (0.25, 0.5, 1.0, 2.0, 4.0)
 PLANT = {
-    "mode": ("resonance.frequency_hz", (0.97, 1.03)),
+    "frequency": ("resonance.frequency_hz", (0.97, 1.03)),
     "damping": ("resonance.damping_ratio", (0.5, 2.0, 5.0)),
     "participation": ("resonance.participation", (0.0, 3.0, 10.0)),
 }
@@ -105,7 +105,7 @@ def chirp_rows(twin: Twin, settings: Settings) -> Iterator[Row]:
 
 
 def _drift(record: Record, size: float) -> Any:
-    return size * np.exp(-3 * np.arange(len(record)) / len(record))
+    return size * (1 - np.arange(len(record)) / len(record))
 
 
 def volterra_rows(twin: Twin, settings: Settings) -> Iterator[Row]:

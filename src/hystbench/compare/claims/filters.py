@@ -88,8 +88,8 @@ def _edges(evidence: Evidence) -> tuple[Edge, ...]:
     "Sections 3.2 and 4",
     "theory",
     "stability: raised far enough, it makes each filter of no use on each signal; "
-    "speed: up to half of that edge, the time after which the smoothed squared error "
-    "stays below twice its end falls with it, by rank correlation of -0.5 or below in "
+    "speed: up to half of that edge, the time until the smoothed error first is a "
+    "tenth of the displacement (RMS) falls with it, by rank correlation of -0.5 or below in "
     "the median over the signals of each filter",
 )
 def mu_governs(evidence: Evidence) -> Finding:
