@@ -89,7 +89,7 @@ def _edges(evidence: Evidence) -> tuple[Edge, ...]:
     "theory",
     "stability: raised far enough, it makes each filter of no use on each signal; "
     "speed: up to half of that edge, the time until the smoothed error first is a "
-    "tenth of the displacement (RMS) falls with it, by rank correlation of -0.5 or below in "
+    "tenth of the displacement (RMS) falls with it, rank correlation at most -0.5 in "
     "the median over the signals of each filter",
 )
 def mu_governs(evidence: Evidence) -> Finding:
