@@ -42,6 +42,7 @@ if TWIN:
             verdict=f"{COMPARE}/verdict.rst",
             page=f"{COMPARE}/verdict.md",
             first=f"{COMPARE}/first.md",
+            margins=f"{COMPARE}/margins.csv",
             text=f"{COMPARE}/tables.txt",
             tables=report(
                 expand(f"{COMPARE}/tables/table-{{number}}.csv", number=[1, 2, 3, 4]),

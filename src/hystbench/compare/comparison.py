@@ -11,6 +11,7 @@ from typing import Any
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
+from hystbench.compare.edges import Edge, write_margins
 from hystbench.compare.evidence import Evidence, read_evidence
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.summary import rms_error_percent, summarise
@@ -54,6 +55,8 @@ class Comparison:
     claims: tuple[Judgement, ...]
     summary: dict[str, Any]
     tables: tuple[Table, ...]
+    edges: tuple[Edge, ...]
+    held_out: frozenset[str]
 
     def text(self) -> str:
         """Give the comparison for a terminal."""
@@ -66,6 +69,7 @@ class Comparison:
         write_off(self.off, out / "off.csv")
         write_claims(self.claims, out / "claims.csv")
         write_audit(out / "audit.csv")
+        write_margins(self.edges, self.held_out, out / "margins.csv")
         write_json(out / "summary.json", self.summary)
         write_text(out / "verdict.rst", verdict_rst(self.summary))
         write_text(out / "verdict.md", verdict_markdown(self.summary))
@@ -119,6 +123,8 @@ def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Compar
         tables=paper_tables(
             cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
         ),
+        edges=evidence.edges,
+        held_out=frozenset(unseen),
     )
 
 
@@ -143,7 +149,7 @@ def compare(
     ----------
     out_dir : path
         Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
-        ``summary.json``, ``verdict.rst``, ``verdict.md``, ``first.md`` for the
+        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``, ``first.md`` for the
         README, ``tables.txt`` for the terminal and ``tables/`` (Tables 1-4 as CSV,
         Markdown and LaTeX).
     runs : iterable of paths

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
@@ -69,6 +69,21 @@ def write_edges(edges: Iterable[Edge], path: Path) -> None:
         told = ["" if n is None else f"{n:.4g}" for n in numbers]
         rows.append([each.signal, each.model, *told])
     write_csv(path, COLUMNS, rows)
+
+
+def write_margins(edges: Sequence[Edge], held_out: Collection[str], path: Path) -> None:
+    """Write 2 mu max|H|^2 as configured, a row a signal and a column a filter."""
+    models = list(dict.fromkeys(each.model for each in edges))
+    found = {(e.signal, e.model): f"{e.largest_correction:.3f}" for e in edges}
+    rows = [
+        [
+            signal,
+            "held-out" if signal in held_out else "calibrated",
+            *(found.get((signal, model), "") for model in models),
+        ]
+        for signal in dict.fromkeys(each.signal for each in edges)
+    ]
+    write_csv(path, ("signal", "half", *models), rows)
 
 
 def read_edges(path: str | Path) -> tuple[Edge, ...]:
