@@ -149,9 +149,9 @@ def compare(
     ----------
     out_dir : path
         Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
-        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``, ``first.md`` for the
-        README, ``tables.txt`` for the terminal and ``tables/`` (Tables 1-4 as CSV,
-        Markdown and LaTeX).
+        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
+        ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
+        (Tables 1-4 as CSV, Markdown and LaTeX).
     runs : iterable of paths
         One JSON file for each signal and model.
     records : iterable of paths
