@@ -34,6 +34,11 @@ def test_every_stage_leaves_its_files(finished):
         "identify/identified.json",
         "identify/envelopes.csv",
         "order-sweep/errors.csv",
+        "order-sweep/other-rule.csv",
+        "random-sum/draws.csv",
+        "random-sum/readings.csv",
+        "step-sweep/edges.csv",
+        "pressure/constants.csv",
         "rdgpi/identified.json",
         "rdgpi/published-parameters.csv",
         "twins/errors.csv",
@@ -43,6 +48,8 @@ def test_every_stage_leaves_its_files(finished):
         "compare/claims.csv",
         "compare/audit.csv",
         "compare/summary.json",
+        "compare/first.md",
+        "compare/margins.csv",
         "compare/verdict.rst",
         "compare/tables/table-1.md",
         "compare/tables/table-4.tex",
@@ -167,6 +174,8 @@ def test_a_changed_step_size_reruns_its_filter_and_what_follows(workflow, config
     assert planned.pop("order_sweep") == 1
     assert planned.pop("twin_runs") == 1
     assert planned.pop("twins") == 1
+    for sweep in ("random_sum", "step_sweep", "constants"):
+        assert planned.pop(sweep) == 1
     assert planned.pop("tables") == 1
     assert all(name.startswith("draw_") for name in planned)
 
@@ -202,6 +211,8 @@ def test_an_edited_module_reruns_what_imports_it(workflow):
     assert planned.pop("order_sweep") == 1
     assert planned.pop("twin_runs") == 1
     assert planned.pop("twins") == 1
+    for sweep in ("random_sum", "step_sweep", "constants"):
+        assert planned.pop(sweep) == 1
     assert planned.pop("tables") == 1
     assert all(name.startswith("draw_") for name in planned)
 

@@ -215,7 +215,7 @@ if TWIN:
     HYPOTHESES = []
     if {"chirp-1-100hz", "sine-100hz", "sine-150hz", "sine-200hz"} <= {
         *SETTINGS.signals
-    } and "volterra" in SETTINGS.models:
+    } and len(SETTINGS.filters) == 4:
 
         rule hypotheses:
             input:

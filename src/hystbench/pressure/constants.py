@@ -119,8 +119,10 @@ def vary_constants(
     """
     signals = draw_signals(settings["signals"], 0)
     usual = settings["measure"]["input_zero_error"]
-    own = {job["constant_tap"] for job in filter_jobs(settings).values()}
-    (tap,) = own
+    jobs = filter_jobs(settings)
+    if not jobs:
+        return []
+    tap = next(iter(jobs.values()))["constant_tap"]
     cases = [(zero, tap) for zero in sorted({*settings["zero_errors"], usual})]
     cases += [(usual, each) for each in settings["constant_taps"] if each != tap]
     found = []
@@ -128,14 +130,12 @@ def vary_constants(
         measured = {**settings["measure"], "input_zero_error": zero}
         records = measure_twin(twin, signals.values(), measured, 0)
         mse = {}
-        for model, job in filter_jobs(settings).items():
+        for model, job in jobs.items():
             changed = {**job, "constant_tap": size}
             runs = run_records(model, changed, records, identified or {})
             mse |= {cell: run.error("mse") for cell, run in runs.items()}
         ordered = {
-            (signal, model): mse[signal, model]
-            for signal in records
-            for model in filter_jobs(settings)
+            (signal, model): mse[signal, model] for signal in records for model in jobs
         }
         configured = (zero, size) == (usual, tap)
         found.append(

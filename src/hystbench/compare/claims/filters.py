@@ -67,7 +67,7 @@ def eq19_convergence(evidence: Evidence) -> Finding:
         return Finding(True, f"0 of {len(edges)} edges lie inside 1/tr[R]; {power}")
     told = ", ".join(
         f"{e.model} on {e.signal} at {e.edge:.3g} of {e.at_trace:.3g}"
-        for e in sorted(inside, key=lambda e: e.edge / e.at_trace)[:3]
+        for e in sorted(inside, key=lambda e: (e.edge or 0) / e.at_trace)[:3]
         if e.edge is not None
     )
     return Finding(
