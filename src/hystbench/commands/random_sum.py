@@ -35,12 +35,11 @@ def random_sum(
     told: Path,
 ) -> None:
     """Run all models on draws of the random sum: each draw, and what they say."""
-    found = run_draws(
-        read_twins([twin])[0],
-        settings,
-        {} if identified is None else read_json(identified),
-        rdgpi and RateDependentGPI.from_dict(read_json(rdgpi)["parameters"]),
-    )
+    fitted = None
+    if rdgpi is not None:
+        fitted = RateDependentGPI.from_dict(read_json(rdgpi)["parameters"])
+    envelopes = {} if identified is None else read_json(identified)
+    found = run_draws(read_twins([twin])[0], settings, envelopes, fitted)
     signal = settings["signal"]
     write_draws(signal, found, draws)
     published = [pair for pair in load() if pair.signal == signal]

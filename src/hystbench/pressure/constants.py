@@ -129,7 +129,7 @@ def vary_constants(
     for zero, size in cases:
         measured = {**settings["measure"], "input_zero_error": zero}
         records = measure_twin(twin, signals.values(), measured, 0)
-        mse = {}
+        mse: dict[tuple[str, str], float] = {}
         for model, job in jobs.items():
             changed = {**job, "constant_tap": size}
             runs = run_records(model, changed, records, identified or {})
