@@ -204,8 +204,22 @@ def test_verdict_is_valid_rst(comparison):
 
 def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
     text = verdict_markdown(comparison.summary)
-    for model in ("gpo", "backlash", "volterra", "delayed", "rdgpi"):
+    for model in ("gpo", "backlash", "volterra", "delayed"):
         assert f"| {model} " in text
+    assert "| rdgpi, our guess" in text
+
+
+def test_the_small_table_keeps_the_halves_apart():
+    found = compare_evidence(Evidence(runs=published_runs()), ("sine-060hz",))
+    text = verdict_markdown(found.summary)
+    for part in (
+        "held out: gpo",
+        "calibrated: gpo",
+        "held out: all",
+        "calibrated: all",
+    ):
+        assert f"| {part}" in text
+    assert "| gpo " not in text
 
 
 def test_text_for_the_terminal(comparison):

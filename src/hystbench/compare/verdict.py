@@ -35,27 +35,26 @@ def _row(name: str, part: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def rows(summary: Mapping[str, Any]) -> list[tuple[str, ...]]:
-    """List the lines of the small table: all filters, each model, other counts."""
-    without = summary["without_inconsistent"]
-    split = {"calibrated": "signals of the calibration", "held_out": "held-out signals"}
-    return [
-        _row("four filters", summary),
-        *(_row(model, part) for model, part in summary["per_model"].items()),
-        *(
-            _row(
-                name,
-                summary[key]
-                | {
-                    "median_abs_log10_ratio": summary[key]["median_abs_log10_ratio_all"]
-                },
+    """List the lines of the small table, held-out and calibrated cells apart."""
+    split = {"held_out": "held out", "calibrated": "calibrated"}
+    found = []
+    for key, name in split.items():
+        if key in summary:
+            part = summary[key]
+            median = part["median_abs_log10_ratio_all"]
+            found.append(
+                _row(f"{name}: all filters", part | {"median_abs_log10_ratio": median})
             )
-            for key, name in split.items()
-            if key in summary
-        ),
-        _row("filters, without †", without["without_no"]),
-        _row("filters, without † and ‡", without["without_no_and_undecided"]),
-        _row("rdgpi", summary["rdgpi"]),
-    ]
+            found += [
+                _row(f"{name}: {model}", own)
+                for model, own in part["per_model"].items()
+            ]
+    if not found:
+        found = [
+            _row("four filters", summary),
+            *(_row(model, part) for model, part in summary["per_model"].items()),
+        ]
+    return [*found, _row("rdgpi, our guess of the model", summary["rdgpi"])]
 
 
 def sentences(summary: Mapping[str, Any]) -> list[str]:
@@ -110,8 +109,8 @@ def _held_out_claims(claims: Sequence[Mapping[str, str]]) -> list[str]:
     stand = [each["id"] for each in claims if each["verdict"] == "reproduced"]
     named = f": {', '.join(stand)}" if stand else ""
     return [
-        f"Of {len(claims)} results of the paper that are judged on held-out signals "
-        f"alone, {len(stand)} stand{named}."
+        f"Of {len(claims)} results of the paper that can be judged on held-out signals "
+        f"alone, {len(stand)} stand there and on all signals{named}."
     ]
 
 
@@ -219,8 +218,9 @@ def _families(where: Mapping[str, int]) -> list[str]:
     other = where["every_family"] + where["some_families"]
     if other:
         return [
-            f"Of {other} reproduced claims that were judged on twins with other "
-            f"hysteresis too, {where['every_family']} hold on each of them."
+            f"Of {other} reproduced claims that were judged in other experiments and "
+            f"on twins with other hysteresis too, {where['every_family']} hold in each "
+            "of them."
         ]
     if where["one_family_run"]:
         return [
@@ -231,8 +231,8 @@ def _families(where: Mapping[str, int]) -> list[str]:
 
 
 LEGEND = (
-    "† printed pairs of MSE and RE that cannot be true beside the others of their "
-    "signal; ‡ pairs of which one must be wrong, which one is unknown."
+    "Held out are signals whose errors no fit has read; calibrated are those to which "
+    "the twin and the step sizes are fitted."
 )
 
 

@@ -75,7 +75,10 @@ def _judge(claim: Claim, evidence: Evidence, alone: Evidence) -> Judgement:
     judged = judge(claim, evidence)
     if claim.basis != "fitted" or not about_signals(claim, alone):
         return judged
-    return replace(judged, held_out_verdict=judge(claim, alone).verdict)
+    verdict = judge(claim, alone).verdict
+    if verdict == "refuted by the paper" != judged.verdict:
+        return judged  # not even the paper's own errors show it on so few signals
+    return replace(judged, held_out_verdict=verdict)
 
 
 def write_claims(judgements: Iterable[Judgement], path: str | Path) -> None:
