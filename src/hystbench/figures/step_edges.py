@@ -40,9 +40,10 @@ def draw(*, table: Path) -> Figure:
     for axes, model in zip(panels.flat, models, strict=False):
         _panel(axes, [edge for edge in edges if edge.model == model], signals)
         name = style.look(model).label
-        step = "first-order µ" if model == "volterra" else "µ"
         axes.set_title(name, loc="left")
-        axes.set_xlabel(f"step size {step} (1)")
+        axes.set_xlabel(
+            "step size µ of first order" if model == "volterra" else "step size µ"
+        )
     for axes in list(panels.flat)[len(models) :]:
         axes.remove()
     for line in panels:
