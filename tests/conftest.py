@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,6 +40,20 @@ def _no_cache_of_the_users(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+def shorten(config: dict[str, Any], duration_s: float) -> None:
+    """Make a config's records short, the random sum with the sines that they hold."""
+    config["excitation"]["duration_s"] = duration_s
+    random = config["excitations"]["multisine-random-0-100hz"]["random-sum-of-sines"]
+    random["sines"] = min(random["sines"], round(100 * duration_s))
+    config["random_sum"] |= {"draws": 2, "other_sines": [5]}
+    config["step_sweep"] |= {"ratio": 2.0}
+    config["pressure"] |= {
+        "members": 1,
+        "zero_errors": [0.0],
+        "constant_taps": [0.0, 1.0],
+    }
 
 
 @pytest.fixture(scope="session")

@@ -27,10 +27,10 @@ from hystbench.yaml_files import load_yaml
 FILTER_NAMES = ("gpo", "backlash", "volterra", "delayed")
 
 _KEYS_OF_FILTER = {
-    "gpo": ("input_before", "initial_state", "operator_form"),
-    "backlash": ("input_before", "initial_state", "backlash_structure"),
-    "volterra": ("input_before",),
-    "delayed": ("input_before",),
+    "gpo": ("input_before", "constant_tap", "initial_state", "operator_form"),
+    "backlash": ("input_before", "constant_tap", "initial_state", "backlash_structure"),
+    "volterra": ("input_before", "constant_tap"),
+    "delayed": ("input_before", "constant_tap"),
 }
 
 
@@ -225,17 +225,63 @@ class Settings:
         return self._twin_job(sweep["signal"]) | {
             "filters": {model: self.filter_job(model)},
             "order_sweep": sweep,
+            "experiments": self._experiments,
+            **self.compare_job,
         }
 
     @property
+    def _experiments(self) -> dict[str, Any]:
+        """Design of the experiments in which claims are judged on each twin."""
+        keys = ("members", "step_factors", "zero_factors", "noise_factors")
+        return {key: self.config["pressure"][key] for key in keys}
+
+    @property
     def twins_job(self) -> dict[str, Any]:
-        """Settings of the claims on all twins as configured."""
-        return self._twin_job()
+        """Settings of the claims on all twins."""
+        return self._twin_job() | {"experiments": self._experiments}
+
+    @property
+    def random_sum_job(self) -> dict[str, Any]:
+        """Settings of the draws of the random sum."""
+        section = self.config["random_sum"]
+        return {
+            **section,
+            **self.signal_job(section["signal"]),
+            "measure": self.measure_job,
+            "filters": {name: self.filter_job(name) for name in self.filters},
+        }
+
+    @property
+    def step_sweep_job(self) -> dict[str, Any]:
+        """Settings of the sweep of step sizes."""
+        return {
+            "filters": {name: self.filter_job(name) for name in self.filters},
+            "sweep": self.config["step_sweep"],
+        }
+
+    @property
+    def constants_job(self) -> dict[str, Any]:
+        """Settings of the ranking with other constants."""
+        section = self.config["pressure"]
+        return {
+            "signals": {name: self.signal_job(name) for name in self.signals},
+            "measure": self.measure_job,
+            "filters": {name: self.filter_job(name) for name in self.filters},
+            **{key: section[key] for key in ("zero_errors", "constant_taps")},
+            **self.compare_job,
+        }
+
+    @property
+    def hypotheses_job(self) -> dict[str, Any]:
+        """Settings of what could explain the errors that stay far off."""
+        keys = ("signals", "measure", "filters")
+        return {key: self.constants_job[key] for key in keys}
 
     @property
     def pressure_job(self) -> dict[str, Any]:
         """Settings of the claims under pressure."""
-        design = {k: v for k, v in self.config["pressure"].items() if k != "twins"}
+        keys = ("seeds", "step_factors", "step_choices")
+        design = {key: self.config["pressure"][key] for key in keys}
         return self.ensemble_job | self.compare_job | {"design": design}
 
     @property
@@ -385,6 +431,7 @@ def read_settings(
         *(("signals", name) for name in config["signals"]),
         ("identification: signal", config["identification"]["signal"]),
         ("order_sweep: signal", config["order_sweep"]["signal"]),
+        ("random_sum: signal", config["random_sum"]["signal"]),
         *(("rdgpi: fit_signals", name) for name in config["rdgpi"]["fit_signals"]),
     ]
     _check_limits(place, config)

@@ -46,7 +46,7 @@ def files(tmp_path):
 
 
 def test_it_writes_the_twin_its_like_and_a_report(tmp_path, monkeypatch):
-    monkeypatch.setattr(running, "calibrate", lambda *a, **k: Fit(dict(START), 50.0))
+    monkeypatch.setattr(running, "calibrate", lambda *a, **k: Fit(dict(START), 100.0))
     where = files(tmp_path)
     run_calibration(job(40, 100), **where)
     twin = load_model(where["model"])
@@ -66,7 +66,7 @@ def test_a_held_out_signal_never_gets_in(tmp_path):
 
 
 def test_the_order_of_the_signals_does_not_matter(tmp_path, monkeypatch):
-    monkeypatch.setattr(running, "calibrate", lambda *a, **k: Fit(dict(START), 50.0))
+    monkeypatch.setattr(running, "calibrate", lambda *a, **k: Fit(dict(START), 100.0))
     reports = []
     for name, frequencies in (("up", (40, 100)), ("down", (100, 40))):
         where = files(tmp_path / name)

@@ -18,14 +18,14 @@ from hystbench.files import read_json
 from hystbench.model import load_model
 from hystbench.settings import read_settings
 from hystbench.written import ENTRIES
-from tests.conftest import ROOT, run_hystbench
+from tests.conftest import ROOT, run_hystbench, shorten
 
 
 @pytest.fixture
 def job():
     """The project's own settings on short records of two signals."""
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
-    config["excitation"]["duration_s"] = 0.1
+    shorten(config, 0.1)
     config["calibration"] |= {"starts": 2, "twins": 2}
     schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
     job = read_settings(config, schema).calibration_job

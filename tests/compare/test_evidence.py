@@ -141,7 +141,8 @@ def test_two_runs_of_one_cell_are_refused(tmp_path):
 def test_order_sweep_is_read(tmp_path):
     path = tmp_path / "errors.csv"
     path.write_text(
-        "model,order,mse,status\ngpo,1,0.5,finite\ngpo,2,,diverged at sample 4\n",
+        "model,order,mse,status,rule\ngpo,1,0.5,finite,constant\n"
+        "gpo,2,,diverged at sample 4,constant\n",
         encoding="utf-8",
     )
     first, second = read_order_sweep(path)
@@ -151,10 +152,12 @@ def test_order_sweep_is_read(tmp_path):
 
 def test_bad_number_and_missing_column_are_named(tmp_path):
     path = tmp_path / "errors.csv"
-    path.write_text("model,order,mse,status\ngpo,1,x,finite\n", encoding="utf-8")
+    path.write_text(
+        "model,order,mse,status,rule\ngpo,1,x,finite,constant\n", encoding="utf-8"
+    )
     with pytest.raises(InputError, match="row 1: 'x' is not a number"):
         read_order_sweep(path)
-    path.write_text("model,ordr,mse,status\n", encoding="utf-8")
+    path.write_text("model,ordr,mse,status,rule\n", encoding="utf-8")
     with pytest.raises(InputError, match="no column 'order'; did you mean 'ordr'"):
         read_order_sweep(path)
 
@@ -202,6 +205,8 @@ def test_from_files_to_files(tmp_path):
         "audit.csv",
         "cells.csv",
         "claims.csv",
+        "first.md",
+        "margins.csv",
         "off.csv",
         "summary.json",
         "tables",

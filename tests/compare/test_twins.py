@@ -22,12 +22,12 @@ gma,gpi,sine-010hz,delayed,1,0.1,finite
 one,gpi,sine-010hz,delayed,,,diverged at sample 3
 two,gpi,sine-010hz,delayed,2,0.2,finite
 """
-CLAIMS = """twin,family,claim,holds
-gma,gpi,sums-gpo-best,yes
-one,gpi,sums-gpo-best,no
-other,preisach,sums-gpo-best,no
-gma,gpi,stroke,not testable
-gma,gpi,chirp-gpo-best,yes
+CLAIMS = """twin,family,experiment,claim,holds
+gma,gpi,0,sums-gpo-best,yes
+gma,gpi,1,sums-gpo-best,no
+other,preisach,0,sums-gpo-best,no
+gma,gpi,0,stroke,not testable
+gma,gpi,0,chirp-gpo-best,yes
 """
 
 

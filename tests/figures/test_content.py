@@ -278,6 +278,28 @@ def test_arrays_must_be_beside_a_run(inputs, tmp_path):
         draw("figure-10-sum", records=inputs.record("sine-010hz"), runs=[run])
 
 
+def test_step_edges_stand_beside_both_bounds(inputs):
+    figure = draw("step-edges", **inputs.of("step-edges"))
+    assert len(figure.axes) == 4
+    gpo, *_, delayed = figure.axes
+    marks = sorted(
+        (line.get_ydata()[0], line.get_xdata()[0])
+        for line in gpo.lines
+        if line.get_marker() != "None"
+    )
+    # As written: 1/max|H|^2, the edge and 1/tr R; the edge of the second moves.
+    assert marks == [
+        (0, pytest.approx(0.25)),
+        (0, pytest.approx(0.3)),
+        (0, pytest.approx(0.4)),
+        (1, pytest.approx(0.25)),
+        (1, pytest.approx(0.4)),
+        (1, pytest.approx(0.4)),
+    ]
+    marked = [line for line in delayed.lines if line.get_marker() != "None"]
+    assert len(marked) == 5  # an edge that was not reached has no mark
+
+
 def test_contest_has_a_panel_for_each_twin_and_algorithm(inputs):
     figure = draw("contest", **inputs.of("contest"))
     assert [axes.get_title(loc="left") for axes in figure.axes] == [

@@ -15,6 +15,7 @@ import pytest
 import yaml
 
 from hystbench.written import ENTRIES
+from tests.conftest import shorten
 
 ROOT = Path(__file__).parents[2]
 
@@ -23,7 +24,7 @@ def small_config() -> dict:
     """The project's config, cut down to seconds."""
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
     config["signals"] = ["sine-100hz", "sine-200hz"]
-    config["excitation"] |= {"duration_s": 0.2}
+    shorten(config, 0.2)
     config["excitations"]["sine-001hz"] = {"sine": {"frequency_hz": 1, "duration_s": 1}}
     config["identification"] |= {"starts": 1, "max_iterations": 5}
     config["filters"]["order"] = 6

@@ -26,7 +26,7 @@ if SETTINGS.filters:
         },
         "figure-07-order": {
             "record": [record(SETTINGS.order_sweep_signal)],
-            "table": rules.order_sweep.output,
+            "table": [rules.order_sweep.output.configured],
         },
         "learning-curves": {
             "run": [
@@ -42,6 +42,7 @@ if TWIN:
         "figure-03-play": {},
         "figure-04-generalized-play": {},
         "errors-heat-map": {"table": [rules.tables.output.cells]},
+        "step-edges": {"table": [rules.step_sweep.output.edges]},
     }
     # The paper's figures of the GPO filter, and their signals.
     FIGURE_INPUTS |= {

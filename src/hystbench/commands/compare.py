@@ -19,6 +19,10 @@ from hystbench.files import whole_folder
 @click.option("--envelopes", type=options.FILE, help="GPO errors by envelopes (CSV).")
 @click.option("--twin-errors", type=options.FILE, help="Errors by twin (CSV).")
 @click.option("--twin-claims", type=options.FILE, help="Claims by twin (CSV).")
+@click.option("--draws", type=options.FILE, help="Draws of the random sum (CSV).")
+@click.option("--edges", type=options.FILE, help="Edges of the step sizes (CSV).")
+@click.option("--constants", type=options.FILE, help="Ranking by constant (CSV).")
+@click.option("--order-sweep-other", type=options.FILE, help="By order, other rule.")
 @options.identified
 @options.settings
 @options.out_folder
@@ -29,6 +33,10 @@ def compare(
     envelopes: Path | None,
     twin_errors: Path | None,
     twin_claims: Path | None,
+    draws: Path | None,
+    edges: Path | None,
+    constants: Path | None,
+    order_sweep_other: Path | None,
     identified: Path | None,
     settings: dict[str, Any],
     out: Path,
@@ -45,4 +53,8 @@ def compare(
             held_out=comparison.held_out_signals(settings["calibrated"]),
             twin_errors=twin_errors,
             twin_claims=twin_claims,
+            draws=draws,
+            edges=edges,
+            constants=constants,
+            order_sweep_other=order_sweep_other,
         )

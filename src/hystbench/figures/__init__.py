@@ -29,6 +29,7 @@ NAMES = (
     "learning-curves",
     "errors-heat-map",
     "contest",
+    "step-edges",
     "loops",
     "errors-by-record",
     "blind-confusion",
