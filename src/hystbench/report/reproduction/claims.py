@@ -30,24 +30,16 @@ _PLACED = {
 }
 #: Held-out evidence leads; an empty basis is that of theory and notation.
 BASES = ("held-out", "fitted", "constrained", "built-in", "")
-#: What can fail leads where claims do not say what their verdict rests on.
-KINDS = ("result", "condition", "theory")
 #: The verdict of a claim that is fitted in part, on held-out signals alone.
 ALONE = "on_held_out"
 
 
-def has_basis(claims: Sequence[Row]) -> bool:
-    """Tell whether the claims say on what each verdict rests."""
-    return bool(claims) and "basis" in claims[0]
-
-
 def counts_table(claims: Sequence[Row]) -> Table:
     """Count verdicts by what they rest on, held-out first; nothing is added up."""
-    key, title = ("basis", "basis") if has_basis(claims) else ("kind", "kind")
     verdicts = list(dict.fromkeys(row["verdict"] for row in claims))
     counted: dict[str, Counter[str]] = {}
     for row in _in_order(claims):
-        shown = row[key] or "nothing: theory, notation, or not testable"
+        shown = row["basis"] or "nothing: theory, notation, or not testable"
         counted.setdefault(shown, Counter())[row["verdict"]] += 1
     if alone := Counter(row[ALONE] for row in claims if row.get(ALONE)):
         counted["fitted in part, on the held-out signals alone"] = alone
@@ -59,22 +51,18 @@ def counts_table(claims: Sequence[Row]) -> Table:
     return Table(
         "claims-counted",
         "Claims by what the twin knew of them before they were judged. Rows are not "
-        "added up: only the held-out ones were open."
-        if key == "basis"
-        else "Claims by kind. The rows are not added up: a condition holds by the way "
-        "the signals are made, a result can fail.",
-        [Column(title), *(Column(verdict, True) for verdict in verdicts)],
+        "added up: only the held-out ones were open.",
+        [Column("basis"), *(Column(verdict, True) for verdict in verdicts)],
         [Body(rows)],
     )
 
 
 def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
     """Show every claim with its verdict and the evidence for it."""
-    basis = has_basis(claims)
     more = [key for key in (claims[0] if claims else {}) if key not in _PLACED]
     columns = [
         Column("verdict"),
-        *([Column("basis")] if basis else []),
+        Column("basis"),
         Column("kind"),
         Column("claim of the paper"),
         Column("evidence"),
@@ -85,7 +73,7 @@ def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
     rows = [
         [
             _verdict(row["verdict"]),
-            *([words(row["basis"] or "none")] if basis else []),
+            words(row["basis"] or "none"),
             words(row["kind"]),
             _claim(row),
             words(row["evidence"]),
@@ -107,10 +95,9 @@ def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
 
 
 def _in_order(claims: Sequence[Row]) -> list[Row]:
-    """Put first what rests on held-out signals, or else the results."""
-    key, order = ("basis", BASES) if has_basis(claims) else ("kind", KINDS)
-    places = {name: place for place, name in enumerate(order)}
-    return sorted(claims, key=lambda row: places.get(row[key], len(places)))
+    """Put first what rests on held-out signals."""
+    places = {name: place for place, name in enumerate(BASES)}
+    return sorted(claims, key=lambda row: places.get(row["basis"], len(places)))
 
 
 def _verdict(verdict: str) -> Cell:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ Row = dict[str, str]
 
 #: Columns that the page cannot do without; others are shown as they are.
 _CELLS = tuple(ComparedCell.__dataclass_fields__)
-_CLAIMS = ("id", "claim", "where", "kind", "verdict", "evidence")
+_CLAIMS = ("id", "claim", "where", "kind", "basis", "verdict", "evidence")
 _OFF = ("table", "signal", "model", "half", "published", "ours", "ratio", "known")
 _AUDIT = ("kind", "where", "statement", "evidence")
 _ERRORS = ("signal", "model", "error_kind", "mse", "re", "unit", "status")
@@ -41,6 +42,7 @@ class Reproduction:
 
     cells: list[ComparedCell]
     claims: list[Row]
+    on_held_out: list[Row]
     off: list[Row]
     audit: list[Row]
     tables: list[Shown]
@@ -87,6 +89,7 @@ def read_content(
         found = Reproduction(
             cells=[_cell(row) for row in read_rows(compare / "cells.csv", _CELLS)],
             claims=read_rows(compare / "claims.csv", _CLAIMS),
+            on_held_out=_on_held_out(compare / "summary.json"),
             off=read_rows(compare / "off.csv", _OFF),
             audit=read_rows(compare / "audit.csv", _AUDIT),
             tables=[
@@ -124,6 +127,15 @@ def _link(path: Path, base: Path) -> Link:
     return Link(
         path.suffix[1:].upper(), quote(Path(os.path.relpath(path, base)).as_posix())
     )
+
+
+def _on_held_out(path: Path) -> list[Row]:
+    """Read the results that are judged on held-out signals alone."""
+    try:
+        found: list[Row] = json.loads(_text(path))["claims_on_held_out"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{path}: expected the summary of a comparison") from error
+    return found
 
 
 def _text(path: Path) -> str:

@@ -9,7 +9,6 @@ from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import nearness
 from hystbench.figures.style import LOOKS
 from hystbench.published import FILTERS
-from hystbench.report.reproduction.claims import has_basis
 from hystbench.report.reproduction.errors import filter_cells, within
 from hystbench.report.reproduction.read import Measured, Reproduction, Row
 
@@ -44,7 +43,7 @@ def verdict(found: Reproduction | Measured) -> list[str]:
     """Give the verdict: a sentence on errors, one on claims or on divergence."""
     if isinstance(found, Measured):
         return _of_measured(found)
-    return [_of_errors(found.cells), _of_claims(found.claims)]
+    return [_of_errors(found.cells), _of_claims(found.on_held_out)]
 
 
 def _of_errors(cells: Sequence[ComparedCell]) -> str:
@@ -68,29 +67,15 @@ def _of_errors(cells: Sequence[ComparedCell]) -> str:
     )
 
 
-def _of_claims(claims: Sequence[Row]) -> str:
-    """Count verdicts on what can fail: on held-out evidence, where claims say so."""
-    if has_basis(claims):
-        chosen = [row for row in claims if row["basis"] == "held-out"]
-        about = "claims of the paper that are judged on held-out signals"
-    else:
-        chosen = [row for row in claims if row["kind"] == "result"]
-        about = "results that the paper claims"
-    if not chosen:
-        return f"There are no {about}."
-    counted = Counter(row["verdict"] for row in chosen)
-    parts = [f"{count} {_are(count)} {word}" for word, count in _in_order(counted)]
-    return f"Of the {len(chosen)} {about}, {listed(parts)}."
-
-
-def _in_order(counted: Counter[str]) -> list[tuple[str, int]]:
-    first = ("reproduced", "not reproduced")
-    order = {word: place for place, word in enumerate(first)}
-    return sorted(counted.items(), key=lambda item: order.get(item[0], len(order)))
-
-
-def _are(count: int) -> str:
-    return "is" if count == 1 else "are"
+def _of_claims(on_held_out: Sequence[Row]) -> str:
+    """Count what stands of the results that held-out signals alone can judge."""
+    about = "of the paper that can be judged on held-out signals alone"
+    if not on_held_out:
+        return f"No result {about} was put to the test."
+    standing = sum(row["verdict"] == "reproduced" for row in on_held_out)
+    stand = "stands" if standing == 1 else "stand"
+    results = "result" if len(on_held_out) == 1 else "results"
+    return f"Of {len(on_held_out)} {results} {about}, {standing} {stand}."
 
 
 def _of_measured(found: Measured) -> list[str]:
