@@ -73,7 +73,6 @@ LOOKS = {
 
 #: A record lies behind the models' lines, so that what they miss stands out.
 BEHIND: dict[str, Any] = {"color": GREY, "linewidth": 2.6, "linestyle": "-"}
-#: The part of a record that another panel shows.
 #: Where a run diverged.
 DIVERGED: dict[str, Any] = {"marker": "x", "markersize": 5, "linestyle": "none"}
 
