@@ -22,6 +22,7 @@ from hystbench.written import (
     check_free,
     check_writable,
     forget,
+    is_input,
     is_ours,
     will_write,
 )
@@ -126,7 +127,11 @@ def _take_places(new: Path, final: Path, old: Path, ours: Sequence[str]) -> None
         check_free(final / name)
     there = {item for pattern in ours for item in final.glob(pattern)}
     there -= {final / name for name in coming}
-    stale = sorted(item.relative_to(final) for item in there if is_ours(item))
+    stale = sorted(
+        item.relative_to(final)
+        for item in there
+        if is_ours(item) and not is_input(item)
+    )
     going = [name for name in coming if (final / name).exists()] + stale
     moves = [(final / name, old / name) for name in going]
     moves += [(new / name, final / name) for name in coming]

@@ -264,6 +264,12 @@ def reads(path: str | Path) -> None:
         _refuse_input(output, run)
 
 
+def is_input(path: str | Path) -> bool:
+    """Tell whether this command reads a file, by this name or another."""
+    run, found = _run.get(), Path(path).stat()
+    return run is not None and (found.st_dev, found.st_ino) in run.inputs
+
+
 def writes(*paths: str | Path) -> None:
     """Tell which files a command will write, before its work is paid.
 

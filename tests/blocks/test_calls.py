@@ -19,7 +19,7 @@ DT = 0.01
 SIMULATOR = """
 import numpy as np
 from pathlib import Path
-from {helper} import GAIN
+from {part} import GAIN
 
 calls = []
 
@@ -32,13 +32,13 @@ def scaled(u, dt):
 
 @pytest.fixture
 def rig(tmp_path, monkeypatch):
-    """A simulator in a file, a helper beside it, and a cache folder."""
+    """A simulator in a file, a part beside it, and a cache folder."""
     own = f"simulator_{os.urandom(4).hex()}"
     folder = tmp_path / "rig"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
-    (folder / f"{own}_helper.py").write_text("GAIN = 2.0\n")
-    (folder / f"{own}.py").write_text(SIMULATOR.format(helper=f"{own}_helper"))
+    (folder / f"{own}_part.py").write_text("GAIN = 2.0\n")
+    (folder / f"{own}.py").write_text(SIMULATOR.format(part=f"{own}_part"))
 
     class Rig:
         name = f"{own}:scaled"
@@ -47,7 +47,7 @@ def rig(tmp_path, monkeypatch):
 
         def restart(self):
             """As a new process would, import all again."""
-            for label in (own, f"{own}_helper"):
+            for label in (own, f"{own}_part"):
                 sys.modules.pop(label, None)
             importlib.invalidate_caches()
             external.imported.cache_clear()
@@ -101,13 +101,13 @@ def test_another_sampling_interval_is_another_input(rig):
     assert rig.run((U, 2 * U), dt=2 * DT)[1] == 2
 
 
-@pytest.mark.parametrize("suffix", [".py", "_helper.py"])
+@pytest.mark.parametrize("suffix", [".py", "_part.py"])
 def test_other_source_is_another_function(rig, suffix):
     """What a module imports counts as much as the module itself."""
     rig.run((U, 2 * U))
-    helper = f"{rig.name.partition(':')[0]}_helper"
+    part = f"{rig.name.partition(':')[0]}_part"
     if suffix == ".py":
-        rig.write(suffix, SIMULATOR.format(helper=helper).replace("GAIN *", "30 *"))
+        rig.write(suffix, SIMULATOR.format(part=part).replace("GAIN *", "30 *"))
     else:
         rig.write(suffix, "GAIN = 30\n")
     outputs, made = rig.run((U, 2 * U))
@@ -237,7 +237,7 @@ def test_the_digest_knows_the_function(rig):
 def test_the_digest_asks_nothing_for_what_it_may_not_have(rig):
     """An object may fail, and a package may warn, when it is asked for a name."""
     rig.write(
-        "_helper.py",
+        "_part.py",
         "import click\nGAIN = 2.0\n\n\nclass Odd:\n"
         "    def __getattr__(self, name):\n        raise RuntimeError(name)\n\n\n"
         "ODD = Odd()\n",

@@ -42,4 +42,5 @@ rule families:
     message:
         "{params.folder} holds the twins of other families"
     shell:
-        "{{ " + COMMITTED + "cp {input:q} {params.folder:q}; }} 2> {log:q}"
+        f"{{{{ {COMMITTED}"
+        "cp {input:q} {params.folder:q}; }} 2> {log:q}"

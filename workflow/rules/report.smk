@@ -28,10 +28,10 @@ rule page:
     benchmark:
         f"{RESULTS}/logs/benchmarks/page.tsv"
     params:
-        compare=COMPARE,
+        compare=lambda wildcards, input: os.path.dirname(input.compared[0]),
         figures=lambda wildcards, input: options("--figure", input.figures),
         tables=lambda wildcards, input: options("--table", input.tables),
-        captions=str(CAPTIONS),
+        captions=lambda wildcards, input: os.path.dirname(input.captions[0]),
         settings=settings_text(SETTINGS.page_job),
     message:
         "front page"

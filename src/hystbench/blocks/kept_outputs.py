@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import sys
 import sysconfig
+import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -20,7 +21,6 @@ from types import BuiltinFunctionType, FunctionType, ModuleType
 
 import numpy as np
 
-from hystbench.files import atomic_path
 from hystbench.record import FloatArray
 
 BOUND = 2**29
@@ -90,8 +90,7 @@ class KeptOutputs:
         if file is None or not self._has_room(size):
             return
         try:
-            with atomic_path(file) as temporary:
-                np.savez(temporary, y=y)
+            _write(file, y)
         except OSError as error:
             self._say_once(f"{self.folder}: {error.strerror}; outputs are not kept")
             self._places.pop(name)
@@ -133,6 +132,22 @@ class KeptOutputs:
         if sort not in self._said:
             self._said.add(sort)
             self.say(line)
+
+
+def _write(file: Path, y: FloatArray) -> None:
+    """Write an output whole or not at all; one that cannot be read is replaced.
+
+    What lies in a cache is named by what it holds and is nobody's work, so that no list
+    is kept of it.
+    """
+    file.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=file.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            np.savez(stream, y=y)
+        Path(name).replace(file)
+    finally:
+        Path(name).unlink(missing_ok=True)
 
 
 def folder_of_user() -> Path:

@@ -42,7 +42,9 @@ def draw(*, table: Path) -> Figure:
         name = style.look(model).label
         axes.set_title(name, loc="left")
         axes.set_xlabel(
-            "step size µ of first order" if model == "volterra" else "step size µ"
+            "step size µ of first order (1/A²)"
+            if model == "volterra"
+            else "step size µ (1/|H|²)"
         )
     for axes in list(panels.flat)[len(models) :]:
         axes.remove()
