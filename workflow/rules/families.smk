@@ -42,5 +42,4 @@ rule families:
     message:
         "{params.folder} holds the twins of other families"
     shell:
-        f"{{{{ {COMMITTED}"
-        "cp {input:q} {params.folder:q}; }} 2> {log:q}"
+        f"{{{{ {COMMITTED}" "cp {input:q} {params.folder:q}; }} 2> {log:q}"
