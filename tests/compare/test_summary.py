@@ -304,6 +304,20 @@ def test_the_two_findings_by_hand():
     ]
     other = replace(taps[0], twin="other", constant_tap=2.0)
     told = constant_tap_finding([row, *taps, other])
-    assert (told["without"]["gpo_first"], told["with"]["gpo_first"]) == (12, 5)
-    assert told["without"]["pairs_as_published"] == 60
+    assert told["without"]["gpo_first"] == 12
+    assert [(x["constant_tap"], x["gpo_first"]) for x in told["with"]] == [
+        (0.1, 9),
+        (1.0, 5),
+    ]
+    assert told["without"]["pairs_held_out"] == (20, 30)
+    assert [x["zero_error_A"] for x in told["zero_errors"]] == [0.0]
     assert constant_tap_finding([row]) is None
+
+
+def test_every_claim_is_told_once():
+    """What held-out signals judge, the others by basis, and what is not judged."""
+    listed = judge_all(Evidence(runs=published_runs()))
+    counts = claim_counts(listed)
+    others = counts["claims_elsewhere"].values()
+    told = len(counts["claims_on_held_out"]) + sum(sum(x.values()) for x in others)
+    assert told == counts["claims_total"] == len(listed)

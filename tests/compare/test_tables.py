@@ -171,6 +171,16 @@ def test_the_first_result_has_numbers_and_links():
     found = compare_evidence(
         Evidence(runs=published_runs({("sine-060hz", "gpo"): 1.0})), held_out
     )
+    usual = {
+        "constant_tap": 0.0,
+        "zero_error_A": -6e-3,
+        "gpo_first": 13,
+        "signals": 13,
+        "pairs_held_out": (26, 30),
+        "pairs_calibrated": (45, 48),
+    }
+    changed = {"gpo_first": 10, "pairs_held_out": (22, 30)}
+    tap = usual | changed | {"constant_tap": 1.0}
     summary = found.summary | {
         "eq19": {
             "edges": 52,
@@ -178,17 +188,23 @@ def test_the_first_result_has_numbers_and_links():
             "example": {"signal": "s", "model": "gpo", "edge": 2.2, "bound": 3.46},
         },
         "constant_tap": {
-            "without": {"gpo_first": 13, "pairs_as_published": 70},
-            "with": {
-                "gpo_first": 10, "signals": 13, "pairs_as_published": 55, "pairs": 78
-            },
+            "without": usual,
+            "with": [usual | {"constant_tap": 0.1}, tap],
+            "zero_errors": [usual, usual | {"zero_error_A": 7e-3, "gpo_first": 4}],
         },
     }  # fmt: skip
     text = first_result(summary)
-    assert text.startswith("**7 of 8 errors of the paper that no fit has read")
-    assert "3 lie inside its bound (gpo on s fails at 2.2 of 3.46)" in text
-    assert "first on 10 of 13 signals instead of 13" in text
-    assert "55 of 78" in text
+    assert text.startswith(
+        "**Of 8 printed errors that no fit has read, the twin comes "
+    )
+    assert "within a factor of 2 of 7**" in text
+    assert "in 3 of 52 cases" in text
+    assert "(gpo on s at 2.2, where 3.46 is allowed)" in text
+    assert "first on 10 of 13 signals instead of 13 (on 13 with a tap of 0.1" in text
+    # The halves are told apart.
+    assert "held out, 22 of 30 pairs of filters stand as printed instead of 26" in text
+    assert "fitted, 45 of 48" in text
+    assert "zero error of +7 mA instead of -6 mA it is first on 4" in text
     assert text.count("](docs/") == 3
 
 

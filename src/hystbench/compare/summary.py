@@ -83,6 +83,9 @@ def claim_counts(judgements: Iterable[Judgement]) -> dict[str, Any]:
         for kind in dict.fromkeys(j.claim.kind for j in listed)
     }
     bases = [b for b in get_args(Basis) if b]
+    on_held_out = _on_held_out(listed)
+    told = {each["id"] for each in on_held_out}
+    others = [j for j in listed if j.claim.id not in told]
     return {
         "claims_total": len(listed),
         "claims_reproduced_where": _where(listed),
@@ -92,7 +95,11 @@ def claim_counts(judgements: Iterable[Judgement]) -> dict[str, Any]:
             for basis in bases
         },
         "claims_without_basis": _verdicts(j for j in listed if not j.claim.basis),
-        "claims_on_held_out": _on_held_out(listed),
+        "claims_on_held_out": on_held_out,
+        "claims_elsewhere": {
+            basis: _verdicts(j for j in others if j.claim.basis == basis)
+            for basis in get_args(Basis)
+        },
     }
 
 
@@ -148,38 +155,46 @@ def eq19_finding(edges: Sequence[Edge]) -> dict[str, Any] | None:
 
 
 def constant_tap_finding(rows: Sequence[Row]) -> dict[str, Any] | None:
-    """Set the ranking with the largest constant tap beside that without one.
+    """Set the rankings with constant taps, and other zero errors, beside the usual one.
 
-    On the first twin. None where no constant tap was tried.
+    On the first twin; the halves of the pairs apart. None where no tap was tried.
     """
     mine = [row for row in rows if row.twin == rows[0].twin]
     usual = [row for row in mine if row.configured]
     taps = [row for row in mine if row.constant_tap and not row.configured]
     if not usual or not taps:
         return None
-    chosen = max(taps, key=lambda row: row.constant_tap)
+    offsets = [row for row in mine if not row.constant_tap]
 
     def told(row: Row) -> dict[str, Any]:
-        agree, total = (
-            sum(pair)
-            for pair in zip(row.pairs_calibrated, row.pairs_held_out, strict=True)
-        )
         return {
             "constant_tap": row.constant_tap,
+            "zero_error_A": row.zero_error,
             "gpo_first": row.gpo_first,
             "signals": row.signals,
-            "pairs_as_published": agree,
-            "pairs": total,
+            "pairs_calibrated": row.pairs_calibrated,
+            "pairs_held_out": row.pairs_held_out,
         }
 
-    return {"without": told(usual[0]), "with": told(chosen)}
+    return {
+        "without": told(usual[0]),
+        "with": [told(row) for row in sorted(taps, key=lambda row: row.constant_tap)],
+        "zero_errors": [
+            told(row) for row in sorted(offsets, key=lambda row: row.zero_error)
+        ],
+    }
 
 
 def _where(judgements: Iterable[Judgement]) -> dict[str, int]:
-    """Count the reproduced claims by the families of twins on which they hold."""
+    """Count reproduced results by the families of twins on which they hold.
+
+    Those that a twin could have failed: what is demanded or built in holds on any.
+    """
     counts = {"every_family": 0, "some_families": 0, "one_family_run": 0}
     for each in judgements:
         if each.verdict != "reproduced" or not each.holdings:
+            continue
+        if each.claim.basis not in ("held-out", "fitted"):
             continue
         if len(each.holdings) == 1:
             counts["one_family_run"] += 1

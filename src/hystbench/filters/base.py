@@ -35,7 +35,7 @@ MOST_CORRECTION = 1.7
 """Most that one update may correct of an error where a margin is asked for.
 
 Beyond 2 the LMS of Eq. 18 is unstable while its regressor moves little; see
-:meth:`AdaptiveFilter.correction`. Errors at that edge are those of a beginning
+:meth:`AdaptiveFilter.correction`. Errors at that edge are those of an incipient
 instability. 1.7 leaves 15 %.
 """
 
