@@ -1,5 +1,8 @@
 """Units: which are known, how they are written, which is likely meant."""
 
+import subprocess
+import sys
+
 import pint
 import pytest
 
@@ -82,3 +85,13 @@ def test_the_prefix_that_is_likely(unit, factor, likely):
 )
 def test_the_unit_in_the_name_of_a_column(column, unit, named):
     assert units.named_otherwise(column, unit) == named
+
+
+@pytest.mark.parametrize("unit", ["2 um", "1e-6 m", "1/0", "3*V"])
+def test_a_text_with_a_number_is_refused_by_a_process_that_asked_for_no_unit_yet(unit):
+    code = f"from hystbench.units import check_known; check_known('file', {unit!r})"
+    told = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    ).stderr.splitlines()
+    assert "is no unit" in told[-1]
+    assert told[-1].startswith("hystbench.errors.InputError: file: ")

@@ -177,7 +177,9 @@ def _nearest_unit(unit: str) -> str:
 
     said = plain(unit)
     symbols = [f"{prefix}{symbol}" for symbol in SYMBOLS for prefix in PREFIXES]
-    rare = list(pint.application_registry)
+    registry = pint.application_registry
+    registry.parse_units("m")  # reads its list, which it puts off until it is asked
+    rare = list(registry)
     for name in (*symbols, *_WORDS, *rare):
         if name.lower() == said.lower():
             return f"did you mean {name!r}?"

@@ -10,11 +10,12 @@ from matplotlib.transforms import Bbox
 
 from hystbench.errors import InputError
 from hystbench.figures.style import PAGE, in_style
-from hystbench.gap.report import pictures, where, words, write_report
+from hystbench.gap.report import pictures, where, write_report
 from hystbench.gap.report.page import OPTIONAL, headline
 from hystbench.gap.report.read import Content
 from hystbench.gap.report.words import number, with_error
 from hystbench.gap.schema import SCHEMA
+from hystbench.report.markup import one_micro
 from hystbench.schema import check_against_schema
 
 
@@ -718,4 +719,4 @@ def test_micro_is_written_one_way_in_sentences():
     """Whatever the sentence says; names of columns and files keep their letters."""
     page = "from 2 um to 0.3 um rms (um), a 4 us step of displacement_um at b.um"
     wanted = "from 2 µm to 0.3 µm rms (µm), a 4 µs step of displacement_um at b.um"
-    assert words.one_micro(page) == wanted
+    assert one_micro(page) == wanted

@@ -124,7 +124,11 @@ def imported(name: str) -> Callable[[FloatArray, float], Any]:
             f"is installed or lies in {here}"
         ) from error
     for part in path.split("."):
-        known = [item for item in dir(found) if not item.startswith("_")]
+        known = [
+            item
+            for item in dir(found)
+            if not item.startswith("_") and callable(getattr(found, item))
+        ]
         if not hasattr(found, part):
             raise InputError(
                 f"{name}: {module_name!r} has no function {path!r}; "

@@ -68,6 +68,7 @@ def named_apart(
         again = name(apart, floor_rms, say)
         value = score_of(again.state, score) + own.charge
         if value >= least:
+            say("that scores no better: they have none of their own")
             break
         square = floor_rms**2
         share = apart.share(start, square, start.power(square))
@@ -75,6 +76,8 @@ def named_apart(
         likely = _likely(start, (on_records(again.state, start.records),), score)
     # Beside more than noise they cannot be told from what the simulator does wrong.
     if found[1].state.power(score.floor) > ABOVE * score.floor:
+        if found[2].records:
+            say("more than noise is left beside that: it is not told")
         return start, named, NONE
     return found
 

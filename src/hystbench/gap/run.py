@@ -113,6 +113,7 @@ def close_gap(
         finding.own,
         evidence.warnings,
     )
+    say(f"{shown.content['verdict']}: {shown.content['reason']}")
     with whole_folder(folder, RESULT) as fresh:
         write_json(fresh / "curves.json", finding.curves)
         write_shown(fresh, evidence.hold_out, shown)

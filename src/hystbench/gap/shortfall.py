@@ -8,7 +8,6 @@ from typing import Any
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
-from hystbench.gap.outcome import WORSE
 
 MATTERS = 0.15
 """Share of the gap's power that is gone on fit records alone, to be worth a word."""
@@ -60,13 +59,17 @@ def _less(
     return f"{sentence}."
 
 
+SHOWS = 1.01
+"""RMS over that of the step before, from which a step up is worth a sentence."""
+
+
 def _widens(content: Mapping[str, Any]) -> list[str]:
     """Say which step down the ladder is a step up on the hold-out records."""
     return [
         f"On the hold-out records {step['name']} widens the gap, from "
         f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
         for last, step in pairwise(content["ladder"])
-        if last["rms"] and step["rms"] and step["rms"] > WORSE * last["rms"]
+        if last["rms"] and step["rms"] and step["rms"] > SHOWS * last["rms"]
     ]
 
 

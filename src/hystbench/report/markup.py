@@ -38,3 +38,11 @@ def first_sentence(text: str) -> str:
     """Give the first sentence of a text, without marks."""
     first, *_ = re.split(r"\.\s(?=[A-Z])", plain(text), maxsplit=1)
     return f"{first.rstrip('.')}."
+
+
+def one_micro(page: str) -> str:
+    """Write micro in the page's sentences as tables and axes do: ``2 um`` as 2 µm.
+
+    Only behind a number and a space, or a bracket: pictures have neither in their text.
+    """
+    return re.sub(r"(?:(?<=\d )|(?<=\())u(?=(?:m|s|g|A|V|N|T|C|rad)\b)", "µ", page)

@@ -13,6 +13,7 @@ from hystbench.gap.report import pictures, where, words
 from hystbench.gap.report.pictures import Picture, draw
 from hystbench.gap.report.read import Content
 from hystbench.record import column_name
+from hystbench.report.markup import one_micro
 
 TEMPLATE = "report.html.j2"
 #: What gap.json may leave out.
@@ -94,7 +95,7 @@ def page(content: Content) -> str:
         drawn=min(len(content.hold_out), pictures.RECORDS),
         held=len(content.hold_out),
     )
-    return words.one_micro(page)
+    return one_micro(page)
 
 
 def headline(gap: dict[str, Any], content: Content) -> list[Picture]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from typing import Any
 
 from markupsafe import Markup
@@ -162,14 +161,6 @@ def p_value(value: float) -> Markup:
 def unit(text: str) -> str:
     """Print a unit; none for a plain number."""
     return "" if text in ("", "-", "1") else unit_text(text)
-
-
-def one_micro(page: str) -> str:
-    """Write micro in the page's sentences as tables and axes do: ``2 um`` as 2 µm.
-
-    Only behind a number and a space, or a bracket: pictures have neither in their text.
-    """
-    return re.sub(r"(?:(?<=\d )|(?<=\())u(?=(?:m|s|g|A|V|N|T|C|rad)\b)", "µ", page)
 
 
 def bound(value: float | str) -> Markup:

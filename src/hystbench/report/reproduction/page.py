@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hystbench.figures.style import LOOKS, signal_title
 from hystbench.report.layout import page_environment
-from hystbench.report.markup import inline, paragraphs
+from hystbench.report.markup import inline, one_micro, paragraphs
 from hystbench.report.picture import Link, Picture
 from hystbench.report.reproduction import claims, errors, words
 from hystbench.report.reproduction.read import Content, Measured, Reproduction, Shown
@@ -28,7 +28,7 @@ def page(content: Content) -> str:
         if isinstance(found, Measured)
         else _twin(found, content)
     )
-    return (
+    return one_micro(
         page_environment("hystbench.report.reproduction")
         .get_template(TEMPLATE)
         .render(
