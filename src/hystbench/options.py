@@ -49,6 +49,14 @@ def asked_limits(
     return {name: value for name, value in asked.items() if value is not None}
 
 
+unnamed_share = click.option(
+    "--unnamed-share",
+    type=click.FloatRange(0.0, 1.0, min_open=True),
+    default=0.01,
+    show_default=True,
+    help="Share of the gap's power that may stay unnamed beside a name.",
+)
+
 write_experiment = click.option(
     "--write-experiment",
     type=click.Path(dir_okay=False, path_type=Path),

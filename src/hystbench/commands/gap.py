@@ -24,6 +24,7 @@ from hystbench.gap.wanted import write_wanted
 @click.option("--out", type=click.Path(path_type=Path), required=True)
 @options.write_experiment
 @options.limits
+@options.unnamed_share
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
 def gap(
     dataset: Path,
@@ -33,6 +34,7 @@ def gap(
     limit_low: float | None,
     limit_high: float | None,
     limit_rate: float | None,
+    unnamed_share: float,
     report: bool,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
@@ -51,6 +53,7 @@ def gap(
         out,
         place=model,
         limits=options.asked_limits(limit_low, limit_high, limit_rate),
+        unnamed_share=unnamed_share,
         report=report,
         say=lambda line: click.echo(line, err=True),
     )

@@ -23,6 +23,7 @@ from hystbench.gap.wanted import write_wanted
 )
 @options.write_experiment
 @options.limits
+@options.unnamed_share
 @click.option("--out", type=click.Path(path_type=Path), required=True)
 def gap_decide(
     dataset: Path,
@@ -32,6 +33,7 @@ def gap_decide(
     limit_low: float | None,
     limit_high: float | None,
     limit_rate: float | None,
+    unnamed_share: float,
     out: Path,
 ) -> None:
     """Decide what BASE lacks beside the fit records of DATASET; opens no other.
@@ -45,6 +47,7 @@ def gap_decide(
         evidence,
         model,
         named,
+        unnamed_share=unnamed_share,
         limits=options.asked_limits(limit_low, limit_high, limit_rate),
         say=lambda line: click.echo(line, err=True),
     )

@@ -36,6 +36,7 @@ from hystbench.gap.told import (
     ranking_rows,
 )
 from hystbench.gap.uncertainty import on_more_samples, standard_errors
+from hystbench.gap.unnamed import SHARE, what_is_unnamed
 from hystbench.gap.verdict import (
     Left,
     box_matters,
@@ -92,6 +93,7 @@ def find(
     declared: float | None = None,
     asked: Mapping[str, float] | None = None,
     say: Say = silent,
+    unnamed_share: float = SHARE,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
 
@@ -110,6 +112,8 @@ def find(
         Limits of the next experiment; the others are those of the records.
     say : callable
         Told a line of progress at a time.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
 
     Raises
     ------
@@ -119,7 +123,7 @@ def find(
     limits = Limits.within(records, asked) if asked else None
     start, floor = start_state(records, base, hold, declared)
     named = name(start, floor.rms, say)
-    return decide(dataset, base, start, floor, named, say, limits)
+    return decide(dataset, base, start, floor, named, say, limits, unnamed_share)
 
 
 def decide(
@@ -130,6 +134,7 @@ def decide(
     named: Named,
     say: Say = silent,
     limits: Limits | None = None,
+    unnamed_share: float = SHARE,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
 
@@ -146,6 +151,8 @@ def decide(
         Told a line of progress at a time.
     limits : Limits, optional
         Of the next experiment; those of the records where none are given.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
     """
     left = what_is_left(start, named.state, floor.rms)
     if named.state.added and left.little_named:
@@ -168,6 +175,7 @@ def decide(
         if state is not start:
             rest = BlackBox.fit(after, folds, floor.rms)
         explained = rest.explained_on_folds
+    unnamed = what_is_unnamed(start, state, floor.rms)
     verdict, reason = judge(
         left,
         bool(state.added),
@@ -177,6 +185,8 @@ def decide(
         lone,
         differs,
         box.explained_on_folds,
+        unnamed,
+        unnamed_share,
     )
     untried = not_tried(named)
     reason += _whole(left) if state.added else ""
@@ -203,6 +213,7 @@ def decide(
         ],
         "fit": _fit(start, state, floor)
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
+        "unnamed": unnamed.mapping(unnamed_share),
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
         "not_tried": untried,

@@ -17,6 +17,7 @@ from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
+from hystbench.gap.unnamed import SHARE
 from hystbench.model import Model
 
 DECISION = "stages/decision.json"
@@ -32,6 +33,7 @@ def decide_in(
     progress: Path | None,
     limits: Mapping[str, float] | None = None,
     say: Say = silent,
+    unnamed_share: float = SHARE,
 ) -> Finding:
     """Give the verdict and write it, the model and the curves to a folder.
 
@@ -47,6 +49,8 @@ def decide_in(
         Of the next experiment; what is not given is taken from the fit records.
     say : callable
         Told a line of progress at a time.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
     """
     asked = Limits.within(evidence.fit, limits) if limits else None
     start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
@@ -54,7 +58,9 @@ def decide_in(
         named = name(start, floor.rms, say)
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
-    finding = decide(evidence.name, base, start, floor, named, say, asked)
+    finding = decide(
+        evidence.name, base, start, floor, named, say, asked, unnamed_share
+    )
     kept = {
         "floor": floor_mapping(floor),
         "state": state_mapping(finding.state),

@@ -12,6 +12,7 @@ from hystbench.gap.rank import make_score
 from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
+from hystbench.gap.unnamed import SHARE, Unnamed
 
 Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
@@ -140,6 +141,8 @@ def judge(
     lone: float = 0.0,
     unrepeated: float | None = None,
     gap_explained_by_box: float | None = None,
+    unnamed: Unnamed | None = None,
+    unnamed_share: float = SHARE,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -164,6 +167,10 @@ def judge(
     gap_explained_by_box : float or None
         Share of what the base leaves, above the floor, that a black box takes away
         alone, on the same folds.
+    unnamed : Unnamed, optional
+        What stays that the named effects cannot own.
+    unnamed_share : float
+        Share of the power of the gap that may stay so.
     """
     foreign = _foreign(left, lone, unrepeated)
     if not named:
@@ -204,6 +211,8 @@ def judge(
         )
     if foreign:
         return "unnamed", foreign
+    if unnamed is not None and unnamed.too_much(unnamed_share):
+        return "unnamed", unnamed.reason(unnamed_share)
     return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
 
 
