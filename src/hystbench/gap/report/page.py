@@ -26,6 +26,7 @@ OPTIONAL: dict[str, Any] = {
     "not_tried": [],
     "runs_away": [],
     "fit": None,
+    "unnamed": None,
 }
 #: And its parts with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))

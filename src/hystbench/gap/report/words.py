@@ -33,9 +33,13 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
     sentence = VERDICTS[gap["verdict"]].format(
         effects=listed(names), reason=gap["reason"].rstrip(".")
     )
-    if gap["verdict"] == "unnamed" and names:
-        sentence += f" A part of the gap looks like {listed(names)}."
-    return sentence
+    if gap["verdict"] != "unnamed":
+        return sentence
+    stays = gap["unnamed"]["sentence"] if gap["unnamed"] else ""
+    if names:
+        sentence += f" It looks like {listed(names)}, but is not that"
+        return sentence + (f": {stays}." if stays else ".")
+    return sentence + (f" On the fit records {stays}." if stays else "")
 
 
 def listed(names: list[str]) -> str:
