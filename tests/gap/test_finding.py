@@ -14,7 +14,7 @@ from hystbench.gap.augmented import augmented
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import next_experiment
-from hystbench.gap.finding import _whole, decide, find
+from hystbench.gap.finding import decide, find
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, Look, Round
@@ -26,17 +26,19 @@ from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import block, hysteresis, measured
 
 
-def test_a_reason_tells_what_a_wrong_shape_could_leave_as_well():
+def test_what_stays_says_of_what_it_is_a_share():
     """5 % of what no shape explains stays, and 40 % of the whole residual."""
-    said = _whole(Left(before=100.0, after=5.0, all_before=1000.0, all_after=400.0))
-    assert "40 %" in said
-    assert "wrong shape" in said
+    said = Left(before=100.0, after=5.0, all_before=1000.0, all_after=400.0).stays
+    assert "on the fit records 40 % of the gap's power above the noise floor" in said
+    assert "part that no wrong shape of the hysteresis could leave, 5 %" in said
 
 
-def test_a_reason_that_holds_for_the_whole_is_left_alone():
-    assert not _whole(Left(100.0, 5.0, 1000.0, 60.0))
-    # The whole may be the lesser share: then the reason has it already.
-    assert not _whole(Left(100.0, 50.0, 1000.0, 60.0))
+def test_one_figure_is_told_where_both_are_alike():
+    assert Left(100.0, 5.0, 1000.0, 60.0).stays.count("%") == 1
+    # The whole may be the lesser share: then it is the one that decides.
+    said = Left(100.0, 50.0, 1000.0, 60.0).stays
+    assert "6 %" in said
+    assert "50 %" not in said
 
 
 def test_noise_alone_is_no_gap_only_where_the_noise_is_known():

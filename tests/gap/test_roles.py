@@ -18,8 +18,8 @@ from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.model import load_model
 
-READ_LAST = ("gap", "records", "ladder", "black_box", "shortfall")
-"""Keys of gap.json that the hold-out records fill."""
+READ_LAST = ("gap", "records", "ladder", "black_box", "shortfall", "reason")
+"""Keys of gap.json that the hold-out records fill; their figure leads the reason."""
 
 
 def short(item):
@@ -77,6 +77,7 @@ def test_noise_for_hold_out_outputs_changes_nothing_that_is_decided(told, spoilt
     decided = {key: value for key, value in content.items() if key not in READ_LAST}
     assert decided == {k: v for k, v in other.items() if k not in READ_LAST}
     assert {"verdict", "effects", "where", "ranking", "next_experiment"} <= set(decided)
+    assert len({item["reason"].partition("; ")[2] for item in (content, other)}) == 1
     assert content["verdict"] == "named"
     assert content["effects"][0]["parameters"]
     assert model == other_model

@@ -186,9 +186,12 @@ def test_halves_are_those_of_every_record():
     assert (np.count_nonzero(parts, axis=0) == 50).all()
 
 
+PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None, "findings": []}
+
+
 @pytest.mark.parametrize("sort", SORTS)
 def test_the_page_says_what_it_is_like_and_of_what_sort(sort):
-    gap = {"verdict": "unnamed", "reason": "", "unnamed": {"sentence": SORTS[sort]}}
+    gap = PLAIN | {"unnamed": {"sentence": SORTS[sort]}}
     like = verdict_sentence(
         gap | {"effects": [{"name": "drive-lag"}, {"name": "creep"}]}
     )
@@ -199,7 +202,7 @@ def test_the_page_says_what_it_is_like_and_of_what_sort(sort):
 
 
 def test_an_older_result_without_the_shares_has_its_sentence_too():
-    gap = {"verdict": "unnamed", "reason": "", "unnamed": None}
+    gap = PLAIN | {"unnamed": None}
     assert verdict_sentence(gap | {"effects": [{"name": "creep"}]}).endswith(
         "not that."
     )

@@ -200,7 +200,6 @@ rule gap_decide:
         named=last_round,
         code=code("hystbench.commands.gap_decide", *EFFECTS.values()),
     output:
-        model=f"{GAP_CASE}/model.yaml",
         curves=f"{GAP_CASE}/curves.json",
         named=f"{STAGES}/named.json",
         decision=f"{STAGES}/decision.json",
@@ -220,7 +219,7 @@ rule gap_decide:
             if GAP_EXPERIMENT
             else ""
         ),
-        folder=subpath(output.model, parent=True),
+        folder=subpath(output.curves, parent=True),
     message:
         "verdict on {wildcards.case}"
     shell:
@@ -229,7 +228,8 @@ rule gap_decide:
         " --out {params.folder:q} 2> {log:q}"
 
 
-# The one job that shows hold-out records: verdict, effects and model are written.
+# The one job that shows hold-out records: all is chosen. It may take names back, so
+# that it writes the model.
 rule gap_show:
     input:
         checked=rules.gap_check.output,
@@ -237,12 +237,12 @@ rule gap_show:
         fit=of_case("fit"),
         hold_out=of_case("hold_out"),
         base=rules.gap_start.output.base,
-        model=rules.gap_decide.output.model,
         named=rules.gap_decide.output.named,
         decision=rules.gap_decide.output.decision,
         code=code("hystbench.commands.gap_show", *EFFECTS.values()),
     output:
         gap=f"{GAP_CASE}/gap.json",
+        model=f"{GAP_CASE}/model.yaml",
         hold_out=directory(f"{GAP_CASE}/holdout"),
     log:
         f"{RESULTS}/logs/gap/{{case}}/show.log",

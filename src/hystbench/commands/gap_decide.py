@@ -1,4 +1,4 @@
-"""``hystbench gap-decide``: verdict and model, from the fit records alone."""
+"""``hystbench gap-decide``: what to name, from the fit records alone."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def gap_decide(
 ) -> None:
     """Decide what BASE lacks beside the fit records of DATASET; opens no other.
 
-    Writes model.yaml, curves.json, stages/decision.json and stages/named.json to OUT.
+    Writes curves.json, stages/decision.json and stages/named.json to OUT.
     """
     evidence = load_evidence(dataset, "fit")
     model = written_base(base, evidence)

@@ -19,7 +19,8 @@ from hystbench.gap.jobs import show_in
 def gap_show(dataset: Path, base: Path, out: Path) -> None:
     """Show on the hold-out records of DATASET how far the gap shrinks.
 
-    Reads what hystbench gap-decide wrote to OUT; writes gap.json and holdout/ there.
+    Reads what hystbench gap-decide wrote to OUT; writes gap.json, model.yaml and
+    holdout/ there. A model that is worse there than the base is taken back.
     """
     evidence = load_evidence(dataset)
     model = written_base(base, evidence)

@@ -20,6 +20,8 @@ from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.lone import lone_share
 from hystbench.gap.name import LITTLE, Named, name
+from hystbench.gap.named_apart import named_apart
+from hystbench.gap.own_values import NONE, OwnValues
 from hystbench.gap.rank import make_score
 from hystbench.gap.repeats import unrepeated
 from hystbench.gap.rungs import Rung, rungs
@@ -35,11 +37,10 @@ from hystbench.gap.told import (
     not_tried,
     ranking_rows,
 )
-from hystbench.gap.uncertainty import on_more_samples, standard_errors
+from hystbench.gap.uncertainty import on_more_samples, size_error, standard_errors
 from hystbench.gap.unnamed import SHARE, what_is_unnamed
 from hystbench.gap.verdict import (
     Left,
-    box_matters,
     judge,
     what_is_left,
 )
@@ -71,6 +72,8 @@ class Finding:
         What would tell likely effects apart best.
     rungs : tuple of Rung
         The models on the way from the base to the last effect.
+    own : OwnValues
+        What some records have of their own.
     """
 
     base: Model
@@ -83,6 +86,7 @@ class Finding:
     curves: Mapping[str, Any]
     experiment: Experiment | None
     rungs: tuple[Rung, ...]
+    own: OwnValues
 
 
 def find(
@@ -123,7 +127,8 @@ def find(
     limits = Limits.within(records, asked) if asked else None
     start, floor = start_state(records, base, hold, declared)
     named = name(start, floor.rms, say)
-    return decide(dataset, base, start, floor, named, say, limits, unnamed_share)
+    start, named, own = named_apart(start, floor.rms, named, say)
+    return decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
 
 
 def decide(
@@ -134,6 +139,7 @@ def decide(
     named: Named,
     say: Say = silent,
     limits: Limits | None = None,
+    own: OwnValues = NONE,
     unnamed_share: float = SHARE,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
@@ -151,6 +157,8 @@ def decide(
         Told a line of progress at a time.
     limits : Limits, optional
         Of the next experiment; those of the records where none are given.
+    own : OwnValues
+        What was taken off the records of ``start``, as it is their own.
     unnamed_share : float
         Share of the power of the gap that may stay unnamed beside a name.
     """
@@ -164,33 +172,29 @@ def decide(
     views = locate(compared, floor)
     if views:
         say(views[0].sentence)
-    folds = make_folds(records, whole=False)
     box = black_box(start, floor)
     after = compared if state is start else _compared(state.chain, state)
     lone = lone_share([item.residual for item in after])
     differs = unrepeated(after, floor.rms)
-    explained = None
-    if box_matters(left, bool(state.added)):
-        rest = box
-        if state is not start:
-            rest = BlackBox.fit(after, folds, floor.rms)
-        explained = rest.explained_on_folds
     unnamed = what_is_unnamed(start, state, floor.rms)
     verdict, reason = judge(
         left,
         bool(state.added),
-        explained,
+        box.explained_on_folds,
         bool(start.free),
         floor.method == "upper-bound",
         lone,
         differs,
-        box.explained_on_folds,
         unnamed,
         unnamed_share,
     )
     untried = not_tried(named)
-    reason += _whole(left) if state.added else ""
     reason += _untried(untried) if state.added else ""
+    reason += f"; beside {own.words} of some records' own" if own.records else ""
+    findings = new_in_every_record(state, left) if verdict == "named" else []
+    if findings:
+        verdict = "unnamed"
+        reason = "; ".join(item["sentence"] for item in findings)
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -207,15 +211,24 @@ def decide(
         "reason": reason,
         "effects": [
             effect_mapping(
-                item, state, errors, of_beside, by_effect.get(item.effect, ()), left
+                item,
+                state,
+                errors,
+                of_beside,
+                by_effect.get(item.effect, ()),
+                left,
+                size_error(finer, floor.rms, number),
+                unnamed.trust(unnamed_share),
             )
-            for item in state.added
+            for number, item in enumerate(state.added)
         ],
         "fit": _fit(start, state, floor)
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "unnamed": unnamed.mapping(unnamed_share),
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
+        "findings": findings,
+        "record_values": own.mapping(records[0].output.unit),
         "not_tried": untried,
         "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
@@ -235,15 +248,27 @@ def decide(
         curves(compared, floor),
         experiment,
         rungs(start, named),
+        own,
     )
 
 
-def _whole(left: Left) -> str:
-    """Tell what stays of the whole gap, where that is far more than the reason says."""
-    if left.whole - left.loose < SAID:
-        return ""
-    also = "; with what a wrong shape of the base could leave as well"
-    return f"{also}, {100 * left.whole:.0f} %"
+def new_in_every_record(state: State, left: Left) -> list[dict[str, str]]:
+    """Tell of what accounts for a gap and yet is no name, if that is all there is.
+
+    A signal beside the chain that has no number in common to the records, such as a
+    path of drift, predicts nothing of another record. A tone does: its frequency.
+    """
+    alone = {beside.effect for beside, values in state.beside if not values}
+    if {item.effect for item in state.added} != alone:
+        return []
+    return [
+        {
+            "name": name,
+            "sentence": f"a {name} of its own in every record is all that pays, and "
+            f"it predicts no other record, so it is no name: {left.stays} beside it",
+        }
+        for name in sorted(alone)
+    ]
 
 
 def _untried(names: Sequence[str]) -> str:
@@ -251,10 +276,6 @@ def _untried(names: Sequence[str]) -> str:
     if not names:
         return ""
     return f"; not tried, as the simulator cannot be run again: {', '.join(names)}"
-
-
-SAID = 0.1
-"""Share of the gap that a wrong shape of the base could leave, to be told."""
 
 
 def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:

@@ -12,7 +12,9 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
-from hystbench.gap.run import SHOWN, show, write_shown
+from hystbench.gap.named_apart import named_apart
+from hystbench.gap.own_values import OwnValues
+from hystbench.gap.run import SHOWN, outcome, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
@@ -22,7 +24,7 @@ from hystbench.model import Model
 
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
-DECIDED = ("model.yaml", "curves.json", NAMED, DECISION)
+DECIDED = ("curves.json", NAMED, DECISION)
 """What the first of the two writes."""
 
 
@@ -35,7 +37,7 @@ def decide_in(
     say: Say = silent,
     unnamed_share: float = SHARE,
 ) -> Finding:
-    """Give the verdict and write it, the model and the curves to a folder.
+    """Decide on the fit records; write the decision and the curves to a folder.
 
     Parameters
     ----------
@@ -58,8 +60,9 @@ def decide_in(
         named = name(start, floor.rms, say)
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
+    start, named, own = named_apart(start, floor.rms, named, say)
     finding = decide(
-        evidence.name, base, start, floor, named, say, asked, unnamed_share
+        evidence.name, base, start, floor, named, say, asked, own, unnamed_share
     )
     kept = {
         "floor": floor_mapping(floor),
@@ -70,7 +73,6 @@ def decide_in(
         ],
     }
     with whole_folder(folder, DECIDED) as fresh:
-        finding.model.save(fresh / "model.yaml")
         write_json(fresh / "curves.json", finding.curves)
         write_json(fresh / NAMED, kept)
         write_json(fresh / DECISION, finding.content)
@@ -78,7 +80,9 @@ def decide_in(
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
-    """Read the hold-out records and write gap.json and holdout/; decide nothing.
+    """Read the hold-out records; write gap.json, model.yaml and holdout/.
+
+    They choose nothing: a model that is worse there than the base is taken back.
 
     Parameters
     ----------
@@ -89,14 +93,16 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
-    restorer = Restorer(evidence.fit, base)
+    decided = read_json(folder / DECISION)
+    own = OwnValues.of_mapping(decided["record_values"])
+    fit = own.taken_off(evidence.fit, evidence.hold)
+    restorer = Restorer(fit, base)
     state = restorer.state(kept["state"])
     steps = [
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     ]
-    start, _ = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
+    start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
-    shown = show(base, state, floor, box, evidence.hold_out, steps)
-    decided = read_json(folder / DECISION)
+    shown = outcome(base, decided, state, floor, box, evidence.hold_out, steps, own)
     with whole_folder(folder, SHOWN) as fresh:
-        write_shown(fresh, decided, evidence.hold_out, shown)
+        write_shown(fresh, evidence.hold_out, shown)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +11,15 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.files import check_writable, whole_folder, write_csv, write_json
+from hystbench.gap.augmented import augmented
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
 from hystbench.gap.nuisance import Nuisance, degree_that_carries_on, path_and_mains
+from hystbench.gap.outcome import first_figure, withdrawal, without_names
+from hystbench.gap.own_values import NONE, OwnValues
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
@@ -36,9 +39,9 @@ from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
-SHOWN = ("gap.json", "holdout/*.csv")
-"""What the hold-out records show."""
-RESULT = (*SHOWN, "model.yaml", "curves.json", "report.html")
+SHOWN = ("gap.json", "holdout/*.csv", "model.yaml")
+"""What the hold-out records show: also whether the model is better than the base."""
+RESULT = (*SHOWN, "curves.json", "report.html")
 """Files of a folder that a later result replaces; any other stays."""
 
 
@@ -93,50 +96,99 @@ def close_gap(
         say,
         unnamed_share,
     )
-    # From here on the hold-out records are read; nothing is decided any more.
-    shown = show(
+    # From here on the hold-out records are read: they choose nothing, and may take
+    # back what was named.
+    shown = outcome(
         base,
+        finding.content,
         finding.state,
         finding.floor,
         finding.black_box,
         evidence.hold_out,
         finding.rungs,
+        finding.own,
     )
     with whole_folder(folder, RESULT) as fresh:
-        finding.model.save(fresh / "model.yaml")
         write_json(fresh / "curves.json", finding.curves)
-        write_shown(fresh, finding.content, evidence.hold_out, shown)
+        write_shown(fresh, evidence.hold_out, shown)
         if report:
             from hystbench.gap.report import write_report  # late: it draws
 
             write_report(fresh)
-    return finding
+    return replace(finding, model=shown.model, content=shown.content)
 
 
-def write_shown(
-    folder: Path,
-    decided: Mapping[str, Any],
-    records: tuple[Record, ...],
-    shown: Shown,
-) -> None:
-    """Write gap.json and the hold-out records before and after.
+def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:
+    """Write gap.json, model.yaml and the hold-out records before and after.
 
     Parameters
     ----------
     folder : Path
-    decided : mapping
-        What gap.json holds, but for what the hold-out records show.
     records : tuple of Record
         The hold-out records.
-    shown : Shown
+    outcome : Outcome
     """
-    for record, (before, after) in zip(records, shown.outputs, strict=True):
+    for record, (before, after) in zip(records, outcome.outputs, strict=True):
         _write_hold_out(
             folder / "holdout" / f"{record.name}.csv", record, before, after
         )
-    content = {**decided, **shown.content}
+    outcome.model.save(folder / "model.yaml")
+    write_json(folder / "gap.json", outcome.content)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A finding after the hold-out records were read.
+
+    Parameters
+    ----------
+    model : Model
+        The base, where they took the names back.
+    content : dict
+        What gap.json holds.
+    outputs : list of (ndarray, ndarray)
+        Outputs before and after, of each record; NaN where the model runs away on it.
+    """
+
+    model: Model
+    content: dict[str, Any]
+    outputs: list[tuple[FloatArray, FloatArray]]
+
+
+def outcome(
+    base: Model,
+    decided: Mapping[str, Any],
+    state: State,
+    floor: Floor,
+    box: BlackBox,
+    records: tuple[Record, ...],
+    steps: Sequence[Rung],
+    own: OwnValues = NONE,
+) -> Outcome:
+    """Show a finding on the hold-out records; take back what is worse there.
+
+    Parameters
+    ----------
+    base : Model
+    decided : mapping
+        What gap.json holds, but for what the hold-out records show.
+    state, floor, box, records, steps, own
+        As for :func:`show`.
+    """
+    shown = show(base, state, floor, box, records, steps, own)
+    content = {**decided, "withdrawn": None, **shown.content}
+    model = augmented(base, state)
+    taken = withdrawal(content)
+    if taken is not None:
+        # The ladder and what runs away stay: they tell why.
+        alone = show(base, steps[0].state, floor, box, records, steps[:1], own)
+        kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
+        content, model = without_names({**content, **kept}, taken), base
+        shown = alone
+    elif content["effects"] or content["verdict"] == "parameters":
+        content["reason"] = f"{first_figure(content)}; {content['reason']}"
     content["shortfall"] = shortfall(content)
-    write_json(folder / "gap.json", content)
+    return Outcome(model, content, shown.outputs)
 
 
 @dataclass(frozen=True)
@@ -162,6 +214,7 @@ def show(
     box: BlackBox,
     records: tuple[Record, ...],
     steps: Sequence[Rung],
+    own: OwnValues = NONE,
 ) -> Shown:
     """Compare base and model on hold-out records.
 
@@ -176,6 +229,8 @@ def show(
     records : tuple of Record
     steps : sequence of Rung
         Models on the way from the base to this one.
+    own : OwnValues
+        What fit records have of their own: a hold-out record may have the same.
 
     Returns
     -------
@@ -188,12 +243,28 @@ def show(
         finding stays: the record is told, and counts as nothing closed.
     """
     nuisance = what_is_new(state)
-    before = run_base(base, records, state.hold)
-    usual = reach(before, floor.rms)
-    after, lost = _run(_name(base, state), state, records, usual)
+    if own.kinds and nuisance is None:
+        nuisance = path_and_mains(None)  # nothing more, but the first part estimates
+
+    def as_recorded(outputs: Sequence[FloatArray | None]) -> list[FloatArray | None]:
+        return [
+            output
+            if output is None or not own.kinds
+            else own.fitted_first(record, output, floor.rms**2).of(output, record.dt)
+            for record, output in zip(records, outputs, strict=True)
+        ]
+
+    plain = run_base(base, records, state.hold)
+    usual = reach(plain, floor.rms)
+    before = [output for output in as_recorded(plain) if output is not None]
+    found_after, lost = _run(_name(base, state), state, records, usual)
+    after = as_recorded(found_after)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
     stages = [
-        (rung.name, _run(_name(base, rung.state), rung.state, records, usual)[0])
+        (
+            rung.name,
+            as_recorded(_run(_name(base, rung.state), rung.state, records, usual)[0]),
+        )
         for rung in steps
     ]
     content = {

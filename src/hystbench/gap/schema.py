@@ -34,7 +34,10 @@ EFFECT = _object(
         "parameters": {"type": "object", "additionalProperties": VALUE},
         "confidence": {"type": "number", "minimum": 0, "maximum": 1},
         "cannot_be_told_from": NAMES,
-    }
+    },
+    # Standard error of what it adds to the output, in times of it; null where that
+    # cannot be told.
+    size_error=OPTIONAL,
 )
 
 VIEW = _object(
@@ -146,6 +149,49 @@ SHORTFALL = _object(
     {"fit": OPTIONAL, "hold_out": OPTIONAL, "sentence": {"type": "string"}}
 )
 
+# What accounts for the gap and yet is no name, as it is new in every record and
+# predicts no other. Empty unless such effects are all that pays, and enough.
+FOUND = _object({"name": WORDS, "sentence": WORDS})
+
+# A delay, a gain or an offset that some fit records have of their own, by record: no
+# effect. `share_of_gap_power` is above the noise floor, on the fit records.
+RECORD_VALUES = _object(
+    {
+        "kinds": {
+            "type": "array",
+            "items": {"enum": ["delay", "gain", "offset"]},
+            "minItems": 1,
+        },
+        "records": {
+            "type": "array",
+            "items": _object(
+                {"name": WORDS, "delay_s": NUMBER, "gain": NUMBER, "offset": NUMBER}
+            ),
+        },
+        "share_of_gap_power": NUMBER,
+        "sentence": WORDS,
+    }
+)
+
+# Names that the hold-out records took back: the model with them is worse there than
+# the base. RMS over the hold-out records of the base and of that model, null where it
+# has no bounded output.
+WITHDRAWN = _object(
+    {
+        "names": NAMES,
+        # The word of the fit records, and what they decided.
+        "verdict": {"enum": ["named", "parameters", "unnamed"]},
+        "effects": {"type": "array", "items": EFFECT},
+        "before": NUMBER,
+        "after": OPTIONAL,
+        "records": {
+            "type": "array",
+            "items": _object({"name": WORDS, "before": NUMBER, "after": OPTIONAL}),
+        },
+        "why": WORDS,
+    }
+)
+
 # Null where the model of a rung runs away on a hold-out record.
 RUNG = _object({"name": {"type": "string"}, "rms": OPTIONAL})
 
@@ -249,6 +295,9 @@ SCHEMA = _object(
     fit=FIT,
     unnamed=UNNAMED,
     runs_away={"type": "array", "items": AWAY},
+    findings={"type": "array", "items": FOUND},
+    record_values={"oneOf": [RECORD_VALUES, {"type": "null"}]},
+    withdrawn={"oneOf": [WITHDRAWN, {"type": "null"}]},
     # Effects that need a simulator that can be run again, where it cannot.
     not_tried={"type": "array", "items": {"type": "string"}},
     taken_out={"type": "array", "items": TAKEN_OUT},

@@ -8,14 +8,12 @@ from typing import Any
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
+from hystbench.gap.outcome import WORSE
 
 MATTERS = 0.15
 """Share of the gap's power that is gone on fit records alone, to be worth a word."""
 NEW_MATTERS = 0.05
 """Share that what is new in every record takes, to be named as a reason."""
-
-WIDENS = 1.01
-"""RMS after an effect, in that before it, to be told."""
 
 
 def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -49,8 +47,8 @@ def _less(
     if not names or promised is None or kept is None or promised - kept < MATTERS:
         return ""
     sentence = (
-        f"On the fit records {100 * promised:.0f} % of the gap's power is gone, on "
-        f"the hold-out records {100 * kept:.0f} %"
+        f"On the fit records {100 * promised:.0f} % of the gap's power above the noise "
+        f"floor is gone, on the hold-out records {100 * kept:.0f} %"
     )
     reasons = [
         *_runs_away(content),
@@ -68,7 +66,7 @@ def _widens(content: Mapping[str, Any]) -> list[str]:
         f"On the hold-out records {step['name']} widens the gap, from "
         f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
         for last, step in pairwise(content["ladder"])
-        if last["rms"] and step["rms"] and step["rms"] > WIDENS * last["rms"]
+        if last["rms"] and step["rms"] and step["rms"] > WORSE * last["rms"]
     ]
 
 

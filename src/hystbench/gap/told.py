@@ -16,7 +16,7 @@ from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, near
 from hystbench.gap.state import Added, State, beside_count
 from hystbench.gap.units import unit_behind, written
-from hystbench.gap.verdict import Left, confidence
+from hystbench.gap.verdict import Left, confidence, error_of
 from hystbench.model import Model
 from hystbench.record import FloatArray
 
@@ -85,14 +85,36 @@ def effect_mapping(
     of_beside: Sequence[Errors],
     ranking: Sequence[Candidate],
     left: Left,
+    size_error: float | None = None,
+    trust: float = 1.0,
 ) -> dict[str, Any]:
-    """Give an added effect with its numbers and how sure the name is."""
+    """Give an added effect with its numbers and how sure the name is.
+
+    Parameters
+    ----------
+    item : Added
+    state : State
+    errors : ndarray, shape (free numbers,)
+    of_beside : sequence of dict
+        Standard errors of the signals beside the chain.
+    ranking : sequence of Candidate
+        The last by which it was taken.
+    left : Left
+    size_error : float, optional
+        Standard error of what it adds to the output, in times of it.
+    trust : float
+        Factor on the confidence, less than one where more stays unnamed than may.
+    """
     own = next((x for x in ranking if x.effect == item.effect), None)
+    parameters = _parameters(item, state, errors, of_beside)
+    error = error_of(size_error, parameters)
+    sure = 0.0 if own is None else confidence(own, ranking, left, error)
     return {
         "name": item.effect,
         "place": item.place,
-        "parameters": _parameters(item, state, errors, of_beside),
-        "confidence": 0.0 if own is None else confidence(own, ranking, left),
+        "parameters": parameters,
+        "size_error": size_error,
+        "confidence": trust * sure,
         "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
     }
 

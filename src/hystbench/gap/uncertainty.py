@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri, stdtrit
 
-from hystbench.gap.change import without_effect
+from hystbench.gap.change import removable, without_effect
 from hystbench.gap.sample import Sample
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
@@ -106,6 +106,22 @@ def error_of_size(state: State, floor: float, number: int) -> float:
     residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
     usable = np.mean(columns**2, axis=0) > SHOWN**2 * floor
     return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
+
+
+def size_error(state: State, floor_rms: float, number: int) -> float | None:
+    """Give the same of an effect whose size can be told, else None.
+
+    Of a signal beside the chain its own numbers tell; of a hysteresis, what others
+    reshape; of an effect that others stand on, nothing; nor where the records show
+    nothing of it.
+    """
+    blocks = [state.chain[k] for k in state.added[number].blocks]
+    if not blocks or any(block.hysteretic for block in blocks):
+        return None
+    if not removable(state, number):
+        return None
+    error = error_of_size(state, floor_rms**2, number)
+    return error if np.isfinite(error) else None
 
 
 def _cleaned(state: State, columns: FloatArray) -> FloatArray:

@@ -74,17 +74,30 @@ class Unnamed:
     gains: Mapping[str, float] = field(default_factory=dict)
     factors: tuple[float, ...] = ()
 
+    @property
+    def stays(self) -> float:
+        """Share of the gap that the names leave beyond what they may own."""
+        return self.structured + self.unrelated
+
     def too_much(self, share: float = SHARE) -> bool:
         """Tell whether more stays unnamed than may."""
-        return self.structured > share or (self.changing or 0.0) > CHANGE * share
+        return self._excess > share
+
+    def trust(self, share: float = SHARE) -> float:
+        """Give the factor on a name's confidence: one where no more stays than may."""
+        return 1.0 if self._excess <= share else share / self._excess
+
+    @property
+    def _excess(self) -> float:
+        return max(self.structured, (self.changing or 0.0) / CHANGE)
 
     def sort(self, share: float = SHARE) -> str:
         """Give the sort of what stays: a key of :data:`SORTS`."""
         if (self.changing or 0.0) > CHANGE * share and self.structured <= share:
             return "strength"
         best = max(self.gains, key=lambda name: self.gains[name], default=None)
-        stays = self.structured + self.unrelated
-        if best is None or self.gains[best] <= 0 or self.structured < RELATED * stays:
+        lone = self.structured < RELATED * self.stays
+        if best is None or self.gains[best] <= 0 or lone:
             return "unrelated"
         return SORT_OF[best]
 
@@ -114,6 +127,10 @@ class Unnamed:
             "sentence": SORTS[sort],
             "factors": list(self.factors),
         }
+
+
+NOTHING = Unnamed(0.0)
+"""Where everything is owned."""
 
 
 def what_is_unnamed(base: State, state: State, floor_rms: float) -> Unnamed:

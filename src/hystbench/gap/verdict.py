@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,12 +13,12 @@ from hystbench.gap.rank import make_score
 from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
-from hystbench.gap.unnamed import SHARE, Unnamed
+from hystbench.gap.unnamed import NOTHING, SHARE, Unnamed
 
 Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
-LOOSE = 0.27
-"""Share of the gap, beyond what reshaping could leave, that no effect takes away."""
+LOOSE = 0.25
+"""Share of the gap's power that may stay: half of its rms."""
 ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
 SLIGHT = 0.015
@@ -34,10 +35,6 @@ UNREPEATED = 0.5
 """Power above the floor, in floors, that differs between periods and is not noise."""
 SOME = 0.03
 """Share of what is left that has to differ so, to be told from settling."""
-REST = 0.15
-"""Share of the gap that stays, from which on what it is can undo a name."""
-BOX = 0.15
-"""Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
 """Difference in score that makes one name e times likelier than another."""
 SURE = 100.0
@@ -46,6 +43,8 @@ DISTRUST = 0.7
 """Share of the gap that stays, at which no name is believed."""
 DOUBT = 0.02
 """That none of the vocabulary is right though one fits well."""
+SAID = 0.1
+"""Share of the gap that a wrong shape of the base could leave, to be told."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +112,24 @@ class Left:
         """Share of the gap that stays of the whole residual."""
         return max(self.all_after, 0.0) / max(self.all_before, self.all_after, 1e-9)
 
+    @property
+    def stays(self) -> str:
+        """Say how much of the gap stays on the fit records, and of what it is a share.
+
+        The part beyond a wrong shape, by which the verdict is given, is told where it
+        is clearly another figure.
+        """
+        told = (
+            f"on the fit records {100 * self.whole:.0f} % of the gap's power above the "
+            "noise floor stays"
+        )
+        if self.whole - self.loose < SAID:
+            return told
+        return (
+            f"{told}; of the part that no wrong shape of the hysteresis could leave, "
+            f"{100 * self.loose:.0f} %"
+        )
+
 
 def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     """Measure what the base and what a model leaves, each beside its directions."""
@@ -127,21 +144,15 @@ def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     )
 
 
-def box_matters(left: Left, named: bool) -> bool:
-    """Tell whether what a black box explains could change the verdict or its reason."""
-    return not named or left.loose > BOX
-
-
 def judge(
     left: Left,
     named: bool,
-    explained_by_box: float | None,
+    explained_by_box: float | None = None,
     retuned: bool = False,
     bound: bool = False,
     lone: float = 0.0,
     unrepeated: float | None = None,
-    gap_explained_by_box: float | None = None,
-    unnamed: Unnamed | None = None,
+    unnamed: Unnamed = NOTHING,
     unnamed_share: float = SHARE,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
@@ -152,8 +163,8 @@ def judge(
     named : bool
         Whether an effect was added.
     explained_by_box : float or None
-        Share of what is left, above the floor, that a black box takes away on folds of
-        the fit records.
+        Share of what the base leaves, above the floor, that a black box takes away on
+        folds of the fit records; said where nothing is named.
     retuned : bool
         Whether the base had numbers of its own to re-tune.
     bound : bool
@@ -164,22 +175,19 @@ def judge(
     unrepeated : float or None
         Power of what is left that differs between periods of the same input, above the
         floor and in floors; none where no record repeats.
-    gap_explained_by_box : float or None
-        Share of what the base leaves, above the floor, that a black box takes away
-        alone, on the same folds.
-    unnamed : Unnamed, optional
+    unnamed : Unnamed
         What stays that the named effects cannot own.
     unnamed_share : float
         Share of the power of the gap that may stay so.
     """
-    foreign = _foreign(left, lone, unrepeated)
     if not named:
+        foreign = _foreign(left, lone, unrepeated)
         if left.slight and foreign:
             return "unnamed", foreign
         if retuned and left.all_before > ABOVE and left.loose < LOOSE:
             return "parameters", (
-                "re-tuning the base within what is free leaves "
-                f"{100 * left.loose:.0f} % of the gap, and no effect pays beside it"
+                "re-tuning the base within what is free is enough, and no effect pays "
+                f"beside it: {left.stays}"
             )
         if left.slight and bound:
             return "unnamed", (
@@ -191,61 +199,63 @@ def judge(
         if left.slight:
             share = float(np.sqrt(left.all_after / left.output))
             return "no-gap", (
-                f"what is left, {100 * share:.2g} % of the output, is no more than a "
-                "slightly wrong shape of the base could leave"
+                f"what is left on the fit records, {100 * share:.2g} % of the output's "
+                "rms, is no more than a slightly wrong shape of the base could leave"
             )
         return "unnamed", (
-            f"a gap of {left.after:.2g} times the noise power is there and no effect "
-            f"of the vocabulary pays; {_box_words(explained_by_box, 'it')}"
+            f"on the fit records a gap of {left.after:.2g} times the noise power is "
+            "there and no effect of the vocabulary pays; "
+            f"{_box_words(explained_by_box, 'it')}"
         )
-    more = (explained_by_box or 0.0) * left.loose
-    alone = gap_explained_by_box or 0.0
-    # What reshaping could do as well is none of the lead.
-    ahead = min(left.loose, alone - (1.0 - left.whole))
-    much = left.loose > LOOSE or max(more, ahead) > BOX
-    if left.loose > HALF or (much and not left.slight):
-        lead = f"; alone it takes {100 * alone:.0f} % away" if ahead > BOX else ""
-        return "unnamed", (
-            f"{100 * left.loose:.0f} % of the gap stays with the best named effects; "
-            f"{_box_words(explained_by_box, 'that')}{lead}"
-        )
-    if foreign:
-        return "unnamed", foreign
-    if unnamed is not None and unnamed.too_much(unnamed_share):
+    if unnamed.too_much(unnamed_share):
         return "unnamed", unnamed.reason(unnamed_share)
-    return "named", (f"the named effects leave {100 * left.loose:.0f} % of the gap")
+    if unnamed.stays > LOOSE:
+        return "unnamed", (
+            f"too much stays for a name: {left.stays}, and most of it follows no known "
+            "signal"
+        )
+    return "named", left.stays
 
 
 def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
-    """Say what is left that no effect and no wrong hysteresis does, if any is.
-
-    Where names leave little of the gap, it is no more than noise of another colour, or
-    the last bends of a drift's path.
-    """
+    """Say what is left that no effect and no wrong hysteresis does, if any is."""
     gap = max(left.all_before, 1.0)
     far = lone * (1.0 + left.all_after)
     if far > LONE * gap:
         return (
-            f"{100 * lone:.0f} % of what is left stands in lone samples, far off "
-            "from the others, which no effect of the vocabulary does"
+            f"{100 * lone:.0f} % of the power that is left on the fit records stands "
+            "in lone samples, far off from the others, which no effect of the "
+            "vocabulary does"
         )
     differs = unrepeated is not None and unrepeated > max(
         UNREPEATED, SOME * left.all_after
     )
-    if differs and left.all_after > REST * gap:
+    if differs:
         return (
-            f"{unrepeated:.2g} times the noise power is left that differs from one "
-            "period of the same input to the next, which neither a named effect nor a "
-            "wrong hysteresis does"
+            f"on the fit records {unrepeated:.2g} times the noise power is left that "
+            "differs from one period of the same input to the next, which neither a "
+            "named effect nor a wrong hysteresis does"
         )
     return ""
 
 
-def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> float:
+def confidence(
+    first: Candidate, ranking: Sequence[Candidate], left: Left, errors: float = 0.0
+) -> float:
     """Give the probability that an effect is the one, among those that were tried.
 
     Each finalist counts by how much worse it scores; what stays unexplained speaks
-    against any name.
+    against any name. No name is surer than that its numbers are anything but nothing:
+    of a number that is normally distributed, with a standard error of so many times
+    itself, the probability that it is less than twice itself and not below zero.
+
+    Parameters
+    ----------
+    first : Candidate
+    ranking : sequence of Candidate
+    left : Left
+    errors : float
+        Standard error of the effect, in times of it: :func:`error_of`.
     """
     odds = sum(
         float(np.exp(min((first.score - item.score) / SCALE, SURE)))
@@ -253,15 +263,69 @@ def confidence(first: Candidate, ranking: Sequence[Candidate], left: Left) -> fl
         if item.effect != first.effect and item.state is not None
     )
     trust = max(0.0, 1.0 - left.loose / DISTRUST)
-    return (1.0 - DOUBT) * trust / (1.0 + odds)
+    return min((1.0 - DOUBT) * trust / (1.0 + odds), is_anything(errors))
+
+
+def is_anything(errors: float) -> float:
+    """Give the probability that a number is anything but nothing.
+
+    ``2 Phi(1 / e) - 1`` with the standard normal distribution ``Phi``: the level of
+    the widest interval about the number that does not hold zero.
+
+    Parameters
+    ----------
+    errors : float
+        The number's standard error ``e``, in times of the number.
+    """
+    return math.erf(1.0 / (errors * math.sqrt(2.0))) if errors > 0 else 1.0
+
+
+def error_of(
+    size_error: float | None, parameters: Mapping[str, Mapping[str, Any]]
+) -> float:
+    """Give the standard error of an effect, in times of it.
+
+    The larger of two: that of its size, which is what all its numbers together add to
+    the output, and that of the number of it that is known best. The first says nothing
+    of numbers that stand in for each other; the second nothing of a number that is not
+    zero where there is no effect, as a frequency or the gain of a sensor.
+
+    Parameters
+    ----------
+    size_error : float or None
+        None where it cannot be told.
+    parameters : mapping
+        As gap.json holds them.
+
+    Returns
+    -------
+    float
+        Zero where nothing can be told.
+    """
+    each = [
+        abs(error / value) if value else math.inf
+        for item in parameters.values()
+        for value, error in zip(
+            _listed(item["value"]), _listed(item["standard_error"]), strict=False
+        )
+        if error is not None and not isinstance(value, str)
+    ]
+    return max(size_error or 0.0, min(each, default=0.0))
+
+
+def _listed(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, list | tuple) else (value,)
 
 
 def _box_words(explained: float | None, what: str) -> str:
     if explained is None:
         return f"how much of {what} a black box takes away on folds is not known"
     if explained < 0:
-        return f"a black box makes {what} worse on folds"
-    return f"a black box takes {100 * explained:.0f} % of {what} away on folds"
+        return f"a black box makes {what} worse on folds of the fit records"
+    return (
+        f"a black box takes {100 * explained:.0f} % of the power of {what} away on "
+        "folds of the fit records"
+    )
 
 
 def _beyond(model: State, score: Score) -> float:

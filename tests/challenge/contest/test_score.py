@@ -126,6 +126,43 @@ def test_names_beside_the_verdict_unnamed_name_nothing():
     assert [item[2] for item in confusion([row])] == ["unnamed"]
 
 
+def found(*names, effects=("drift",)):
+    about = [{"name": name, "sentence": "new in every record"} for name in names]
+    return gap(*map(named, effects), verdict="unnamed") | {"findings": about}
+
+
+def test_a_finding_that_accounts_for_all_counts_as_the_answer():
+    about = truth(effect("drift", "ramp"))
+    row = judged(about, found("drift"))
+    assert (row.verdict, row.top1, row.exact, row.all_named) == ("named", *(True,) * 3)
+    # It is an answer where it is wrong, too.
+    foreign = judged(truth(effect("dropouts", "only"), kind="unlisted"), found("drift"))
+    assert (foreign.unnamed, foreign.exact) == (False, False)
+    assert judged(truth(kind="none"), found("drift")).false_alarm
+    # Beside another effect it is none, nor is one without the effect.
+    both = found("drift", effects=("drift", "creep"))
+    assert judged(about, both).top1 is False
+    assert judged(about, found("drift", effects=())).top1 is False
+
+
+def test_names_that_were_withdrawn_name_nothing():
+    effects = gap(named("resonance"))["effects"]
+    taken = {
+        "names": ["resonance"],
+        "verdict": "named",
+        "effects": effects,
+        "before": 1.0,
+        "after": 2.0,
+        "records": [],
+        "why": "worse there",
+    }
+    content = gap(verdict="unnamed") | {"withdrawn": taken}
+    row = judged(truth(effect()), content)
+    assert (row.lost, row.verdict, row.top1, row.exact) == ("", "unnamed", False, False)
+    foreign = judged(truth(effect("dropouts", "only"), kind="unlisted"), content)
+    assert (foreign.unnamed, foreign.exact) == (True, True)
+
+
 def test_a_missing_item_of_a_list_is_not_compared():
     true = {"magnitudes": [0.1, 0.2]}
     about = truth(effect("creep", "one-element", true))

@@ -41,7 +41,8 @@ class Row:
     truth, named : str
         Names with a space between, in the order hidden and named.
     verdict : str
-        Empty where the case is lost.
+        Empty where the case is lost; ``named`` also where all effects are findings,
+        told beside unnamed as they are new in every record.
     lost : str
         Why there is no answer; empty where there is one.
     confidence : float or None
@@ -63,7 +64,7 @@ class Row:
     false_alarm, false_alarm_strict : bool or None
         With nothing hidden: any answer but no-gap.
     unnamed : bool or None
-        Outside the vocabulary: the verdict is unnamed.
+        Outside the vocabulary: the verdict is unnamed, and no finding accounts for it.
     where_hit : bool or None
     shrink : float or None
         Share of the power above the noise and the base's own error that is gone from
@@ -147,8 +148,13 @@ def judge(
     effects = [e for e in gap["effects"] if not (tolerated and e["name"] == SHAPE)]
     named = [effect["name"] for effect in effects]
     single, one = kind == "single", effects[0] if effects else None
-    # An answer is one thing: names beside another verdict than this name nothing.
-    names = gap["verdict"] == "named"
+    # An answer is one thing: names beside another verdict than this name nothing, but
+    # for findings: what is new in every record is told so, as it predicts nothing.
+    told = {item["name"] for item in gap.get("findings", ())}
+    names = gap["verdict"] == "named" or (
+        gap["verdict"] == "unnamed" and bool(strict) and set(strict) <= told
+    )
+    word = "named" if names else gap["verdict"]
     members = (
         tuple(dict.fromkeys([one["name"], *one["cannot_be_told_from"]]))
         if one and names
@@ -159,7 +165,7 @@ def judge(
     confirmed = confirm(members) if single and len(members) > 1 else members
     found = recovered(truth["effects"], effects)
     # An effect outside the vocabulary has no name to be called by.
-    right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
+    right, right_strict = _right(kind, hidden, word, named, strict)
     views = gap["where"]
     return Row(
         solver=solver,
@@ -174,7 +180,7 @@ def judge(
         ),
         truth=" ".join(hidden),
         form=" ".join(effect["form"] for effect in truth["effects"]),
-        verdict=gap["verdict"],
+        verdict=word,
         named=" ".join(strict),
         lost=lost,
         confidence=one["confidence"] if one else None,
@@ -192,7 +198,7 @@ def judge(
         else None,
         false_alarm=not right if kind == "none" else None,
         false_alarm_strict=not right_strict if kind == "none" else None,
-        unnamed=gap["verdict"] == "unnamed" if kind == "unlisted" else None,
+        unnamed=word == "unnamed" if kind == "unlisted" else None,
         where_hit=where_hit(views[0] if views else None, truth["effects"])
         if hidden
         else None,

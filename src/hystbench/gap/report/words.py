@@ -29,10 +29,18 @@ FLOORS = {
 
 def verdict_sentence(gap: dict[str, Any]) -> str:
     """Say the verdict in plain words."""
+    if gap["withdrawn"]:
+        return _withdrawn_sentence(gap["withdrawn"])
     names = [effect["name"].replace("-", " ") for effect in gap["effects"]]
     sentence = VERDICTS[gap["verdict"]].format(
         effects=listed(names), reason=gap["reason"].rstrip(".")
     )
+    if gap["findings"]:
+        found = [item["name"].replace("-", " ") for item in gap["findings"]]
+        return (
+            f"The simulator lacks no effect that the records show; {listed(found)} "
+            "of each record's own accounts for what differs."
+        )
     if gap["verdict"] != "unnamed":
         return sentence
     stays = gap["unnamed"]["sentence"] if gap["unnamed"] else ""
@@ -40,6 +48,23 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
         sentence += f" It looks like {listed(names)}, but is not that"
         return sentence + (f": {stays}." if stays else ".")
     return sentence + (f" On the fit records {stays}." if stays else "")
+
+
+def _withdrawn_sentence(taken: dict[str, Any]) -> str:
+    """Say that names were withdrawn, and why."""
+    names = listed([name.replace("-", " ") for name in taken["names"]])
+    what = f"{names[:1].upper()}{names[1:]}" if names else "The re-tuning of the base"
+    were = "were" if len(taken["names"]) > 1 else "was"
+    they = "they make" if len(taken["names"]) > 1 else "it makes"
+    if taken["after"] is None:
+        return (
+            f"No name stands. {what} {were} withdrawn: with that, the model cannot be "
+            "run to the end of the hold-out records."
+        )
+    return (
+        f"No name stands. {what} {were} withdrawn: {they} the gap on the hold-out "
+        "records wider."
+    )
 
 
 def listed(names: list[str]) -> str:

@@ -1,0 +1,103 @@
+"""What hold-out records do to a finding: they lead its reason, or take names back.
+
+They choose nothing. A model that is worse on them than the base goes as a whole: to
+keep those of its effects that do better there would be to choose by hold-out records.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+WORSE = 1.01
+"""RMS on hold-out records, in that of the base, from which a model is worse."""
+LEAST = 5e-4
+"""Share that is told as none: it would read 0.0 %."""
+
+
+def first_figure(content: Mapping[str, Any]) -> str:
+    """Say what is gone on the hold-out records, and of what it is a share.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+    """
+    gap, unit = content["gap"], content["unit"]
+    sizes = f"{gap['before']:.3g} to {gap['after']:.3g} {unit} rms"
+    share = gap["explained"]
+    if share is None:
+        return f"on the hold-out records the base leaves no more than noise: {sizes}"
+    ends = share if isinstance(share, list | tuple) else [share]
+    told = " to ".join(dict.fromkeys(f"{100 * end:.1f} %" for end in ends))
+    if max(ends) < LEAST:
+        told = "none"
+    return (
+        f"on the hold-out records {told} of the gap's power above the noise floor is "
+        f"gone, {sizes}"
+    )
+
+
+def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Tell what the hold-out records take back, if the model is worse on them.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json would hold if nothing were taken back.
+
+    Returns
+    -------
+    dict or None
+        ``withdrawn`` of gap.json: ``names``, empty where only the base was re-tuned;
+        ``verdict`` and ``effects`` as the fit records decided; ``before`` and
+        ``after``, RMS on the hold-out records together, and of each in ``records``;
+        ``why``.
+    """
+    gap, unit = content["gap"], content["unit"]
+    before, after = gap["before"], gap["after"]
+    if content["verdict"] == "no-gap" or (
+        after is not None and after <= WORSE * before
+    ):
+        return None
+    names = [item["name"] for item in content["effects"]]
+    what = " and ".join(names) or "the re-tuning of the base"
+    if after is None:
+        lost = " and ".join(item["record"] for item in content["runs_away"])
+        shown = f"with it the model cannot be run to the end of {lost}"
+    else:
+        shown = (
+            f"with it the gap grows there, from {before:.3g} to {after:.3g} {unit} rms"
+        )
+    return {
+        "names": names,
+        "verdict": content["verdict"],
+        "effects": content["effects"],
+        "before": before,
+        "after": after,
+        "records": [
+            {key: item[key] for key in ("name", "before", "after")}
+            for item in content["records"]
+        ],
+        "why": f"the hold-out records take {what} back: {shown}, so that the model "
+        "stays the base as it was given",
+    }
+
+
+def without_names(
+    content: Mapping[str, Any], taken: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Give what gap.json holds once names are withdrawn."""
+    numbers = {
+        name: item | {"after": item["before"]}
+        for name, item in content["base_parameters"].items()
+    }
+    return {
+        **content,
+        "verdict": "unnamed",
+        "reason": taken["why"],
+        "effects": [],
+        "findings": [],
+        "withdrawn": dict(taken),
+        "base_parameters": numbers,
+    }
