@@ -1,10 +1,13 @@
 """What named effects cannot own, on records whose hidden effect is known."""
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
+from hystbench.commands.gap import gap
 from hystbench.gap.change import numbers_of
 from hystbench.gap.effects import effects
 from hystbench.gap.report.words import verdict_sentence
@@ -191,19 +194,26 @@ PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None, "findings": []}
 
 @pytest.mark.parametrize("sort", SORTS)
 def test_the_page_says_what_it_is_like_and_of_what_sort(sort):
-    gap = PLAIN | {"unnamed": {"sentence": SORTS[sort]}}
+    told = PLAIN | {"unnamed": {"sentence": SORTS[sort]}}
     like = verdict_sentence(
-        gap | {"effects": [{"name": "drive-lag"}, {"name": "creep"}]}
+        told | {"effects": [{"name": "drive-lag"}, {"name": "creep"}]}
     )
     assert like.endswith(
         f"It looks like drive lag and creep, but is not that: {SORTS[sort]}."
     )
-    assert verdict_sentence(gap | {"effects": []}).endswith(f" {SORTS[sort]}.")
+    assert verdict_sentence(told | {"effects": []}).endswith(f" {SORTS[sort]}.")
 
 
 def test_an_older_result_without_the_shares_has_its_sentence_too():
-    gap = PLAIN | {"unnamed": None}
-    assert verdict_sentence(gap | {"effects": [{"name": "creep"}]}).endswith(
+    told = PLAIN | {"unnamed": None}
+    assert verdict_sentence(told | {"effects": [{"name": "creep"}]}).endswith(
         "not that."
     )
-    assert verdict_sentence(gap | {"effects": []}).endswith("what differs.")
+    assert verdict_sentence(told | {"effects": []}).endswith("what differs.")
+
+
+def test_the_command_and_the_workflow_allow_the_same_share():
+    command = {option.name: option for option in gap.params}
+    assert command["unnamed_share"].default == SHARE
+    config = yaml.safe_load(Path("config.yaml").read_text())
+    assert config["gap"]["unnamed_share"] == SHARE

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg.lapack import dtrtri
 
 from hystbench.record import FloatArray
 
@@ -111,7 +112,7 @@ class Products:
             scaled = gram * (root[:, None] * root) / noise
             scaled.flat[:: len(used) + 1] += 1.0
             lower = np.linalg.cholesky(scaled)
-            inverse = np.linalg.inv(lower)
+            inverse, _ = dtrtri(lower, lower=1)
             white = inverse.T @ (inverse @ (root * across)) / noise
             amplitudes = root * white
             left = self.power - amplitudes @ (2 * across - gram @ amplitudes)
