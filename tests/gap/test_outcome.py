@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import DECISION, decide_in, show_in
-from hystbench.gap.outcome import WORSE, first_figure, withdrawal
+from hystbench.gap.outcome import WORSE, first_figure, withdrawal, without_names
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.run import close_gap
 from hystbench.gap.schema import SCHEMA
@@ -52,8 +52,14 @@ def test_what_is_worse_than_the_base_goes_whatever_the_verdict_was(verdict, name
     assert "from 1 to 30 um rms" in taken(30.0)["why"]
 
 
-def test_where_there_is_no_gap_nothing_is_taken_back():
-    assert withdrawal(content(1.0, 2.0, "no-gap", ())) is None
+def test_where_there_is_no_gap_the_base_goes_back_to_what_it_was():
+    """Re-tuned it does worse; that says nothing of a gap."""
+    given = content(1.0, 2.0, "no-gap", ()) | {"reason": "noise"}
+    numbers = {"gain.value": {"before": 1.0, "after": 3.0}}
+    found = without_names(given | {"base_parameters": numbers}, withdrawal(given))
+    assert (found["verdict"], found["reason"]) == ("no-gap", "noise")
+    assert found["base_parameters"] == {"gain.value": {"before": 1.0, "after": 1.0}}
+    assert found["withdrawn"]["names"] == []
 
 
 def test_the_first_figure_says_of_what_it_is_a_share():

@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hystbench.gap.fit import score_of
+import numpy as np
+
+from hystbench.gap.change import removable, without_effect
+from hystbench.gap.fit import ENOUGH, finished, score_of
 from hystbench.gap.name import Named, name
 from hystbench.gap.own_values import KINDS, NONE, OwnValues, own_values
 from hystbench.gap.rank import make_score
 from hystbench.gap.say import Say
 from hystbench.gap.scene import Scene
+from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
 
 def named_apart(
@@ -22,10 +26,13 @@ def named_apart(
     """Name anew beside what records have of their own, where that explains them better.
 
     Effects go first: they are laws, with few numbers, that hold for every record. What
-    records have of their own is looked for beside the base and beside the effects that
-    were named. Where it lowers the score by as much as a first effect has to, all its
-    numbers charged, it is taken off the records and naming begins again; and the better
-    of both explanations stays, by the same score.
+    records have of their own is looked for beside the effects that were named, beside
+    those of them that do not do the same to all records, and beside the base alone. It
+    is taken off the records and naming begins again; what is named then tells better
+    what the records have of their own, and so on while the score falls. The whole has
+    to lower the score of the first names by as much as a first effect has to lower it,
+    all numbers charged; of names that are themselves new in every record, such as a
+    drift, it only has to be the better one.
 
     Parameters
     ----------
@@ -45,25 +52,72 @@ def named_apart(
     own : OwnValues
     """
     score = make_score(start, floor_rms, forms=False)
-    least = score_of(named.state, score) - PAYS
-    kinds = kinds_of(start)
-    tried: list[tuple[float, OwnValues]] = []
-    for state in (start, named.state):
-        own = own_values(start.records, simulated(state), floor_rms**2, kinds)
-        if own.records:
-            value = score_of(on_records_without(state, own), score) + own.charge
-            tried.append((value, own))
-    value, own = min(tried, key=lambda item: item[0], default=(least, NONE))
-    if value >= least:
-        return start, named, NONE
-    say(f"records have {' and '.join(own.kinds)} of their own: naming beside that")
-    apart = on_records_without(start, own)
-    again = name(apart, floor_rms, say)
-    if score_of(again.state, score) + own.charge >= least:
-        return start, named, NONE
-    square = floor_rms**2
-    share = apart.share(start, square, start.power(square))
-    return apart, again, replace(own, share=share)
+    found = (start, named, NONE)
+    least = score_of(named.state, score)
+    least -= 0.0 if any(not values for _, values in named.state.beside) else PAYS
+    models = dict.fromkeys((named.state, without_shared(named.state), start))
+    likely = _likely(start, tuple(models), score)
+    for _ in range(ROUNDS):
+        value, own = next((item for item in likely if item[0] < least), (least, NONE))
+        if not own.records:
+            break
+        say(f"records have {own.words} of their own: naming beside that")
+        apart = on_records(start, own.taken_off(start.records, start.hold))
+        again = name(apart, floor_rms, say)
+        value = score_of(again.state, score) + own.charge
+        if value >= least:
+            break
+        square = floor_rms**2
+        share = apart.share(start, square, start.power(square))
+        found, least = (apart, again, replace(own, share=share)), value
+        likely = _likely(start, (on_records(again.state, start.records),), score)
+    return found
+
+
+SHARED = {"input-delay", "calibration-error"}
+"""Effects that do to all records what each may have of its own."""
+
+
+def without_shared(state: State) -> State:
+    """Give a model without a delay, a gain or an offset that all records share.
+
+    Beside one that was named it would not be seen that each record has its own.
+    """
+    for number in reversed(range(len(state.added))):
+        if state.added[number].effect in SHARED and removable(state, number):
+            state = without_effect(state, number)
+    return state
+
+
+ROUNDS = 3
+"""Of naming, after each of which what records have of their own is known better."""
+
+
+def _likely(
+    start: State, models: Sequence[State], score: Score
+) -> list[tuple[float, OwnValues]]:
+    """Find what records have of their own beside models, and the scores with it.
+
+    A model is refitted without it, and what is their own found again, while that helps.
+    """
+    found = []
+    for state in models:
+        best: tuple[float, OwnValues] = (np.inf, NONE)
+        for _ in range(ROUNDS):
+            own = own_values(
+                start.records, simulated(state), score.floor, kinds_of(start)
+            )
+            if not own.records:
+                break
+            bare = own.taken_off(start.records, start.hold)
+            apart, value = finished(on_records(state, bare), score)
+            if value + own.charge >= best[0] - ENOUGH:
+                break
+            best = value + own.charge, own
+            state = on_records(apart, start.records)
+        if best[1].records:
+            found.append(best)
+    return sorted(found, key=lambda item: item[0])
 
 
 def kinds_of(state: State) -> tuple[str, ...]:
@@ -72,9 +126,8 @@ def kinds_of(state: State) -> tuple[str, ...]:
     return KINDS if reruns else tuple(kind for kind in KINDS if kind != "delay")
 
 
-def on_records_without(state: State, own: OwnValues) -> State:
-    """Give a model on records from which what is their own is taken off."""
-    records = own.taken_off(state.records, state.hold)
+def on_records(state: State, records: tuple[Record, ...]) -> State:
+    """Give a model on other records of the same lengths."""
     return replace(state, records=records, correction=None).settled()
 
 

@@ -56,9 +56,7 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """
     gap, unit = content["gap"], content["unit"]
     before, after = gap["before"], gap["after"]
-    if content["verdict"] == "no-gap" or (
-        after is not None and after <= WORSE * before
-    ):
+    if after is not None and after <= WORSE * before:
         return None
     names = [item["name"] for item in content["effects"]]
     what = " and ".join(names) or "the re-tuning of the base"
@@ -92,10 +90,11 @@ def without_names(
         name: item | {"after": item["before"]}
         for name, item in content["base_parameters"].items()
     }
+    no_gap = taken["verdict"] == "no-gap"  # of the base re-tuned: there was no name
     return {
         **content,
-        "verdict": "unnamed",
-        "reason": taken["why"],
+        "verdict": "no-gap" if no_gap else "unnamed",
+        "reason": content["reason"] if no_gap else taken["why"],
         "effects": [],
         "findings": [],
         "withdrawn": dict(taken),

@@ -138,13 +138,16 @@ class OwnValues:
             f"{name} " + ", ".join(_said(kind, own, unit) for kind in self.kinds)
             for name, own in self.records
         )
+        differ, whose = (
+            ("differs", "its") if len(self.records) == 1 else ("differ", "their")
+        )
         return (
-            f"{len(self.records)} of the fit records differ from the others by "
-            f"{self.words} of their own, which is no effect of the device and takes "
+            f"{len(self.records)} of the fit records {differ} from the others by "
+            f"{self.words} of {whose} own, which is no effect of the device and takes "
             f"{100 * self.share:.0f} % of the gap's power above the noise floor on the "
             f"fit records: {each}. On each hold-out record the same is fitted to the "
-            f"first {FIRST:.0%}, with the base and with the model alike, and the rest "
-            "is scored."
+            f"first {100 * FIRST:.0f} %, with the base and with the model alike, and "
+            "the rest is scored."
         )
 
 
@@ -214,7 +217,9 @@ def own_values(
     for one in each:
         like = costs([one] * len(pairs))
         value = float(np.minimum(like, own).sum()) + charge
-        if value < best - STILL:  # a tie is the simulator's own
+        # A tie is the simulator's own, unless it is then no record's.
+        none_differs = bool((like <= own).all())
+        if value < best + (STILL if none_differs else -STILL):
             best, shared, alike = value, one, like
     told = [
         (record.name, one.beside(shared))

@@ -180,7 +180,7 @@ WITHDRAWN = _object(
     {
         "names": NAMES,
         # The word of the fit records, and what they decided.
-        "verdict": {"enum": ["named", "parameters", "unnamed"]},
+        "verdict": {"enum": ["named", "parameters", "no-gap", "unnamed"]},
         "effects": {"type": "array", "items": EFFECT},
         "before": NUMBER,
         "after": OPTIONAL,

@@ -107,7 +107,11 @@ def effect_mapping(
     """
     own = next((x for x in ranking if x.effect == item.effect), None)
     parameters = _parameters(item, state, errors, of_beside)
-    error = error_of(size_error, parameters)
+    # Of a shape each number stands in for its neighbours: only all together say much.
+    # Of a path in every record the mean slope is told, which may well be nothing.
+    shape = any(state.chain[k].hysteretic for k in item.blocks)
+    path = any(x.effect == item.effect and not given for x, given in state.beside)
+    error = error_of(size_error, {} if shape or path else parameters)
     sure = 0.0 if own is None else confidence(own, ranking, left, error)
     return {
         "name": item.effect,

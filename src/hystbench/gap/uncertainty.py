@@ -111,14 +111,10 @@ def error_of_size(state: State, floor: float, number: int) -> float:
 def size_error(state: State, floor_rms: float, number: int) -> float | None:
     """Give the same of an effect whose size can be told, else None.
 
-    Of a signal beside the chain its own numbers tell; of a hysteresis, what others
-    reshape; of an effect that others stand on, nothing; nor where the records show
-    nothing of it.
+    Of a signal beside the chain its own numbers tell; of an effect that others stand
+    on, nothing; nor where the records show nothing of it.
     """
-    blocks = [state.chain[k] for k in state.added[number].blocks]
-    if not blocks or any(block.hysteretic for block in blocks):
-        return None
-    if not removable(state, number):
+    if not state.added[number].blocks or not removable(state, number):
         return None
     error = error_of_size(state, floor_rms**2, number)
     return error if np.isfinite(error) else None

@@ -29,7 +29,7 @@ FLOORS = {
 
 def verdict_sentence(gap: dict[str, Any]) -> str:
     """Say the verdict in plain words."""
-    if gap["withdrawn"]:
+    if gap["withdrawn"] and gap["verdict"] == "unnamed":
         return _withdrawn_sentence(gap["withdrawn"])
     names = [effect["name"].replace("-", " ") for effect in gap["effects"]]
     sentence = VERDICTS[gap["verdict"]].format(
