@@ -133,6 +133,16 @@ def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest,
     assert judge(left(1.0), True, unnamed=Unnamed(0.0))[0] == "named"
 
 
+@pytest.mark.parametrize(("stays", "less"), [(0.05, False), (0.3, True)])
+def test_a_withdrawal_is_less_sure_beside_a_base_that_may_be_wrong(stays, less):
+    found = Left(100.0, 2.0, 100.0, 100.0 * stays, 1e6)
+    word, reason = judge(found, True, unnamed=Unnamed(0.02))
+    assert word == "unnamed"
+    assert ("less sure" in reason) == less
+    # What is structured is none of that.
+    assert "less sure" not in judge(found, True, unnamed=Unnamed(0.28))[1]
+
+
 @given(st.lists(st.floats(0, 200), min_size=1, max_size=6), st.floats(0, 100))
 def test_confidence_is_a_probability_that_rivals_and_rest_take_from(gaps, after):
     first = Candidate("creep", "mechanics", score=-500.0)

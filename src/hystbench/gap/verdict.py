@@ -19,6 +19,8 @@ Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
 LOOSE = 0.25
 """Share of the gap's power that may stay: half of its rms."""
+OFF = 1 / 9
+"""Share of the gap that stays and may be the base's own error: a third of its rms."""
 ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
 SLIGHT = 0.015
@@ -208,7 +210,13 @@ def judge(
             f"{_box_words(explained_by_box, 'it')}"
         )
     if unnamed.too_much(unnamed_share):
-        return "unnamed", unnamed.reason(unnamed_share)
+        why = unnamed.reason(unnamed_share)
+        if left.whole - unnamed.structured > OFF:
+            why += (
+                "; this is less sure, as a third of the gap's rms or more may be the "
+                "base's own error, which can look like that"
+            )
+        return "unnamed", why
     if unnamed.stays > LOOSE:
         return "unnamed", (
             f"too much stays for a name: {left.stays}, and most of it follows no known "
