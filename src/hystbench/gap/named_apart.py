@@ -17,6 +17,7 @@ from hystbench.gap.scene import Scene
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS
+from hystbench.gap.verdict import ABOVE
 from hystbench.record import FloatArray, Record
 
 
@@ -32,7 +33,8 @@ def named_apart(
     what the records have of their own, and so on while the score falls. The whole has
     to lower the score of the first names by as much as a first effect has to lower it,
     all numbers charged; of names that are themselves new in every record, such as a
-    drift, it only has to be the better one.
+    drift, it only has to be the better one. And noise alone has to be left: numbers of
+    one record stand in for any law that its rate or its amplitude brings out.
 
     Parameters
     ----------
@@ -71,6 +73,9 @@ def named_apart(
         share = apart.share(start, square, start.power(square))
         found, least = (apart, again, replace(own, share=share)), value
         likely = _likely(start, (on_records(again.state, start.records),), score)
+    # Beside more than noise they cannot be told from what the simulator does wrong.
+    if found[1].state.power(score.floor) > ABOVE * score.floor:
+        return start, named, NONE
     return found
 
 
