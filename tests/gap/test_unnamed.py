@@ -177,6 +177,8 @@ def test_what_changes_is_told_where_that_alone_withdraws():
     assert found.sort() == "strength"
     assert "0.4 %" in found.reason()
     assert found.mapping()["sentence"] == SORTS["strength"]
+    fine = Unnamed(0.002, 0.001, 0.1, {"statics": 50.0}).mapping()
+    assert fine["sort"] is fine["sentence"] is None
 
 
 def test_halves_are_those_of_every_record():

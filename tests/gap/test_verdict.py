@@ -7,11 +7,10 @@ from hypothesis import strategies as st
 
 from hystbench.gap.rounds import Candidate, near
 from hystbench.gap.thresholds import TIE
-from hystbench.gap.unnamed import CHANGE, Unnamed
+from hystbench.gap.unnamed import CHANGE, LOOSE, Unnamed
 from hystbench.gap.verdict import (
     ABOVE,
     LONE,
-    LOOSE,
     SLIGHT,
     SOME,
     UNREPEATED,

@@ -135,9 +135,9 @@ UNNAMED = _object(
         "structured": NUMBER,
         "changing": OPTIONAL,
         "unrelated": NUMBER,
-        # Of what sort it is, and in words.
-        "sort": {"enum": ["strength", "history", "memory", "curve", "unrelated"]},
-        "sentence": WORDS,
+        # Of what sort it is, and in words; null where no more stays than may.
+        "sort": {"enum": ["strength", "history", "memory", "curve", "unrelated", None]},
+        "sentence": {"type": ["string", "null"]},
         # The effects' strength in each fit record, as a multiple of what it is in all.
         "factors": {"type": "array", "items": NUMBER},
     }

@@ -23,6 +23,8 @@ SHARE = 0.01
 """Share of the power of the gap that may stay unnamed: a tenth of its rms."""
 CHANGE = 0.2
 """Of that share, what may go if an effect's numbers may differ in time."""
+LOOSE = 0.25
+"""Share of the power of the gap that may stay in all: half of its rms."""
 RELATED = 0.1
 """Share of what stays that must follow known signals, to be called by their sort."""
 
@@ -116,15 +118,16 @@ class Unnamed:
         return f"{much}: {SORTS[self.sort(share)]}"
 
     def mapping(self, share: float = SHARE) -> dict[str, Any]:
-        """Give what gap.json holds."""
-        sort = self.sort(share)
+        """Give what gap.json holds: no sort where no more stays than may."""
+        told = self.too_much(share) or self.stays > LOOSE
+        sort = self.sort(share) if told else None
         return {
             "allowed": share,
             "structured": self.structured,
             "changing": self.changing,
             "unrelated": self.unrelated,
             "sort": sort,
-            "sentence": SORTS[sort],
+            "sentence": SORTS[sort] if sort else None,
             "factors": list(self.factors),
         }
 

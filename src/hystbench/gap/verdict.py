@@ -13,12 +13,10 @@ from hystbench.gap.rank import make_score
 from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
-from hystbench.gap.unnamed import NOTHING, SHARE, Unnamed
+from hystbench.gap.unnamed import LOOSE, NOTHING, SHARE, Unnamed
 
 Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
-LOOSE = 0.25
-"""Share of the gap's power that may stay: half of its rms."""
 OFF = 1 / 9
 """Share of the gap that stays and may be the base's own error: a third of its rms."""
 ABOVE = 0.5

@@ -43,7 +43,7 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
         )
     if gap["verdict"] != "unnamed":
         return sentence
-    stays = gap["unnamed"]["sentence"] if gap["unnamed"] else ""
+    stays = (gap["unnamed"] or {"sentence": None})["sentence"]
     if names:
         sentence += f" It looks like {listed(names)}, but is not that"
         return sentence + (f": {stays}." if stays else ".")
