@@ -22,7 +22,7 @@ help:
 	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
 	@echo "make slurm      set up .venv-slurm, from which the pipeline runs on a cluster"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
-	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm and results"
+	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm and what was written to results"
 
 # Look first, so that what is missing is said in one line and not by a compiler.
 $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
@@ -53,7 +53,6 @@ rivals slurm: %: .venv-%/ready
 
 reproduce: $(READY)
 	$(BIN)/snakemake --cores all
-	$(BIN)/snakemake --report results/report.html
 
 lint: $(READY)
 	$(BIN)/ruff format --check .
@@ -91,5 +90,8 @@ requirements:
 	  --constraint requirements.txt --output-file requirements-$$group.txt pyproject.toml || exit 1; done
 	$(COMPILE) --extra rivals --output-file requirements-rivals.txt pyproject.toml
 
+# Of results only what is on the lists of what hystbench wrote.
 clean:
-	rm -rf $(VENV) .venv-rivals .venv-slurm results .snakemake
+	@test ! -e results || test -x $(BIN)/hystbench || { echo "results: stays, as without $(VENV) nobody tells what hystbench wrote there; run 'make $(READY)' first, or remove it by hand" >&2; exit 1; }
+	test ! -e results || $(BIN)/hystbench clean results
+	rm -rf $(VENV) .venv-rivals .venv-slurm .snakemake

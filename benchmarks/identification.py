@@ -31,8 +31,8 @@ from hystbench.measurement import measure
 from hystbench.model import load_model
 from hystbench.operators import generalized_prandtl_ishlinskii
 from hystbench.record import FloatArray, Record
-from hystbench.schema import load_yaml
 from hystbench.signals import make_signal
+from hystbench.yaml_files import load_yaml
 
 COLUMNS = (
     *("method", "starts", "seconds", "relative_error", "evaluations"),

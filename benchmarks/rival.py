@@ -20,10 +20,10 @@ from hystbench.pressure.configured import run
 from hystbench.pressure.fits import fit
 from hystbench.pressure.twins import read_twins
 from hystbench.rdgpi import identify_rdgpi
-from hystbench.schema import load_yaml
 from hystbench.settings import read_settings
 from hystbench.signals import make_signal
 from hystbench.slow_loop import identify_slow_loop
+from hystbench.yaml_files import load_yaml
 
 
 def main(root: Path) -> dict[str, float | None]:

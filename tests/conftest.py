@@ -6,12 +6,14 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
 from hystbench import kernels
+from tests.browser.chromium import EXECUTABLE, Chromium
 
 ROOT = Path(__file__).parents[1]
 
@@ -32,9 +34,40 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: "pipeline" not in item.path.parts)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _no_cache_of_the_users(tmp_path_factory):
+    """Keep outputs of functions that tests call out of the user's own cache."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def shorten(config: dict[str, Any], duration_s: float) -> None:
+    """Make a config's records short, the random sum with the sines that they hold."""
+    config["excitation"]["duration_s"] = duration_s
+    random = config["excitations"]["multisine-random-0-100hz"]["random-sum-of-sines"]
+    random["sines"] = min(random["sines"], round(100 * duration_s))
+    config["random_sum"] |= {"draws": 2, "other_sines": [5]}
+    config["step_sweep"] |= {"ratio": 2.0}
+    config["pressure"] |= {
+        "members": 1,
+        "zero_errors": [0.0],
+        "constant_taps": [0.0, 1.0],
+    }
+
+
 @pytest.fixture(scope="session")
 def root() -> Path:
     return ROOT
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """A headless Chromium, where there is one."""
+    if EXECUTABLE is None:
+        pytest.skip("no Chromium here (on Debian: the package chromium)")
+    with Chromium() as started:
+        yield started
 
 
 @pytest.fixture

@@ -3,15 +3,16 @@ import sys
 
 import pytest
 
-from hystbench import cli
-from hystbench.cli import COMMANDS, LazyGroup
+from hystbench import group as group_module
+from hystbench.cli import COMMANDS, run
+from hystbench.group import group
 from hystbench.options import SettingsType
 from tests.conftest import run_hystbench
 
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_is_there_and_has_help(name):
-    command = LazyGroup().get_command(None, name)
+    command = group(COMMANDS).get_command(None, name)
     assert command.name == name
     assert command.help
 
@@ -28,8 +29,8 @@ def test_help_needs_no_numpy(root):
 
     code = (
         "import sys, hystbench.cli\n"
-        "try: hystbench.cli.cli(['--help'])\n"
-        "except SystemExit: pass\n"
+        "sys.argv = ['hystbench', '--help']\n"
+        "assert hystbench.cli.run() == 0\n"
         "assert 'numpy' not in sys.modules"
     )
     result = subprocess.run(
@@ -61,21 +62,26 @@ def test_settings_are_a_json_object():
             kind.convert(text, None, None)
 
 
-def test_what_the_system_refuses_is_one_line(monkeypatch, capsys):
-    def refuse(prog_name):
-        raise NotADirectoryError(errno.ENOTDIR, "Not a directory", "taken/x")
+def raising(monkeypatch, error):
+    """Let every command end with an error."""
 
-    monkeypatch.setattr(cli, "cli", refuse)
-    with pytest.raises(SystemExit) as stopped:
-        cli.main()
-    assert stopped.value.code == 2
+    def called(lines):
+        def command(prog_name):
+            raise error
+
+        return command
+
+    monkeypatch.setattr(group_module, "group", called)
+
+
+def test_what_the_system_refuses_is_one_line(monkeypatch, capsys):
+    error = NotADirectoryError(errno.ENOTDIR, "Not a directory", "taken/x")
+    raising(monkeypatch, error)
+    assert run() == 2
     assert capsys.readouterr().err == "hystbench: taken/x: Not a directory\n"
 
 
 def test_an_error_of_our_own_is_not_told_as_the_users(monkeypatch):
-    def broken(prog_name):
-        raise OSError("no file has to do with it")
-
-    monkeypatch.setattr(cli, "cli", broken)
+    raising(monkeypatch, OSError("no file has to do with it"))
     with pytest.raises(OSError, match="no file"):
-        cli.main()
+        run()

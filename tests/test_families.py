@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from hystbench.blocks.gain import Gain
-from hystbench.cli import cli
+from hystbench.cli import COMMANDS
 from hystbench.errors import InputError
 from hystbench.families import (
     ASYMMETRY,
@@ -19,6 +19,7 @@ from hystbench.families import (
     Unknown,
     fit_family,
 )
+from hystbench.group import group
 from hystbench.model import load_model
 from hystbench.signals import Signal, sine
 
@@ -117,7 +118,7 @@ def test_the_command_reads_no_held_out_signal(tmp_path):
         *("--settings", json.dumps({"seed": 1}), "--out", str(tmp_path / "out")),
     ]
     with pytest.raises(InputError, match="'sine-060hz' is held out"):
-        CliRunner().invoke(cli, words, catch_exceptions=False)
+        CliRunner().invoke(group(COMMANDS), words, catch_exceptions=False)
     assert not (tmp_path / "out").exists()
 
 

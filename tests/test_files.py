@@ -6,17 +6,18 @@ from pathlib import Path
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.files import check_writable, whole_folder
+from hystbench.files import atomic_path, digest, whole_folder, write_text
+from hystbench.written import ENTRIES, check_writable, entry_of, is_ours
 
 OURS = ("result.txt", "page.txt", "parts/*.csv")
 
 
 def tree(folder):
-    """All that is in a folder, hidden files too."""
+    """All that is in a folder, hidden files too, but the list of what was written."""
     return {
         item.relative_to(folder).as_posix(): item.read_text()
         for item in folder.rglob("*")
-        if item.is_file()
+        if item.is_file() and ENTRIES not in item.parts
     }
 
 
@@ -24,6 +25,11 @@ def write(folder, files):
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
+
+
+def write_ours(folder, files):
+    for name, text in files.items():
+        write_text(folder / name, text)
 
 
 OLD = {"result.txt": "old", "page.txt": "old", "parts/a.csv": "old"}
@@ -41,16 +47,20 @@ def test_a_folder_that_was_not_there(tmp_path):
 
 
 def test_only_what_is_ours_gives_way(tmp_path):
-    write(tmp_path, OLD | FOREIGN)
+    write_ours(tmp_path, OLD)
+    write(tmp_path, FOREIGN)
     with whole_folder(tmp_path, OURS) as folder:
         write(folder, NEW)
     assert tree(tmp_path) == NEW | FOREIGN
+    assert all(is_ours(tmp_path / name) for name in NEW)
+    assert not entry_of(tmp_path / "page.txt").exists()
 
 
 @pytest.mark.parametrize("there", [OLD | FOREIGN, FOREIGN, {}])
 def test_what_fails_leaves_all_as_it_was(tmp_path, there):
     out = tmp_path / "out"
-    write(out, there)
+    write_ours(out, {name: text for name, text in there.items() if name in OLD})
+    write(out, {name: text for name, text in there.items() if name in FOREIGN})
 
     def interrupted():
         with whole_folder(out, OURS) as folder:
@@ -68,7 +78,8 @@ def test_what_fails_while_files_take_their_places_is_put_back(
     tmp_path, monkeypatch, at
 ):
     """Three old files go and two new ones come: each of the five moves may fail."""
-    write(tmp_path, OLD | FOREIGN)
+    write_ours(tmp_path, OLD)
+    write(tmp_path, FOREIGN)
     real, calls = Path.rename, []
 
     def rename(self, target):
@@ -81,6 +92,7 @@ def test_what_fails_while_files_take_their_places_is_put_back(
     with pytest.raises(OSError, match="disk full"), whole_folder(tmp_path, OURS) as new:
         write(new, NEW)
     assert tree(tmp_path) == OLD | FOREIGN
+    assert all(is_ours(tmp_path / name) for name in OLD)
 
 
 @pytest.mark.parametrize(
@@ -109,3 +121,69 @@ def test_a_place_that_cannot_be_written_is_refused_and_nothing_is_made(
     monkeypatch.setattr(os, "access", lambda place, mode: place != tmp_path)
     with pytest.raises(InputError, match=f"{tmp_path.name}: not writable"):
         check_writable(tmp_path / "new")
+
+
+def test_a_file_of_somebody_elses_is_refused_before_the_block_is_run(tmp_path):
+    write(tmp_path, {"result.txt": "mine"})
+    told = "result.txt: not written by hystbench"
+    for writing in (whole_folder(tmp_path, OURS), atomic_path(tmp_path / "result.txt")):
+        with pytest.raises(InputError, match=told), writing:
+            raise AssertionError
+    assert tree(tmp_path) == {"result.txt": "mine"}
+
+
+def test_a_result_that_somebody_edited_is_theirs(tmp_path):
+    write_ours(tmp_path, OLD)
+    (tmp_path / "result.txt").write_text("edited")
+    with pytest.raises(InputError, match="changed since hystbench wrote it"):
+        write_text(tmp_path / "result.txt", "new")
+    (tmp_path / "parts" / "a.csv").write_text("edited")
+    (tmp_path / "result.txt").unlink()
+    with whole_folder(tmp_path, OURS) as folder:
+        write(folder, NEW)
+    assert tree(tmp_path) == NEW | {"parts/a.csv": "edited"}
+
+
+@pytest.mark.parametrize("at", ["entry", "file"])
+def test_what_is_cut_off_between_entry_and_file_is_written_again(
+    tmp_path, monkeypatch, at
+):
+    """Whether the old file or the new one is there, the list knows it."""
+    write_text(tmp_path / "result.txt", "old")
+    real, calls = Path.replace, []
+
+    def replace(self, target):
+        calls.append(target)
+        if len(calls) == 2 and at == "entry":
+            raise KeyboardInterrupt
+        real(self, target)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return target
+
+    monkeypatch.setattr(Path, "replace", replace)
+    with pytest.raises(KeyboardInterrupt):
+        write_text(tmp_path / "result.txt", "new")
+    assert calls[0] == entry_of(tmp_path / "result.txt")
+    monkeypatch.undo()
+    there = "old" if at == "entry" else "new"
+    assert tree(tmp_path) == {"result.txt": there}
+    write_text(tmp_path / "result.txt", "newer")
+    assert tree(tmp_path) == {"result.txt": "newer"}
+
+
+def test_a_list_that_is_somebody_elses_is_refused(tmp_path):
+    write(tmp_path, {ENTRIES: "mine"})
+    with pytest.raises(InputError, match="a file; expected hystbench's list"):
+        write_text(tmp_path / "a.txt", "new")
+    assert (tmp_path / ENTRIES).read_text() == "mine"
+    write(tmp_path / "b", {f"{ENTRIES}/a.txt.sha256": "mine"})
+    with pytest.raises(InputError, match="no entry of hystbench's list"):
+        write_text(tmp_path / "b" / "a.txt", "new")
+    assert entry_of(tmp_path / "b" / "a.txt").read_text() == "mine"
+
+
+def test_the_list_is_no_content_of_a_folder(tmp_path):
+    write(tmp_path / "plain", NEW)
+    write_ours(tmp_path / "ours", NEW)
+    assert digest(tmp_path / "ours") == digest(tmp_path / "plain")

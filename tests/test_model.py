@@ -156,6 +156,7 @@ def scaled(value, factor, low, high):
 
 GPI = registry()["gpi"].from_mapping(EXAMPLES["gpi"])
 words = st.text("abcdefghijklmnopqrstuvwxyz -µ:#'\"{}[]0123456789.", min_size=1)
+units = st.sampled_from(["A", "mV", "um", "µm", "m/s^2", "-", "1", "N*m"])
 
 
 @given(st.data())
@@ -175,8 +176,8 @@ def test_a_model_file_round_trips(data):
     notes = words.filter(str.strip)
     original = Model(
         name=data.draw(words),
-        input=Channel(data.draw(words), data.draw(words)),
-        output=Channel(data.draw(words), data.draw(words)),
+        input=Channel(data.draw(words), data.draw(units)),
+        output=Channel(data.draw(words), data.draw(units)),
         chain=chain,
         free=tuple(free),
         provenance={
@@ -212,8 +213,11 @@ def put(value, *path):
         (without("chain"), "missing key 'chain'"),
         (put([], "chain"), "chain: expected at least one block"),
         (put({}, "chain"), "chain: expected a list of blocks"),
-        (put("gain", "chain", 0), "chain: block 1: expected one block and its"),
-        (put({"a": 1, "b": 2}, "chain", 0), "chain: block 1: expected one block"),
+        (put(7, "chain", 0), "chain: block 1: 7; expected one block and its"),
+        (
+            put({"gain": {}, "value": 2}, "chain", 0),
+            "chain: block 1: 2 keys (gain, value); expected one block",
+        ),
         (
             put({"resonanse": {}}, "chain", 1),
             "chain: block 2: unknown block 'resonanse'; did you mean 'resonance'?",

@@ -5,6 +5,7 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.record import Channel, Record, load_record
+from hystbench.written import ENTRIES
 
 
 def make(u, dt=0.01):
@@ -79,4 +80,4 @@ def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
     with pytest.raises(OSError, match="disk full"):
         make([3, 4]).save(tmp_path / "r.npz")
     assert (tmp_path / "r.npz").read_bytes() == before
-    assert [item.name for item in tmp_path.iterdir()] == ["r.npz"]
+    assert {item.name for item in tmp_path.iterdir()} == {"r.npz", ENTRIES}

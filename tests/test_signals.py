@@ -158,3 +158,29 @@ def test_a_bad_definition_is_told_in_one_line(definition, expected):
         make_signal("mine", definition, COMMON)
     assert expected in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("count", "highest"), [(40, 1.0), (41, 1.0), (200, 0.1)])
+def test_random_sum_is_the_sum_of_its_sines(count, highest):
+    """One draw, added up sine by sine; the highest line may be Nyquist's own."""
+    u = random_sum_of_sines(
+        band=(0.0, highest),
+        level=0.5,
+        sines=5,
+        trials=1,
+        seed=4,
+        gain=1.0,
+        duration_s=count / 100,
+        sampling_frequency_hz=100.0,
+    )
+    top = int(highest * count / 2)
+    lines = top - (top // 5) * np.arange(5)[::-1]
+    phases = np.random.default_rng(4).uniform(0, 2 * np.pi, 5)
+    n = np.arange(count)
+    total = sum(
+        np.cos(2 * np.pi * line * n / count + phase)
+        for line, phase in zip(lines, phases, strict=True)
+    )
+    middle = (total.max() + total.min()) / 2
+    expected = 0.5 * (total - middle) / (np.ptp(total) / 2)
+    np.testing.assert_allclose(u, expected, atol=1e-12)

@@ -43,7 +43,8 @@ def make_filter(
     model : str
         Name of the filter.
     settings : mapping
-        Those of the job: ``order``, ``input_before``, the filter's own, and either
+        Those of the job: ``order``, ``input_before``, ``constant_tap`` (as a multiple
+        of the RMS of the other taps on the record), the filter's own, and either
         ``convergence_factor`` or ``fraction_of_bound``.
     record : Record
         Its input sets the bound, and the thresholds where no ``amplitude`` is set.
@@ -90,6 +91,9 @@ def make_filter(
     steps = settings.get("convergence_factor", dict.fromkeys(names, 1.0))
     options |= {own: float(steps[name]) for name, own in names.items()}
     adaptive = FILTERS[model](**options)
+    if settings["constant_tap"]:
+        size = settings["constant_tap"] * adaptive.tap_rms(record.u)
+        adaptive = replace(adaptive, constant_tap=size)
     if "convergence_factor" in settings:
         return adaptive
     return with_fraction_of_bound(
@@ -108,7 +112,8 @@ def step_bounds(adaptive: AdaptiveFilter, x: FloatArray) -> dict[str, float]:
     before = np.full(adaptive.taps, adaptive.x_before)
     total = np.cumsum(np.concatenate([before, x]) ** 2)
     power = total[adaptive.taps :] - total[: -adaptive.taps]
-    traces = {"first_order": power.mean(), "second_order": (power**2).mean()}
+    first = power.mean() + adaptive.constant_tap**2
+    traces = {"first_order": first, "second_order": (power**2).mean()}
     return {name: float(1 / trace) for name, trace in traces.items()}
 
 
@@ -140,7 +145,8 @@ def run_filter(
     -------
     dict
         As :func:`hystbench.results.run_result`, and with the filter's order, step
-        sizes, their bounds by Eq. 19, eigenvalues of R and final weights.
+        sizes, their bounds by Eq. 19, its largest correction, eigenvalues of R and
+        final weights.
     Result
         Output and error at each sample.
     """
@@ -163,6 +169,8 @@ def run_filter(
         "taps": adaptive.taps,
         "step_size": steps,
         "bound": bounds,
+        # 2 mu max|H|^2: beyond 2 the recursion is unstable while H moves little.
+        "largest_correction": adaptive.correction(adaptive.largest_power(record.u)),
         "eigenvalues": {
             "trace": bound.trace,
             "largest": bound.largest,

@@ -1,19 +1,19 @@
 """The command line: one small file a command in :mod:`hystbench.commands`.
 
 Commands are imported when they are called, so that a job pays for what it uses
-and ``hystbench --help`` for nothing.
+and ``hystbench --help`` for nothing. So is all else that takes time to import: a
+Ctrl-C is to be one line from the first moment on.
 """
 
 from __future__ import annotations
 
-import importlib
+import contextlib
+import errno
 import os
 import sys
+from collections.abc import Callable
 
-import click
-
-from hystbench import __version__
-from hystbench.errors import InputError, nearest
+from hystbench import interrupt
 
 #: Each command and the line that ``--help`` shows for it.
 COMMANDS = {
@@ -25,6 +25,10 @@ COMMANDS = {
     "filter": "Run one LMS filter on one record.",
     "envelopes": "Run the GPO filter with identified and published envelopes.",
     "order-sweep": "Run the filters over a range of orders (Figure 7).",
+    "random-sum": "Run all models on many draws of the random sum.",
+    "step-sweep": "Find how far each step size can go (Eq. 19).",
+    "constants": "Rank the filters with other constants.",
+    "hypotheses": "Try what could explain errors that stay far off.",
     "calibrate": "Fit the twin and the step sizes to the published tables.",
     "tried": "Write what the calibration tried and found as tables.",
     "structure": "Try one structure on the calibration signals.",
@@ -59,53 +63,80 @@ COMMANDS = {
     "rival": "Run a rival of the gap's solver on a dataset.",
     "show": "Print the tables of a comparison.",
     "figure": "Draw one figure.",
+    "report": "Write the front page of the results.",
     "docs": "Fill the tables of README.md and docs from results.",
+    "clean": "Remove what hystbench wrote, and nothing else.",
 }
 
-
-class LazyGroup(click.Group):
-    """A group that imports a command when it is called."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Name the commands in the order of the workflow."""
-        return list(COMMANDS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a command; an unknown name gets the nearest one."""
-        if cmd_name not in COMMANDS:
-            raise InputError(f"no command {cmd_name!r}; {nearest(cmd_name, COMMANDS)}")
-        module = cmd_name.replace("-", "_")
-        command: click.Command = getattr(
-            importlib.import_module(f"hystbench.commands.{module}"), module
-        )
-        return command
-
-    def format_commands(
-        self, ctx: click.Context, formatter: click.HelpFormatter
-    ) -> None:
-        """List the commands without importing them."""
-        with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
-
-
-@click.group(cls=LazyGroup)
-@click.version_option(__version__)
-def cli() -> None:
-    """Benchmark rate-dependent hysteresis models of smart actuators."""
+#: Errors of a full disk, told in one line though they name no file.
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def main() -> None:
-    """Run the command line; a user's mistake is one line and exit status 2."""
+    """Run the command line; a user's mistake is one line and exit status 2.
+
+    So is a full disk. Ctrl-C is one line and exit status 130.
+    """
+    try:
+        interrupt.listen()
+        status = run()
+        interrupt.end_at_once()
+    except interrupt.Interrupted as ended:
+        interrupt.end_at_once()
+        _tell(interrupt.TOLD)
+        status = ended.status
+    sys.exit(status)
+
+
+def run() -> int:
+    """Run the command that the arguments name.
+
+    Returns
+    -------
+    int
+        Exit status.
+    """
     # Products of matrices are small here: threads of BLAS would cost more than they
     # give, and the last bits would depend on their number.
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    from hystbench.errors import InputError
+    from hystbench.group import group
+
     try:
-        cli(prog_name="hystbench")
+        status = _called(group(COMMANDS))
     except InputError as error:
-        print(f"hystbench: {error}", file=sys.stderr)
-        sys.exit(2)
+        _tell(f"hystbench: {error}")
+        return 2
     except OSError as error:
-        if error.filename is None:
+        if error.filename is not None:
+            _tell(f"hystbench: {error.filename}: {error.strerror}")
+        elif error.errno in FULL:
+            # Files of results are named; what is left is what was printed, mostly.
+            _tell(f"hystbench: standard output or a temporary file: {error.strerror}")
+        else:
             raise
-        print(f"hystbench: {error.filename}: {error.strerror}", file=sys.stderr)
-        sys.exit(2)
+        return 2
+    return status
+
+
+def _called(command: Callable[..., object]) -> int:
+    """Call the group and give its exit status, all that it printed being out."""
+    status = 0
+    try:
+        command(prog_name="hystbench")
+    except SystemExit as ended:
+        status = ended.code if isinstance(ended.code, int) else int(bool(ended.code))
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        # What is left of the text goes nowhere, or Python tries again at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        if isinstance(error, BrokenPipeError):
+            return status or 1
+        raise OSError(error.errno, error.strerror, "standard output") from None
+    return status
+
+
+def _tell(line: str) -> None:
+    with contextlib.suppress(OSError):  # the log may be on the disk that is full
+        print(line, file=sys.stderr, flush=True)

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, nearest, short
 from hystbench.record import Channel, FloatArray, Record, Use
-from hystbench.schema import check_against_schema, load_yaml
-from hystbench.units import check_same_unit
+from hystbench.schema import check_against_schema
+from hystbench.text_files import read_text
+from hystbench.units import check_known, check_same_unit, plain, seconds
+from hystbench.written import reads
+from hystbench.yaml_files import load_yaml
 
 #: Steps may differ from their mean by this share where dataset.yaml does not say:
 #: printed times are rounded, and a clock that is off by more is no uniform clock.
@@ -26,6 +30,9 @@ SMALLEST = 1e-30
 #: its standard deviation, rms.
 UNLIKE = 0.2
 
+#: Names of records: they name results, and braces are Snakemake's own.
+_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
+
 _CHANNEL = {
     "type": "object",
     "required": ["column", "unit"],
@@ -34,6 +41,7 @@ _CHANNEL = {
         "column": {"type": "string"},
         "unit": {"type": "string"},
         "name": {"type": "string"},
+        "meant": {"type": "boolean"},
     },
 }
 
@@ -52,6 +60,7 @@ SCHEMA: dict[str, Any] = {
                 "column": {"type": "string"},
                 "unit": {"type": "string"},
                 "tolerance": {"type": "number", "exclusiveMinimum": 0, "maximum": 0.5},
+                "meant": {"type": "boolean"},
             },
         },
         "input": _CHANNEL
@@ -66,7 +75,11 @@ SCHEMA: dict[str, Any] = {
             "type": "object",
             "required": ["column", "unit"],
             "additionalProperties": False,
-            "properties": {"column": {"type": "string"}, "unit": {"type": "string"}},
+            "properties": {
+                "column": {"type": "string"},
+                "unit": {"type": "string"},
+                "meant": {"type": "boolean"},
+            },
         },
         "noise_rms": {"type": "number", "exclusiveMinimum": 0},
         "identification": {"type": "string"},
@@ -84,6 +97,11 @@ SCHEMA: dict[str, Any] = {
                     "stands_still": {
                         "type": "array",
                         "items": {"enum": ["input", "output"]},
+                        "uniqueItems": True,
+                    },
+                    "meant": {
+                        "type": "array",
+                        "items": {"enum": ["copy", "amplitude"]},
                         "uniqueItems": True,
                     },
                 },
@@ -126,6 +144,10 @@ class Dataset:
         """Tell which channels of a record, input or output, really stand still."""
         return tuple(self._entry(name).get("stands_still", ()))
 
+    def meant(self, name: str) -> tuple[str, ...]:
+        """Tell what of a record is meant as it is, and no longer warned of."""
+        return tuple(self._entry(name).get("meant", ()))
+
     def _entry(self, name: str) -> Mapping[str, Any]:
         """Give what dataset.yaml says of a record."""
         entries = {Path(entry["file"]).stem: entry for entry in self.about["records"]}
@@ -150,7 +172,7 @@ class Dataset:
         time, u, y, *others = _read_columns(file, columns)
         dt = _sampling_interval(
             file,
-            time * _seconds(self.path, time_about["unit"]),
+            time * seconds(f"{self.path}: time: unit", time_about["unit"]),
             time_about.get("tolerance", UNIFORM_TOLERANCE),
         )
         for item, values in zip(channels, (u, y), strict=True):
@@ -208,19 +230,15 @@ def load_dataset(path: str | Path) -> Dataset:
     file = Path(path)
     if file.is_dir():
         file = file / "dataset.yaml"
-    about = load_yaml(file)
+    about = load_yaml(file, "a dataset.yaml or its folder")
+    if not isinstance(about, dict):
+        beside = file.parent / "dataset.yaml"
+        hint = f"; did you mean {str(beside)!r}?" if beside.is_file() else ""
+        raise InputError(f"{file}: expected a dataset.yaml or its folder{hint}")
     check_against_schema(about, SCHEMA, str(file))
     dataset = Dataset(file, about["name"], about)
     files = dataset.record_files
-    if len(files) < len(about["records"]):
-        raise InputError(f"{file}: records: two files share a stem; expected one each")
-    for record in files.values():
-        if not record.is_file():
-            there = sorted(item.name for item in record.parent.glob("*.csv"))
-            raise InputError(
-                f"{file}: records: no file {record.name!r}; "
-                f"{nearest(record.name, there)}"
-            )
+    _check_files(file, [entry["file"] for entry in about["records"]])
     named = about.get("identification")
     if named is not None and named not in files:
         raise InputError(
@@ -239,17 +257,90 @@ def load_dataset(path: str | Path) -> Dataset:
     if "simulated" in about:
         ours, measured = about["simulated"]["unit"], about["output"]["unit"]
         check_same_unit(f"{file}: simulated: unit", ours, "the output", measured)
-    _seconds(file, about["time"]["unit"])
+    for channel in ("input", "output"):
+        check_known(f"{file}: {channel}: unit", about[channel]["unit"])
+    seconds(f"{file}: time: unit", about["time"]["unit"])
     return dataset
+
+
+def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
+    """Read an input of one's own: a CSV file with the columns time_s and another.
+
+    Parameters
+    ----------
+    file : Path
+    column : str
+        Name of the input's column.
+
+    Returns
+    -------
+    dt : float
+        Sampling interval in seconds.
+    u : ndarray, shape (n,)
+
+    Raises
+    ------
+    InputError
+        If a column is missing, a cell is no finite number, or sampling is not uniform.
+    """
+    time, u = _read_columns(file, ["time_s", column])
+    return _sampling_interval(file, time, UNIFORM_TOLERANCE), u
+
+
+def _check_files(about: Path, names: Sequence[str]) -> None:
+    """Refuse a record whose file is none, and two records of one name."""
+    seen: dict[str, str] = {}
+    for name in names:
+        place, file = f"{about}: records", about.parent / name
+        if not _NAME.fullmatch(file.stem):
+            raise InputError(
+                f"{place}: {short(name)} names results as well; expected a name that "
+                "begins with a letter or digit and has none of {}*?\\"
+            )
+        if file.stem in seen:
+            also = seen[file.stem]
+            raise InputError(
+                f"{place}: {name!r} stands there twice; expected each once"
+                if also == name
+                else f"{place}: {also!r} and {name!r} are both named {file.stem!r}; "
+                "expected a name each, as it names its results"
+            )
+        seen[file.stem] = name
+        if file.is_dir():
+            raise InputError(f"{place}: {name!r} is a folder; expected a CSV file")
+        if not _is_file(file):
+            raise InputError(f"{place}: no file {name!r}; {_other_file(about, name)}")
+        reads(file)
+
+
+def _is_file(file: Path) -> bool:
+    try:
+        return file.is_file()
+    except (OSError, ValueError):  # links in a circle, or no name of a file at all
+        return False
+
+
+def _other_file(about: Path, name: str) -> str:
+    """Name the file that may be meant, from the folder of dataset.yaml."""
+    folder = (about.parent / name).parent
+    if not folder.is_dir():
+        return f"there is no folder {str(folder)!r}"
+    there = sorted(item.name for item in folder.glob("*.csv") if item.is_file())
+    if not there:
+        return f"expected a CSV file; the folder {str(folder)!r} has none"
+    before = Path(name).parent
+    return nearest(name, [str(before / item) for item in there])
 
 
 def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
     """Read named columns of a CSV file as numbers."""
-    try:
-        lines = file.read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError as error:
-        raise InputError(f"{file}: expected text in UTF-8 ({error.reason})") from error
+    lines = read_text(file, "a CSV file").splitlines()
+    if not lines:
+        raise InputError(
+            f"{file}: empty: no column {columns[0]!r}; expected a header and rows"
+        )
     header = [name.strip() for name in next(csv.reader(lines[:1]), [])]
+    _check_separator(file, lines, header, columns)
     for column in columns:
         if column not in header:
             raise InputError(
@@ -259,6 +350,7 @@ def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
             raise InputError(
                 f"{file}: {header.count(column)} columns {column!r}; expected one"
             )
+    _check_decimals(file, lines, len(header))
     places = [header.index(column) for column in columns]
     rows = [line for line in lines[1:] if line.strip()]
     if len(rows) < 2:
@@ -274,13 +366,44 @@ def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
     return tuple(np.ascontiguousarray(column) for column in table.T)
 
 
+def _check_separator(
+    file: Path, lines: list[str], header: list[str], columns: list[str]
+) -> None:
+    """Tell which other separator a file has."""
+    if any(column in header for column in columns):
+        return
+    for separator, name in ((";", "semicolons"), ("\t", "tabs"), ("|", "bars")):
+        cells = [cell.strip().strip('"') for cell in lines[0].split(separator)]
+        if not any(column in cells for column in columns):
+            continue
+        commas = any("," in line for line in lines[1:3])
+        also = " and points in numbers, not decimal commas" * commas
+        raise InputError(
+            f"{file}: row 1: columns separated by {name} ({separator!r}); expected "
+            f"commas between columns{also}"
+        )
+
+
+def _check_decimals(file: Path, lines: list[str], columns: int) -> None:
+    """Refuse rows of more cells than the header: decimal commas, or a lost line end."""
+    for number, line in enumerate(lines[1:], start=2):
+        if line.count(",") < columns or '"' in line:
+            continue
+        cells = line.rstrip(", \t").count(",") + 1
+        if cells > columns:
+            raise InputError(
+                f"{file}: row {number}: {cells} cells where the header has {columns}; "
+                "expected as many, and points in numbers, not decimal commas"
+            )
+
+
 def _first_bad_cell(lines: list[str], header: list[str], places: list[int]) -> str:
     """Find the first cell that is no finite number; rows count from 1 as in editors."""
     for number, cells in enumerate(csv.reader(lines[1:]), start=2):
         for place in places if cells else []:
             cell = cells[place].strip() if place < len(cells) else ""
             try:
-                finite = bool(np.isfinite(float(cell)))
+                finite = "_" not in cell and bool(np.isfinite(float(cell)))
             except ValueError:
                 finite = False
             if not finite:
@@ -350,23 +473,12 @@ def _sampling_interval(file: Path, time: FloatArray, tolerance: float) -> float:
     return dt
 
 
-def _seconds(file: Path, unit: str) -> float:
-    """How many seconds a unit of time is."""
-    if unit == "s":
-        return 1.0
-    import pint  # late: a fifth of a second, and rarely needed
-
-    try:
-        return float(pint.Quantity(1, unit).to("s").magnitude)
-    except (pint.UndefinedUnitError, pint.DimensionalityError) as error:
-        raise InputError(
-            f"{file}: time: unit: {error}; expected a unit of time such as s or ms"
-        ) from error
-
-
 def _name(channel: Mapping[str, str]) -> str:
     """Name of a channel: as given, or its column without the unit behind it."""
     if "name" in channel:
         return channel["name"]
-    suffix = "_" + channel["unit"].replace("/", "_per_")
-    return channel["column"].removesuffix(suffix).replace("_", " ")
+    suffix = "_" + plain(channel["unit"]).replace("/", "_per_")
+    column = channel["column"]
+    if plain(column).endswith(suffix):
+        column = column[: -len(suffix)]
+    return column.replace("_", " ")

@@ -15,6 +15,16 @@ class InputError(ValueError):
     """
 
 
+LONG = 80
+"""Letters of what a user gave that a message repeats."""
+
+
+def short(value: object) -> str:
+    """Write what a user gave, shortened where it is long, in one line."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= LONG else f"{text[: LONG - 3]}..."
+
+
 def nearest(name: object, known: Iterable[object]) -> str:
     """End a message with the nearest valid name, or with all of them.
 
@@ -28,7 +38,8 @@ def nearest(name: object, known: Iterable[object]) -> str:
     Returns
     -------
     str
-        ``did you mean 'x'?``, or ``expected one of a, b, c`` where nothing is near.
+        ``did you mean 'x'?``, or ``expected one of a, b, c`` where nothing is near, or
+        ``expected none`` where nothing is valid.
     """
     names = [str(item) for item in known]
     # Leading zeros are what people forget: sine-40hz for sine-040hz.
@@ -36,6 +47,8 @@ def nearest(name: object, known: Iterable[object]) -> str:
     close = difflib.get_close_matches(_without_leading_zeros(str(name)), plain, n=1)
     if close:
         return f"did you mean {plain[close[0]]!r}?"
+    if not names:
+        return "expected none, as there is none"
     return "expected one of " + ", ".join(names)
 
 

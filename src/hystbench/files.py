@@ -1,53 +1,69 @@
-"""Writing files whole or not at all."""
+"""Writing files whole or not at all, and over no file of somebody else's."""
 
 from __future__ import annotations
 
+import contextlib
 import csv
+import errno
 import hashlib
 import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from hystbench.errors import InputError
+from hystbench.interrupt import held
+from hystbench.written import (
+    ENTRIES,
+    TEMPORARY,
+    check_free,
+    check_writable,
+    forget,
+    is_ours,
+    will_write,
+)
 
 
-def check_writable(folder: str | Path) -> None:
-    """Refuse a folder that could not be made or written into, before work is paid.
+@contextmanager
+def atomic_path(path: str | Path, *, edit: bool = False) -> Iterator[Path]:
+    """Give a temporary path that takes its place at ``path`` on success.
+
+    A failure inside the block leaves what was at ``path`` as it was.
+
+    Parameters
+    ----------
+    path : str or Path
+    edit : bool
+        Whether to change a file that somebody else wrote, as an editor does; it stays
+        theirs.
 
     Raises
     ------
     InputError
-        If a file stands where it or a folder above it has to be, or writing is not
-        allowed.
-    """
-    place = Path(folder).absolute()
-    while not place.exists():
-        place = place.parent
-    if not place.is_dir():
-        raise InputError(f"{place}: a file; expected a folder to write into")
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise InputError(f"{place}: not writable; expected a folder to write into")
-
-
-@contextmanager
-def atomic_path(path: str | Path) -> Iterator[Path]:
-    """Give a temporary path beside ``path`` that takes its place on success.
-
-    A failure inside the block leaves what was at ``path`` as it was.
+        If something that hystbench did not write stands there, or an input of the
+        command; unless it is to be edited.
+    OSError
+        If the disk does not take it; with the name ``path``.
     """
     final = Path(path)
+    if not edit:
+        check_free(final)
     final.parent.mkdir(parents=True, exist_ok=True)
-    temporary = final.with_name(f".{final.stem}.{os.getpid()}{final.suffix}")
+    # Where the file will stand, so that to put it there is to rename it.
+    with _named({}, final):
+        place = Path(tempfile.mkdtemp(prefix=TEMPORARY, dir=final.parent))
     try:
-        yield temporary
-        temporary.replace(final)
+        with _named({place: final.parent}, final):
+            yield place / final.name
+            if not edit:
+                check_free(final)
+                will_write(final, place / final.name)
+            (place / final.name).replace(final)
     finally:
-        temporary.unlink(missing_ok=True)
+        shutil.rmtree(place, ignore_errors=True)
 
 
 @contextmanager
@@ -61,59 +77,112 @@ def whole_folder(folder: str | Path, ours: Sequence[str]) -> Iterator[Path]:
     ----------
     folder : str or Path
     ours : sequence of str
-        Patterns, relative to the folder, of files that an earlier result may have left:
-        those that the new one does not have go. Any other file stays.
+        Files, relative to the folder, that may be written, as names or patterns. What
+        an earlier run wrote of them and this one does not goes, unless somebody changed
+        it. Any other file stays.
 
     Raises
     ------
     InputError
-        If something else than a file, or than a folder, stands where one has to go.
+        If something that hystbench did not write stands where a file has to go, or an
+        input of the command; of plain names before the block is run.
+    OSError
+        If the disk does not take it; with the name of the file in ``folder``.
     """
     final = Path(folder).resolve()
+    check_writable(final)
+    for name in ours:
+        if "*" not in name:
+            check_free(Path(folder, name))
     parent = final if final.is_dir() else final.parent
     parent.mkdir(parents=True, exist_ok=True)
     # Where the files will stand, so that to put them there is to rename them.
-    temporary = Path(tempfile.mkdtemp(prefix=f".{final.name}.", dir=parent))
+    with _named({}, Path(folder)):
+        temporary = Path(tempfile.mkdtemp(prefix=TEMPORARY, dir=parent))
     new = temporary / "new"
     try:
-        new.mkdir()
-        yield new
-        if final.exists():
-            _take_places(new, final, temporary / "old", ours)
-        else:
-            new.rename(final)
+        with _named({new: Path(folder)}, Path(folder)):
+            new.mkdir()
+            yield new
+            if final.exists():
+                _take_places(new, final, temporary / "old", ours)
+                shutil.rmtree(temporary / "old", ignore_errors=True)
+            else:
+                new.rename(final)
     finally:
-        shutil.rmtree(temporary)
+        shutil.rmtree(new, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            temporary.rmdir()  # not where old files could not be put back
 
 
 def _take_places(new: Path, final: Path, old: Path, ours: Sequence[str]) -> None:
     """Move the files of a new folder into one that exists, all or none."""
-    coming = [item.relative_to(new) for item in new.rglob("*") if item.is_file()]
+    coming = [
+        item.relative_to(new)
+        for item in sorted(new.rglob("*"))
+        if item.is_file() and ENTRIES not in item.relative_to(new).parts
+    ]
     for name in coming:
-        if (final / name).is_dir():
-            raise InputError(f"{final / name}: a folder; expected a file or nothing")
-        if (final / name).parent.is_file():
-            raise InputError(f"{final / name.parent}: a file; expected a folder")
+        check_free(final / name)
     there = {item for pattern in ours for item in final.glob(pattern)}
-    there |= {final / name for name in coming}
-    going = sorted(item.relative_to(final) for item in there if item.is_file())
+    there -= {final / name for name in coming}
+    stale = sorted(item.relative_to(final) for item in there if is_ours(item))
+    going = [name for name in coming if (final / name).exists()] + stale
     moves = [(final / name, old / name) for name in going]
     moves += [(new / name, final / name) for name in coming]
     done: list[tuple[Path, Path]] = []
+    with held():
+        try:
+            for name in coming:
+                will_write(final / name, new / name)
+            for source, target in moves:
+                target.parent.mkdir(parents=True, exist_ok=True)
+                done.append((source, target))
+                source.rename(target)
+        except BaseException:
+            for source, target in reversed(done):
+                if not source.exists():
+                    target.rename(source)
+            shutil.rmtree(old, ignore_errors=True)
+            raise
+        for name in stale:
+            forget(final / name)
+
+
+@contextmanager
+def _named(places: Mapping[Path, Path], whole: Path) -> Iterator[None]:
+    """Let an error of the disk name the file that was asked for, not where it grew.
+
+    Parameters
+    ----------
+    places : mapping of Path to Path
+        Temporary folders, and the folders that they stand for.
+    whole : Path
+        What is named where the error names nothing.
+    """
     try:
-        for source, target in moves:
-            target.parent.mkdir(parents=True, exist_ok=True)
-            source.rename(target)
-            done.append((source, target))
-    except BaseException:
-        for source, target in reversed(done):
-            target.rename(source)
-        raise
+        yield
+    except OSError as error:
+        if isinstance(error, BrokenPipeError):
+            raise  # of what is printed
+        name = None if error.filename is None else Path(os.fsdecode(error.filename))
+        for place, final in places.items():
+            if name is not None and name.is_relative_to(place):
+                name = final / name.relative_to(place)
+        if name is None or any(_is_hidden(part) for part in name.parts):
+            name = whole
+        # NumPy tells in words alone that less was written than was asked for.
+        told = error.strerror or str(error)
+        raise OSError(error.errno or errno.EIO, told, str(name)) from error
 
 
-def write_text(path: str | Path, text: str) -> None:
-    """Write a text file whole or not at all."""
-    with atomic_path(path) as temporary:
+def _is_hidden(part: str) -> bool:
+    return part == ENTRIES or part.startswith(TEMPORARY)
+
+
+def write_text(path: str | Path, text: str, *, edit: bool = False) -> None:
+    """Write a text file whole or not at all; ``edit`` as for :func:`atomic_path`."""
+    with atomic_path(path, edit=edit) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
@@ -141,11 +210,14 @@ def write_csv(
 
 
 def digest(folder: str | Path, pattern: str = "*") -> str:
-    """SHA-256 of all files below a folder that match: their names and contents."""
+    """SHA-256 of all files below a folder that match: their names and contents.
+
+    What hystbench notes of the files that it wrote is none of them.
+    """
     whole = hashlib.sha256()
     folder = Path(folder)
     for file in sorted(folder.rglob(pattern)):
-        if file.is_file():
+        if file.is_file() and ENTRIES not in file.relative_to(folder).parts:
             content = file.read_bytes()
             name = file.relative_to(folder).as_posix()
             whole.update(f"{name} {len(content)}\n".encode() + content)

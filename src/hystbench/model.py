@@ -20,10 +20,11 @@ from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.wrapping import HystereticBlock, Wrapped, WrappingBlock
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, nearest, short
 from hystbench.files import write_text
 from hystbench.record import Channel, FloatArray, Record
-from hystbench.schema import load_yaml
+from hystbench.units import check_known
+from hystbench.yaml_files import load_yaml
 
 Source = Literal["published", "derived", "calibrated"]
 SOURCES: tuple[str, ...] = get_args(Source)
@@ -51,7 +52,7 @@ class Provenance:
                 f"source: {self.source!r} is unknown; {nearest(self.source, SOURCES)}"
             )
         if not isinstance(self.note, str) or not self.note.strip():
-            raise InputError(f"note: expected a sentence, got {self.note!r}")
+            raise InputError(f"note: expected a sentence, got {short(self.note)}")
 
 
 @dataclass(frozen=True)
@@ -335,7 +336,7 @@ def load_model(path: str | Path) -> Model:
     InputError
         If there is no such file, or it does not hold a model.
     """
-    return Model.from_mapping(load_yaml(path), str(path))
+    return Model.from_mapping(load_yaml(path, "a model file"), str(path))
 
 
 REQUIRED = ("name", "input", "output", "chain")
@@ -346,15 +347,15 @@ def _read(content: object) -> dict[str, Any]:
     content = _mapping(content, "", required=REQUIRED, known=KEYS)
     name = content["name"]
     if not isinstance(name, str):
-        raise InputError(f"name: expected a word, got {name!r}")
+        raise InputError(f"name: expected a word, got {short(name)}")
     chain = content["chain"]
     if not isinstance(chain, list):
-        raise InputError(f"chain: expected a list of blocks, got {chain!r}")
+        raise InputError(f"chain: expected a list of blocks, got {short(chain)}")
     free = content.get("free", [])
     if not isinstance(free, list | dict):
         raise InputError(
             "free: expected a list of parameters, or a mapping of each to its "
-            f"tolerance, got {free!r}"
+            f"tolerance, got {short(free)}"
         )
     shares = free if isinstance(free, dict) else {}
     provenance = _mapping(content.get("provenance", {}), "provenance: ")
@@ -379,7 +380,7 @@ def _mapping(
     known: tuple[str, ...] = (),
 ) -> dict[str, Any]:
     if not isinstance(content, dict):
-        raise InputError(f"{place}expected a mapping of keys, got {content!r}")
+        raise InputError(f"{place}expected a mapping of keys, got {short(content)}")
     for key in content:
         if known and key not in known:
             raise InputError(f"{place}unknown key {key!r}; {nearest(key, known)}")
@@ -394,7 +395,10 @@ def _channel(content: object, place: str) -> Channel:
     content = _mapping(content, place, required=keys, known=keys)
     for key in keys:
         if not isinstance(content[key], str):
-            raise InputError(f"{place}{key}: expected a word, got {content[key]!r}")
+            raise InputError(
+                f"{place}{key}: expected a word, got {short(content[key])}"
+            )
+    check_known(f"{place}unit", content["unit"])
     return Channel(**content)
 
 
@@ -411,16 +415,26 @@ def _place(position: int, name: str) -> str:
     return f"chain: block {position + 1} ({name}): "
 
 
+_BLOCK = "one block and its parameters, such as '- gain: {value: 2.0}'"
+
+
 def _block(content: object, position: int) -> Block:
     where = f"chain: block {position + 1}: "
-    if not isinstance(content, dict) or len(content) != 1:
+    known = registry()
+    if isinstance(content, str):
+        content = {content: None}  # a block without parameters may stand as a word
+    if not isinstance(content, dict) or not content:
+        raise InputError(f"{where}{short(content)}; expected {_BLOCK}")
+    first = next(iter(content))
+    if first not in known:
+        near = nearest(first, known)
+        raise InputError(f"{where}unknown block {short(first)}; {near}")
+    if len(content) > 1:
         raise InputError(
-            f"{where}expected one block and its parameters, got {content!r}"
+            f"{where}{len(content)} keys ({', '.join(map(str, content))}); expected "
+            f"{_BLOCK}: its parameters deeper than its name"
         )
     ((name, values),) = content.items()
-    known = registry()
-    if name not in known:
-        raise InputError(f"{where}unknown block {name!r}; {nearest(name, known)}")
     place = _place(position, name)
     values = _mapping({} if values is None else values, place)
     try:

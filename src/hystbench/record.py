@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hystbench.errors import InputError
 from hystbench.files import atomic_path
+from hystbench.units import plain
 
 FloatArray = NDArray[np.float64]
 Origin = Literal["twin", "measured"]
@@ -25,10 +26,19 @@ class Channel:
     name: str
     unit: str
 
+    def __post_init__(self) -> None:
+        """Keep a unit in its one spelling."""
+        object.__setattr__(self, "unit", plain(self.unit))
+
     @property
     def label(self) -> str:
         """Axis label, such as ``displacement (um)``."""
         return f"{self.name} ({self.unit})"
+
+
+def column_name(name: str, unit: str) -> str:
+    """Name a column by its channel and unit, such as ``coil_current_A``."""
+    return f"{name}_{unit}".replace("/", "_per_").replace(" ", "_")
 
 
 @dataclass(frozen=True, repr=False)

@@ -4,38 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from hystbench.errors import InputError, nearest
-
-
-def load_yaml(path: str | Path) -> Any:
-    """Read a YAML file safely.
-
-    Raises
-    ------
-    InputError
-        If there is no such file or it is not YAML.
-    """
-    import yaml  # late: kept out of jobs that read no YAML
-
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; expected a YAML file") from error
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: expected text in UTF-8 ({error.reason})") from error
-    try:
-        # The same in C, where PyYAML was built with it, takes a tenth of the time.
-        if yaml.__with_libyaml__:
-            return yaml.load(text, yaml.CSafeLoader)
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        where = f"line {mark.line + 1}: " if mark else ""
-        problem = getattr(error, "problem", None) or "not YAML"
-        raise InputError(f"{path}: {where}{problem}") from error
+from hystbench.errors import InputError, nearest, short
 
 
 def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) -> None:
@@ -79,7 +50,7 @@ def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) ->
         raise InputError(f"{where}: unknown key {unknown!r}; {nearest(unknown, known)}")
     if rule == "enum":
         near = nearest(value, error.validator_value)
-        raise InputError(f"{where}: {value!r} is unknown; {near}")
+        raise InputError(f"{where}: {short(value)} is unknown; {near}")
     if rule == "required":
         missing = next(key for key in error.validator_value if key not in value)
         raise InputError(f"{where}: expected the key {missing!r}")
@@ -88,7 +59,7 @@ def check_against_schema(content: Any, schema: Mapping[str, Any], place: str) ->
         one = error.validator_value
         types = [one] if isinstance(one, str) else one
         expected = " or ".join(_TYPES.get(each, each) for each in types)
-    raise InputError(f"{where}: {value!r}; expected {expected}{_hint(value)}")
+    raise InputError(f"{where}: {short(value)}; expected {expected}{_hint(value)}")
 
 
 _TYPES = {
@@ -118,9 +89,13 @@ def _is_finite_number(_: object, value: object) -> bool:
 
 
 def _hint(value: object) -> str:
-    """Explain why YAML read a number as a word."""
-    try:
-        float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+    """Explain why a number was read as a word."""
+    if not isinstance(value, str):
         return ""
-    return " (YAML wants 1.0e-2 for 1e-2)" if isinstance(value, str) else ""
+    try:
+        float(value)
+    except ValueError:
+        return ""
+    if "e" in value.lower():
+        return " (YAML wants 1.0e-2 for 1e-2)"
+    return " without quotes"

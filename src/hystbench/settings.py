@@ -13,21 +13,24 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.dataset import Dataset, load_dataset
+from hystbench.doubts import doubts
 from hystbench.envelope import fewest_samples
 from hystbench.errors import InputError, nearest
 from hystbench.published import load
 from hystbench.published.split import CALIBRATION_SIGNALS
-from hystbench.schema import check_against_schema, load_yaml
+from hystbench.schema import check_against_schema
 from hystbench.signals import Signal, make_signal
+from hystbench.units import plain
+from hystbench.yaml_files import load_yaml
 
 #: The four LMS filters, in the order of the paper's tables.
 FILTER_NAMES = ("gpo", "backlash", "volterra", "delayed")
 
 _KEYS_OF_FILTER = {
-    "gpo": ("input_before", "initial_state", "operator_form"),
-    "backlash": ("input_before", "initial_state", "backlash_structure"),
-    "volterra": ("input_before",),
-    "delayed": ("input_before",),
+    "gpo": ("input_before", "constant_tap", "initial_state", "operator_form"),
+    "backlash": ("input_before", "constant_tap", "initial_state", "backlash_structure"),
+    "volterra": ("input_before", "constant_tap"),
+    "delayed": ("input_before", "constant_tap"),
 }
 
 
@@ -41,10 +44,13 @@ class Settings:
         The content, as the schema has it.
     dataset : Dataset or None
         The measured dataset, or None where the twin is the source.
+    warnings : tuple of str
+        What of its records is hardly meant, one line each.
     """
 
     config: Mapping[str, Any]
     dataset: Dataset | None
+    warnings: tuple[str, ...] = ()
 
     @property
     def results(self) -> str:
@@ -219,17 +225,63 @@ class Settings:
         return self._twin_job(sweep["signal"]) | {
             "filters": {model: self.filter_job(model)},
             "order_sweep": sweep,
+            "experiments": self._experiments,
+            **self.compare_job,
         }
 
     @property
+    def _experiments(self) -> dict[str, Any]:
+        """Design of the experiments in which claims are judged on each twin."""
+        keys = ("members", "step_factors", "zero_factors", "noise_factors")
+        return {key: self.config["pressure"][key] for key in keys}
+
+    @property
     def twins_job(self) -> dict[str, Any]:
-        """Settings of the claims on all twins as configured."""
-        return self._twin_job()
+        """Settings of the claims on all twins."""
+        return self._twin_job() | {"experiments": self._experiments}
+
+    @property
+    def random_sum_job(self) -> dict[str, Any]:
+        """Settings of the draws of the random sum."""
+        section = self.config["random_sum"]
+        return {
+            **section,
+            **self.signal_job(section["signal"]),
+            "measure": self.measure_job,
+            "filters": {name: self.filter_job(name) for name in self.filters},
+        }
+
+    @property
+    def step_sweep_job(self) -> dict[str, Any]:
+        """Settings of the sweep of step sizes."""
+        return {
+            "filters": {name: self.filter_job(name) for name in self.filters},
+            "sweep": self.config["step_sweep"],
+        }
+
+    @property
+    def constants_job(self) -> dict[str, Any]:
+        """Settings of the ranking with other constants."""
+        section = self.config["pressure"]
+        return {
+            "signals": {name: self.signal_job(name) for name in self.signals},
+            "measure": self.measure_job,
+            "filters": {name: self.filter_job(name) for name in self.filters},
+            **{key: section[key] for key in ("zero_errors", "constant_taps")},
+            **self.compare_job,
+        }
+
+    @property
+    def hypotheses_job(self) -> dict[str, Any]:
+        """Settings of what could explain the errors that stay far off."""
+        keys = ("signals", "measure", "filters")
+        return {key: self.constants_job[key] for key in keys}
 
     @property
     def pressure_job(self) -> dict[str, Any]:
         """Settings of the claims under pressure."""
-        design = {k: v for k, v in self.config["pressure"].items() if k != "twins"}
+        keys = ("seeds", "step_factors", "step_choices")
+        design = {key: self.config["pressure"][key] for key in keys}
         return self.ensemble_job | self.compare_job | {"design": design}
 
     @property
@@ -319,6 +371,18 @@ class Settings:
             "filters": {name: self.filter_job(name) for name in self.filters},
         }
 
+    @property
+    def page_job(self) -> dict[str, Any]:
+        """Settings of the front page: what its words depend on."""
+        factor = self.config["order_sweep"]["convergence_factor"]
+        return {
+            "dataset": None if self.dataset is None else self.dataset.name,
+            "order_sweep": {
+                "signal": self.order_sweep_signal,
+                "convergence_factor": factor,
+            },
+        }
+
     def filter_job(self, model: str) -> dict[str, Any]:
         """Give the settings on which one filter's run depends."""
         filters = self.config["filters"]
@@ -367,6 +431,7 @@ def read_settings(
         *(("signals", name) for name in config["signals"]),
         ("identification: signal", config["identification"]["signal"]),
         ("order_sweep: signal", config["order_sweep"]["signal"]),
+        ("random_sum: signal", config["random_sum"]["signal"]),
         *(("rdgpi: fit_signals", name) for name in config["rdgpi"]["fit_signals"]),
     ]
     _check_limits(place, config)
@@ -391,13 +456,14 @@ def read_settings(
     dataset = load_dataset(config["source"])
     known = [*dataset.record_files, *excitations]
     _check_names(place, named[: len(config["signals"])], known)
-    for name in dataset.record_files:
+    records = [dataset.read(name) for name in dataset.record_files]
+    for record in records:
         _check_length(
-            str(dataset.record_files[name]),
-            len(dataset.read(name)),
+            str(dataset.record_files[record.name]),
+            len(record),
             config["filters"]["order"],
         )
-    return Settings(config, dataset)
+    return Settings(config, dataset, doubts(dataset, records))
 
 
 def _gap_signals(place: str, config: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -474,7 +540,7 @@ def _check_twin(place: str, config: Mapping[str, Any]) -> None:
 
     for file in _model_files(config["twin"]["model"]):
         unit = load_model(file).input.unit
-        if unit != config["excitation"]["unit"]:
+        if unit != plain(config["excitation"]["unit"]):
             raise InputError(
                 f"{place}: excitation: unit: {config['excitation']['unit']!r}; "
                 f"expected {unit!r}, the input of {file}"

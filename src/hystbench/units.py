@@ -1,10 +1,80 @@
-"""Units as files spell them: whether two are the same one."""
+"""Units as files spell them: known ones, one spelling each, whether two are the same.
+
+Messages and files keep the user's unit in letters that any program reads: ``um``. What
+is shown, axes and pages, is written by :func:`hystbench.figures.style.unit_text`.
+"""
 
 from __future__ import annotations
 
 import re
+from contextlib import suppress
+from typing import Any
 
-from hystbench.errors import InputError
+from hystbench.errors import InputError, nearest, short
+
+PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "": 1.0, "k": 1e3, "M": 1e6, "G": 1e9}
+"""SI prefixes by a thousand; ``u`` is micro."""
+SYMBOLS = ("m", "s", "A", "V", "N", "T", "W", "J", "K", "C", "Hz", "Pa", "rad", "g")
+"""Symbols that carry prefixes and need no library to be known."""
+NONE = ("-", "1", "")
+"""What stands for a number without a unit."""
+LONGEST = 40
+"""Letters of a unit."""
+
+_SIMPLE = re.compile(f"([{''.join(PREFIXES)}]?)({'|'.join(SYMBOLS)})")
+_MICRO = re.compile("[\u00b5\u03bc]")  # the sign, and the Greek letter
+_EXPONENT = r"(?:\*\*|\^)\s*[-+]?(?:\d(?:\.\d)?|\(\s*[-+]?\d(?:[./]\d)?\s*\))"
+_WORDS = (
+    *("ampere", "amp", "volt", "newton", "meter", "metre", "millimeter", "micrometer"),
+    *("second", "millisecond", "minute", "degree", "percent", "ohm", "pascal", "tesla"),
+    *("millivolt", "milliampere", "kilonewton", "radian", "hertz", "kelvin", "gauss"),
+)
+
+
+def plain(unit: str) -> str:
+    """Write a unit in its one spelling: ``um`` for ``µm`` with either letter mu."""
+    return _MICRO.sub("u", unit.strip())
+
+
+def check_known(place: str, unit: str) -> None:
+    """Refuse what is no unit.
+
+    Parameters
+    ----------
+    place : str
+        Where it stands, for the message.
+    unit : str
+
+    Raises
+    ------
+    InputError
+        With the nearest unit, and how to write a number without one.
+    """
+    if unit.strip() in NONE or _SIMPLE.fullmatch(plain(unit)):
+        return
+    _parsed(place, unit)
+
+
+def seconds(place: str, unit: str) -> float:
+    """Give how many seconds a unit of time is.
+
+    Raises
+    ------
+    InputError
+        If it is no unit of time.
+    """
+    unit = plain(unit)
+    if unit == "s":
+        return 1.0
+    import pint  # late: a fifth of a second, and rarely needed
+
+    parsed = _parsed(place, unit)
+    try:
+        return float(pint.Quantity(1, parsed).to("s").magnitude)
+    except pint.DimensionalityError:
+        raise InputError(
+            f"{place}: {unit!r} is no time; expected a unit of time such as s or ms"
+        ) from None
 
 
 def check_same_unit(place: str, ours: str, whose: str, theirs: str) -> None:
@@ -26,21 +96,94 @@ def check_same_unit(place: str, ours: str, whose: str, theirs: str) -> None:
     InputError
         If they are of different dimensions, one is no unit, or a factor lies between.
     """
-    if ours == theirs:
+    if plain(ours) == plain(theirs):
         return
     import pint  # late: a fifth of a second, and rarely needed
 
     where = f"{place} {ours!r}, but {whose} has {theirs!r}"
+    given, wanted = _parsed(where, theirs), _parsed(where, ours)
     try:
-        # Files write cm2 where pint wants cm**2.
-        given, wanted = (
-            re.sub(r"(?<=[^\W\d_])(?=\d)", "**", unit) for unit in (theirs, ours)
-        )
         factor = float(pint.Quantity(1, given).to(wanted).magnitude)
-    except (pint.UndefinedUnitError, pint.DimensionalityError) as error:
+    except pint.DimensionalityError as error:
         raise InputError(f"{where}: {error}; expected the same unit") from None
-    if abs(factor - 1) > 1e-12:
+    except pint.OffsetUnitCalculusError:
+        factor = float("nan")
+    if not abs(factor - 1) <= 1e-12:
         raise InputError(
             f"{where}; nothing is converted silently: multiply the record's column by "
             f"{factor:g} and say {ours!r} in its dataset.yaml"
         )
+
+
+def prefixed(unit: str, factor: float) -> str | None:
+    """Give the unit whose prefix is smaller by a power of a thousand, if there is one.
+
+    Parameters
+    ----------
+    unit : str
+        The unit that is said; its first symbol carries the prefix.
+    factor : float
+        By how much numbers look too large: 1000 makes ``mA`` of ``A``.
+    """
+    found = re.match(_SIMPLE.pattern + r"(?![A-Za-z])", plain(unit))
+    if found is None:
+        return None
+    prefix, symbol = found.groups()
+    for name, size in PREFIXES.items():
+        if abs(size * factor / PREFIXES[prefix] - 1) < 1e-6:
+            return f"{name}{symbol}{plain(unit)[found.end() :]}"
+    return None
+
+
+def named_otherwise(column: str, unit: str) -> str | None:
+    """Give the unit at the end of a column's name where another one is said.
+
+    Prefixes alone are looked at: ``time_ms`` beside ``s``, ``i (mA)`` beside ``A``.
+    """
+    said = _SIMPLE.fullmatch(plain(unit))
+    last = re.search(r"[\s_/(\[]([^\W\d_]+)[)\]]?$", plain(column))
+    named = _SIMPLE.fullmatch(last[1]) if last else None
+    if said is None or named is None or said[2] != named[2] or said[1] == named[1]:
+        return None
+    return named[0]
+
+
+def _parsed(place: str, unit: str) -> Any:
+    """Read a unit with pint."""
+    import pint  # late: a fifth of a second, and rarely needed
+
+    text = plain(unit)
+    if text in NONE:
+        text = ""
+    registry: Any = pint.application_registry
+    # A tower of exponents would be worked out for ever.
+    bare = re.sub(_EXPONENT, "|", text)
+    tower = re.search(r"\|\s*\||\*\*|\^|(?<!\w)[02-9]", bare)
+    # Files write cm2 where pint wants cm**2; it knows mmH2O as it stands.
+    spelt = re.sub(r"(?<=[^\W\d_])(?=\d)", "**", text)
+    for each in () if tower or len(text) > LONGEST else dict.fromkeys((text, spelt)):
+        # What pint raises for a text that is no unit has no common base.
+        with suppress(Exception):
+            return registry.parse_units(each)
+    raise InputError(
+        f"{place}: {short(unit)} is no unit; {_nearest_unit(unit)} "
+        "('-' stands for a number without a unit)"
+    )
+
+
+def _nearest_unit(unit: str) -> str:
+    """Name the unit that may be meant, or say where they are listed."""
+    import pint
+
+    said = plain(unit)
+    symbols = [f"{prefix}{symbol}" for symbol in SYMBOLS for prefix in PREFIXES]
+    rare = list(pint.application_registry)
+    for name in (*symbols, *_WORDS, *rare):
+        if name.lower() == said.lower():
+            return f"did you mean {name!r}?"
+    # What is spelt out is near to words, whatever symbols it shares letters with.
+    for known in (_WORDS, rare) if len(said) > 3 else (symbols,):
+        told = nearest(said.lower(), known)
+        if told.startswith("did"):
+            return told
+    return "expected one such as V, mA, um or N/m"

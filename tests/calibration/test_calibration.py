@@ -4,23 +4,41 @@ import dataclasses
 
 import numpy as np
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hystbench.adaptive import make_filter
 from hystbench.calibration import fit as fitting
 from hystbench.calibration.constraints import check_stroke, turns, violations
 from hystbench.calibration.crossvalidation import leave_one_out
 from hystbench.calibration.ensemble import equally_good
 from hystbench.calibration.fit import Fit, calibrate, descend, to_point, to_values
+from hystbench.calibration.found import values_of
 from hystbench.calibration.objective import Objective, error_residual
 from hystbench.calibration.targets import Target, targets
-from hystbench.calibration.twin import UNKNOWNS, make_twin, step_sizes, weights
+from hystbench.calibration.twin import (
+    STEP_NAMES,
+    UNKNOWNS,
+    make_twin,
+    step_sizes,
+    weights,
+)
 from hystbench.errors import InputError
+from hystbench.filters import MOST_CORRECTION
+from hystbench.model import load_model
 from hystbench.published.split import CALIBRATION_SIGNALS
-from hystbench.signals import Signal, chirp, sine
+from hystbench.settings import read_settings
+from hystbench.signals import Signal, chirp, make_signal, sine
+from tests.conftest import ROOT
 
-START = {item.name: item.start for item in UNKNOWNS}
-COMMON = {"order": 30, "input_before": 0.0, "amplitude": 0.632}
+START = {item.name: item.start for item in UNKNOWNS} | {"gpo step": 1.5}
+COMMON = {
+    "order": 30,
+    "input_before": 0.0,
+    "constant_tap": 0.0,
+    "amplitude": 0.632,
+}
 PLAYS = {**COMMON, "initial_state": "zero"}
 FILTERS = {
     "gpo": {**PLAYS, "operator_form": "eq12", "envelopes": "published"},
@@ -158,8 +176,61 @@ def test_a_step_size_alone_gives_the_same_residuals_as_the_whole():
     changed = {**START, "delayed step": 0.05}
     whole = problem.residuals(changed, aims)
     alone = problem.step_residuals(changed, aims, "delayed")
-    rows = [i * 4 + list(FILTERS).index("delayed") for i in range(len(aims))]
+    place = list(FILTERS).index("delayed")
+    # Errors by signal and filter, RMS by signal, margins by filter.
+    rows = [*(i * 4 + place for i in range(len(aims))), len(aims) * 5 + place]
     np.testing.assert_array_equal(whole[rows], alone)
+
+
+def test_a_filter_beyond_its_margin_costs_and_one_within_it_does_not():
+    problem = objective()
+    aims = targets_of(problem, START)
+    names = [aim.signal for aim in aims]
+    told = problem.corrections(START, "gpo", names)
+    mu = START["gpo step"]
+    # 2 mu max|H|^2, H of the filter itself.
+    for name, most in told.items():
+        adaptive = make_filter(
+            "gpo",
+            {**FILTERS["gpo"], "convergence_factor": {"mu": mu}},
+            problem._records[name],
+        )
+        line = np.r_[np.zeros(adaptive.history), problem._records[name].u]
+        rows, _ = adaptive.regressor(line, np.zeros(31))
+        assert most == pytest.approx(2 * mu * np.max(np.sum(rows**2, axis=1)))
+    at = mu * MOST_CORRECTION / max(told.values())
+    margins = slice(len(aims) * 5, len(aims) * 5 + 4)
+    for factor, free in ((0.999, True), (1.01, False)):
+        values = {**START, "gpo step": factor * at}
+        residuals = problem.residuals(values, aims)[margins]
+        assert (residuals[0] == 0) == free
+        assert residuals[1:] == pytest.approx(0)
+        excesses = fitting.margin_excesses(problem, aims, values)
+        assert (excesses["stability margin of gpo"] <= 0) == free
+
+
+def test_the_committed_twin_keeps_the_margin_on_every_calibration_signal():
+    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    job = read_settings(
+        config, ROOT / "workflow/schemas/config.schema.yaml"
+    ).calibration_job
+    signals = {
+        name: make_signal(name, **job["signals"][name]) for name in CALIBRATION_SIGNALS
+    }
+    problem = Objective(signals, job["filters"], job["seed"])
+    values = values_of(load_model(ROOT / "src/hystbench/plants/gma.yaml"))
+    steps = config["filters"]["convergence_factor"]
+    for model, names in STEP_NAMES.items():
+        values |= {unknown: steps[model][key] for key, unknown in names.items()}
+    values["input zero"] = config["twin"]["input_zero_error"]
+    values["input noise"] = config["twin"]["input_noise"]
+    problem.cells(values, signals)
+    for model in STEP_NAMES:
+        for name, most in problem.corrections(values, model, signals).items():
+            assert most <= 1.7 + 1e-3, (model, name)
+    # None of what the twin is made of stands at an end of what the search allows.
+    places = dict(zip([item.name for item in UNKNOWNS], to_point(values), strict=True))
+    assert {name for name, place in places.items() if not 0.01 < place < 0.99} == set()
 
 
 def test_descent_finds_a_twin_that_made_the_targets():

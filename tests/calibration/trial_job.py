@@ -8,7 +8,7 @@ from typing import Any
 import yaml
 
 from hystbench.settings import read_settings
-from tests.conftest import ROOT
+from tests.conftest import ROOT, shorten
 
 SIGNALS = ("sine-080hz", "sine-100hz")
 
@@ -16,7 +16,7 @@ SIGNALS = ("sine-080hz", "sine-100hz")
 def job(signals: tuple[str, ...] = SIGNALS, **budget: int) -> dict[str, Any]:
     """The project's own settings, cut down to seconds."""
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
-    config["excitation"]["duration_s"] = 0.2
+    shorten(config, 0.2)
     config["excitations"]["sine-001hz"] = {"sine": {"frequency_hz": 1, "duration_s": 1}}
     config["filters"]["order"] = 6
     small = {"starts": 1, "evaluations": 1, "last_evaluations": 1}

@@ -20,6 +20,7 @@ from hystbench.commands.hide import hide
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
 from hystbench.model import load_model
+from hystbench.written import ENTRIES
 
 ROOT = Path(__file__).parents[2]
 SPEC = CaseSpec(11, "single", ("thermal-drift",), "gpi", 20.0)
@@ -73,7 +74,11 @@ def test_the_folder_is_a_dataset_and_a_model(written, case):
 def test_the_truth_is_never_in_the_folder(written):
     truth = json.loads((written / "truth" / "case.json").read_text())
     assert truth["effects"][0]["name"] == "thermal-drift"
-    files = [file for file in (written / "case").rglob("*") if file.is_file()]
+    files = [
+        file
+        for file in (written / "case").rglob("*")
+        if file.is_file() and ENTRIES not in file.parts
+    ]
     names = {file.name for file in files}
     assert names == {"model.yaml", "dataset.yaml", *(n for n in names if ".csv" in n)}
     telling = [

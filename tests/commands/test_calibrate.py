@@ -17,14 +17,15 @@ from hystbench.commands.tried import tried
 from hystbench.files import read_json
 from hystbench.model import load_model
 from hystbench.settings import read_settings
-from tests.conftest import ROOT, run_hystbench
+from hystbench.written import ENTRIES
+from tests.conftest import ROOT, run_hystbench, shorten
 
 
 @pytest.fixture
 def job():
     """The project's own settings on short records of two signals."""
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
-    config["excitation"]["duration_s"] = 0.1
+    shorten(config, 0.1)
     config["calibration"] |= {"starts": 2, "twins": 2}
     schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
     job = read_settings(config, schema).calibration_job
@@ -91,7 +92,8 @@ def test_an_interrupted_run_ends_as_an_uninterrupted_one(
 
         patch.setattr(fitting, "tune_steps", interrupt)
         assert call(job, tmp_path / "parts").exit_code == 1
-    assert [file.name for file in (tmp_path / "parts").iterdir()] == ["state.json"]
+    there = {file.name for file in (tmp_path / "parts").iterdir()}
+    assert there == {"state.json", ENTRIES}
     del starts[:]
     parts = call(job, tmp_path / "parts")
     assert parts.exit_code == 0, parts.output

@@ -1,6 +1,9 @@
 """``hystbench simulate``: a model on a record, units, holds and refusals."""
 
 import csv
+import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -66,9 +69,6 @@ def test_a_record_of_a_dataset(tmp_path, model, write_dataset, extra, option, ho
     np.testing.assert_allclose(columns, expected, rtol=0, atol=1e-7)
     # The same by a dataset.yaml that is named.
     (folder / "dataset.yaml").rename(folder / "other.yaml")
-    missing = run_hystbench(*arguments)
-    assert missing.returncode == 2
-    assert "no dataset.yaml beside it; expected one, or --dataset" in missing.stderr
     again = run_hystbench(*arguments, "--dataset", folder / "other.yaml")
     assert again.returncode == 0, again.stderr
 
@@ -96,7 +96,7 @@ def test_archives_of_records_and_signals(tmp_path, model):
     [
         ("mA", "multiply the record's column by 0.001 and say 'A'"),
         ("V", "expected the same unit"),
-        ("furlongz", "expected the same unit"),
+        ("furlong", "expected the same unit"),
     ],
 )
 def test_units_that_differ_are_refused(tmp_path, model, write_dataset, unit, expected):
@@ -147,3 +147,55 @@ def test_what_cannot_be_run_is_one_line(tmp_path, model, write_dataset):
         assert expected in result.stderr, result.stderr
         assert result.stderr.count("\n") == 1
         assert not out.exists()
+
+
+OWN_INPUT = "time_s,current_A\n" + "".join(
+    f"{t:.9g},{u:.9g}\n" for t, u in zip(TIME, U, strict=True)
+)
+
+
+def test_an_input_of_ones_own_needs_no_dataset(tmp_path, model):
+    """Two columns are enough: time and the model's input, by its name and unit."""
+    (tmp_path / "own.csv").write_text(OWN_INPUT)
+    out = tmp_path / "out.csv"
+    result = run_hystbench("simulate", model, tmp_path / "own.csv", "--out", out)
+    assert result.returncode == 0, result.stderr
+    header, columns = table(out)
+    assert header == ["time_s", "current_A", "simulated_um"]
+    expected = load_model(model).simulate(U, 0.01)
+    np.testing.assert_allclose(columns[-1], expected, atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (OWN_INPUT.replace("current_A", "curent_A"), "no column 'current_A'"),
+        (OWN_INPUT.replace("current_A", "current_mA"), "no column 'current_A'"),
+        (OWN_INPUT.replace("time_s", "time"), "no column 'time_s'"),
+        (OWN_INPUT.replace("0.1,", "0.17,", 1), "increase"),
+        ("", "no column"),
+    ],
+)
+def test_an_input_that_does_not_fit_is_one_line(tmp_path, model, text, expected):
+    (tmp_path / "own.csv").write_text(text)
+    out = tmp_path / "out.csv"
+    result = run_hystbench("simulate", model, tmp_path / "own.csv", "--out", out)
+    assert result.returncode == 2
+    assert expected in result.stderr
+    assert result.stderr.count("\n") == 1
+    assert not out.exists()
+
+
+def test_a_model_file_is_used_from_python_in_two_lines(model):
+    code = (
+        "import sys, hystbench\n"
+        "assert 'numpy' not in sys.modules, 'the package alone is light'\n"
+        "from hystbench import load_model\n"
+        f"print(load_model({str(model)!r}).simulate([0.0, 1.0, 1.0], 0.01).tolist())\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+    # A lag of 20 ms behind a gain of 10, its input a ramp and then constant.
+    e = np.exp(-0.5)
+    ramp = 10 * (1 - (1 - e) / 0.5)
+    expected = [0.0, ramp, 10 - (10 - ramp) * e]
+    np.testing.assert_allclose(json.loads(done.stdout), expected, rtol=1e-9)

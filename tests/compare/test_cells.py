@@ -87,6 +87,8 @@ def test_cells_as_csv(tmp_path):
         "ours": "",
         "spread_low": "",
         "spread_high": "",
+        "draws_low": "",
+        "draws_high": "",
         "log10_ratio": "",
         "published_consistent": "yes",
         "status": "diverged at sample 7, mu = 1",

@@ -15,6 +15,7 @@ from hystbench.compare.evidence import (
     read_run,
 )
 from hystbench.errors import InputError
+from hystbench.written import ENTRIES
 
 from .made import sum_records
 
@@ -140,7 +141,8 @@ def test_two_runs_of_one_cell_are_refused(tmp_path):
 def test_order_sweep_is_read(tmp_path):
     path = tmp_path / "errors.csv"
     path.write_text(
-        "model,order,mse,status\ngpo,1,0.5,finite\ngpo,2,,diverged at sample 4\n",
+        "model,order,mse,status,rule\ngpo,1,0.5,finite,constant\n"
+        "gpo,2,,diverged at sample 4,constant\n",
         encoding="utf-8",
     )
     first, second = read_order_sweep(path)
@@ -150,10 +152,12 @@ def test_order_sweep_is_read(tmp_path):
 
 def test_bad_number_and_missing_column_are_named(tmp_path):
     path = tmp_path / "errors.csv"
-    path.write_text("model,order,mse,status\ngpo,1,x,finite\n", encoding="utf-8")
+    path.write_text(
+        "model,order,mse,status,rule\ngpo,1,x,finite,constant\n", encoding="utf-8"
+    )
     with pytest.raises(InputError, match="row 1: 'x' is not a number"):
         read_order_sweep(path)
-    path.write_text("model,ordr,mse,status\n", encoding="utf-8")
+    path.write_text("model,ordr,mse,status,rule\n", encoding="utf-8")
     with pytest.raises(InputError, match="no column 'order'; did you mean 'ordr'"):
         read_order_sweep(path)
 
@@ -197,10 +201,12 @@ def test_from_files_to_files(tmp_path):
         identified=write(tmp_path / "identified.json", IDENTIFIED),
         held_out=["sine-060hz"],
     )
-    assert {p.name for p in out.iterdir()} == {
+    assert {p.name for p in out.iterdir()} - {ENTRIES} == {
         "audit.csv",
         "cells.csv",
         "claims.csv",
+        "first.md",
+        "margins.csv",
         "off.csv",
         "summary.json",
         "tables",
@@ -208,7 +214,7 @@ def test_from_files_to_files(tmp_path):
         "verdict.md",
         "verdict.rst",
     }
-    assert len(list((out / "tables").iterdir())) == 12
+    assert len(list((out / "tables").glob("table-*"))) == 12
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     assert summary["cells"] == 1
     assert summary["rdgpi"]["cells"] == 1

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,15 +10,21 @@ import pytest
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all
 from hystbench.compare.claims.claim import Claim, Judgement
+from hystbench.compare.constants import Row
+from hystbench.compare.draws import Drawn
+from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import Evidence
 from hystbench.compare.summary import (
     claim_counts,
+    constant_tap_finding,
+    eq19_finding,
     nearness,
     orderings,
     rms_error_percent,
     summarise,
 )
 from hystbench.compare.twins import Holding
+from hystbench.published import FILTERS
 
 from .made import PAIRS, make_record, published_runs
 
@@ -33,6 +40,8 @@ def cell(signal, model, published, ours, status="finite", consistent="yes"):
         ours=ours,
         spread_low=None,
         spread_high=None,
+        draws_low=None,
+        draws_high=None,
         published_consistent=consistent,
         status=status,
     )
@@ -156,7 +165,7 @@ def test_rms_errors_of_the_halves_are_not_mixed():
 
 def test_reproduced_claims_are_counted_by_where_they_hold():
     def judgement(verdict, *holdings):
-        claim = Claim("x", "", "", "result", "", lambda _: None)
+        claim = Claim("x", "", "", "result", "", "held-out", lambda _: None)
         return Judgement(claim, verdict, "", "not in tables", "", holdings)
 
     gpi = Holding("gpi", 3, 3)
@@ -182,24 +191,119 @@ def test_re_and_table_4_do_not_count_among_the_filters():
 
 
 def test_claim_counts_by_hand():
-    def judgement(kind, verdict):
-        claim = Claim("x", "", "", kind, "", lambda _: None)
-        return Judgement(claim, verdict, "", "not in tables", "")
+    def judgement(kind, basis, verdict, alone=""):
+        claim = Claim("x", "", "", kind, "", basis, lambda _: None)
+        return Judgement(
+            claim, verdict, "", "not in tables", "", held_out_verdict=alone
+        )
 
+    refuted = "refuted by the paper"
     found = claim_counts(
         [
-            judgement("result", "reproduced"),
-            judgement("result", "not reproduced"),
-            judgement("theory", "not testable"),
-            judgement("theory", "reproduced"),
+            judgement("result", "held-out", "reproduced"),
+            judgement("result", "held-out", "not reproduced"),
+            judgement("result", "fitted", "reproduced", "not reproduced"),
+            judgement("result", "fitted", refuted, "reproduced"),
+            # A trend over few signals that is none over all.
+            judgement("result", "fitted", "not reproduced", "reproduced"),
+            judgement("condition", "built-in", "reproduced"),
+            judgement("theory", "", "not testable"),
         ]
     )
-    assert found["claims_total"] == 4
-    assert found["claims_reproduced"] == 2
-    assert found["claims_not_reproduced"] == 1
-    assert found["claims_not_testable"] == 1
-    assert found["claims_by_kind"]["theory"] == {
-        "reproduced": 1,
+    none = {
+        "reproduced": 0,
         "not_reproduced": 0,
-        "not_testable": 1,
+        "not_testable": 0,
+        "refuted_by_the_paper": 0,
     }
+    assert found["claims_total"] == 7
+    bases = found["claims_by_basis"]
+    assert bases["held-out"] == none | {"reproduced": 1, "not_reproduced": 1}
+    assert bases["fitted"] == none | {
+        "reproduced": 1,
+        "not_reproduced": 1,
+        "refuted_by_the_paper": 1,
+    }
+    assert bases["constrained"] == none
+    assert bases["built-in"] == none | {"reproduced": 1}
+    assert found["claims_without_basis"] == none | {"not_testable": 1}
+    # No number adds held-out results to others.
+    alone = [(each["basis"], each["verdict"]) for each in found["claims_on_held_out"]]
+    assert alone == [
+        ("held-out", "reproduced"),
+        ("held-out", "not reproduced"),
+        ("fitted", "not reproduced"),
+        ("fitted", "not reproduced"),
+    ]
+
+
+def test_the_rms_of_a_drawn_signal_counts_as_used():
+    errors = {"sine-010hz": -1.0, "sine-060hz": -7.0, "sine-120hz": 2.0}
+    held_out = {"sine-060hz", "sine-120hz"}
+    found = summarise(
+        compare_cells(Evidence()), (), held_out, errors, rms_used={"sine-060hz"}
+    )
+    assert found["calibrated"]["largest_rms_error_percent"] == 7
+    assert found["held_out"]["largest_rms_error_percent"] == 2
+
+
+def test_a_drawn_signal_has_the_median_and_the_range_of_its_draws():
+    signal = "multisine-random-0-100hz"
+    errors = {("gpo", "mse"): (0.3, 0.1, 0.2), ("gpo", "re"): (0.3, 0.1, math.inf)}
+    evidence = Evidence(
+        runs=published_runs(), drawn={signal: Drawn(errors, (4.0, 5.0, 7.0))}
+    )
+    cells = {
+        (cell.model, cell.metric): cell
+        for cell in compare_cells(evidence)
+        if cell.signal == signal and cell.table == 3
+    }
+    cell = cells["gpo", "mse"]
+    assert (cell.ours, cell.draws_low, cell.draws_high) == (0.2, 0.1, 0.3)
+    assert cells["gpo", "re"].draws_high == math.inf
+    assert cells["delayed", "mse"].draws_low is None
+
+
+def test_orderings_of_the_halves_are_apart():
+    # On one held-out sine all four errors in reverse: its six pairs, and no others.
+    sine = "sine-060hz"
+    ours = dict(zip(FILTERS, (4.0, 3.0, 2.0, 1.0), strict=True))
+    theirs = {p.model: p.mse.value for p in PAIRS if p.signal == sine}
+    ranked = sorted(FILTERS, key=lambda model: theirs[model])
+    worst = {
+        (sine, model): value
+        for model, value in zip(ranked, sorted(ours.values())[::-1], strict=True)
+    }
+    found = summarise(
+        compare_cells(Evidence(runs=published_runs(worst))), (), {sine, "sine-120hz"}
+    )
+    assert found["held_out"]["orderings"]["agree"] == 6
+    assert found["held_out"]["orderings"]["compared"] == 12
+    calibrated = found["calibrated"]["orderings"]
+    assert calibrated["agree"] == calibrated["compared"] == 66
+
+
+def test_the_two_findings_by_hand():
+    edge = Edge("sine-010hz", "gpo", 1.0, 1.0, 3.0, 2.0, 2.5, None)
+    far = replace(edge, signal="sine-020hz", edge=6.0)
+    found = eq19_finding([edge, far])
+    assert (found["edges"], found["inside"]) == (2, 1)
+    assert found["example"] == {
+        "signal": "sine-010hz",
+        "model": "gpo",
+        "edge": 2.5,
+        "bound": 3.0,
+    }
+    assert eq19_finding([]) is None
+    row = Row(
+        "gma", "gpi", 0.0, 0.0, True, 13, 12, "", (40, 48), (20, 30), 0, {"gpo": 1.0}
+    )
+    taps = [
+        replace(row, constant_tap=size, configured=False, gpo_first=first)
+        for size, first in ((0.1, 9), (1.0, 5))
+    ]
+    other = replace(taps[0], twin="other", constant_tap=2.0)
+    told = constant_tap_finding([row, *taps, other])
+    assert (told["without"]["gpo_first"], told["with"]["gpo_first"]) == (12, 5)
+    assert told["without"]["pairs_as_published"] == 60
+    assert constant_tap_finding([row]) is None

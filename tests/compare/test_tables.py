@@ -10,7 +10,12 @@ from hystbench.compare.cells import compare_cells
 from hystbench.compare.comparison import compare_evidence
 from hystbench.compare.evidence import Evidence
 from hystbench.compare.tables import Table, paper_table, paper_tables
-from hystbench.compare.verdict import sentences, verdict_markdown, verdict_rst
+from hystbench.compare.verdict import (
+    first_result,
+    sentences,
+    verdict_markdown,
+    verdict_rst,
+)
 
 from .made import make_run, published_runs
 
@@ -122,10 +127,9 @@ def comparison():
 
 
 def test_verdict_takes_its_numbers_from_the_summary(comparison):
-    summary = comparison.summary | {"within_factor_2": 0.25, "claims_reproduced": 777}
+    summary = comparison.summary | {"within_factor_2": 0.25}
     text = " ".join(sentences(summary))
     assert "25 % are within a factor of 2" in text
-    assert "777 are reproduced" in text
     assert "78 of 78 pairs" in text
     assert "typical MSE is off by a factor of 1.00" in text
 
@@ -136,7 +140,7 @@ def test_verdict_without_runs_says_so():
 
 
 def test_verdict_where_most_diverged_says_so(comparison):
-    text = sentences(comparison.summary | {"median_abs_log10_ratio": None})[1]
+    text = sentences(comparison.summary | {"median_abs_log10_ratio": None})[0]
     assert "the typical run diverged" in text
 
 
@@ -149,9 +153,43 @@ def test_verdict_never_mixes_calibrated_and_held_out():
         "within_factor_2": 0.375,
     }
     text = " ".join(sentences(changed))
-    assert "Of the 44 to which it is fitted, 50 % are within" in text
-    assert "Of the 8 held out, 12 % are within" in text
+    held, fitted = (
+        "Of the 8 filter errors (MSE) of the held-out signals, 12 % are within",
+        "Of the 44 errors to which the twin is fitted, 50 % are within",
+    )
+    assert text.startswith(held)
+    assert fitted in text
     assert "38 %" not in text
+    # 6 pairs of filters under each signal.
+    assert "12 of 12 pairs" in text
+    assert "66 of 66 pairs" in text
+    assert "78" not in text
+
+
+def test_the_first_result_has_numbers_and_links():
+    held_out = ("sine-060hz", "chirp-1-100hz")
+    found = compare_evidence(
+        Evidence(runs=published_runs({("sine-060hz", "gpo"): 1.0})), held_out
+    )
+    summary = found.summary | {
+        "eq19": {
+            "edges": 52,
+            "inside": 3,
+            "example": {"signal": "s", "model": "gpo", "edge": 2.2, "bound": 3.46},
+        },
+        "constant_tap": {
+            "without": {"gpo_first": 13, "pairs_as_published": 70},
+            "with": {
+                "gpo_first": 10, "signals": 13, "pairs_as_published": 55, "pairs": 78
+            },
+        },
+    }  # fmt: skip
+    text = first_result(summary)
+    assert text.startswith("**7 of 8 errors of the paper that no fit has read")
+    assert "3 lie inside its bound (gpo on s fails at 2.2 of 3.46)" in text
+    assert "first on 10 of 13 signals instead of 13" in text
+    assert "55 of 78" in text
+    assert text.count("](docs/") == 3
 
 
 def test_verdict_is_valid_rst(comparison):
@@ -166,8 +204,22 @@ def test_verdict_is_valid_rst(comparison):
 
 def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
     text = verdict_markdown(comparison.summary)
-    for model in ("gpo", "backlash", "volterra", "delayed", "rdgpi"):
+    for model in ("gpo", "backlash", "volterra", "delayed"):
         assert f"| {model} " in text
+    assert "| rdgpi, our guess" in text
+
+
+def test_the_small_table_keeps_the_halves_apart():
+    found = compare_evidence(Evidence(runs=published_runs()), ("sine-060hz",))
+    text = verdict_markdown(found.summary)
+    for part in (
+        "held out: gpo",
+        "calibrated: gpo",
+        "held out: all",
+        "calibrated: all",
+    ):
+        assert f"| {part}" in text
+    assert "| gpo " not in text
 
 
 def test_text_for_the_terminal(comparison):

@@ -22,12 +22,12 @@ gma,gpi,sine-010hz,delayed,1,0.1,finite
 one,gpi,sine-010hz,delayed,,,diverged at sample 3
 two,gpi,sine-010hz,delayed,2,0.2,finite
 """
-CLAIMS = """twin,family,claim,holds
-gma,gpi,sums-gpo-best,yes
-one,gpi,sums-gpo-best,no
-other,preisach,sums-gpo-best,no
-gma,gpi,stroke,not testable
-gma,gpi,chirp-gpo-best,yes
+CLAIMS = """twin,family,experiment,claim,holds
+gma,gpi,0,sums-gpo-best,yes
+gma,gpi,1,sums-gpo-best,no
+other,preisach,0,sums-gpo-best,no
+gma,gpi,0,stroke,not testable
+gma,gpi,0,chirp-gpo-best,yes
 """
 
 
@@ -82,8 +82,9 @@ def test_holdings_are_counted_by_family(holdings):
 
 def test_where_a_claim_holds_stands_beside_its_verdict(holdings, tmp_path):
     evidence = Evidence(runs=published_runs(), holdings=holdings)
-    write_claims(judge_all(evidence), tmp_path / "claims.csv")
-    with (tmp_path / "claims.csv").open(encoding="utf-8") as stream:
+    judged = tmp_path / "judged.csv"
+    write_claims(judge_all(evidence), judged)
+    with judged.open(encoding="utf-8") as stream:
         rows = {row["id"]: row for row in csv.DictReader(stream)}
     assert rows["sums-gpo-best"]["verdict"] == "reproduced"
     assert rows["sums-gpo-best"]["holds_on"] == "gpi 1 of 2, preisach 0 of 1"

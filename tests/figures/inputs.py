@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from hystbench.compare.edges import Edge, write_edges
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.files import write_json
 from hystbench.identification import identify
@@ -65,12 +67,23 @@ def save_a_run(
 def write_order_sweep(path: Path) -> None:
     """Write errors that fall with the order; the last one of a filter diverged."""
     rows = [
-        [model, order, (1 + n) / order, "finite"]
+        [model, order, (1 + n) / order, "finite", "constant"]
         for n, model in enumerate(MODELS[:4])
         for order in (1, 2, 5, 10)
     ]
-    rows[-1][2:] = ["", "diverged at sample 7"]
-    _write(path, ["model", "order", "mse", "status"], rows)
+    rows[-1][2:] = ["", "diverged at sample 7", "constant"]
+    _write(path, ["model", "order", "mse", "status", "rule"], rows)
+
+
+def write_step_edges(path: Path) -> None:
+    """Write edges of each filter on two signals; one was not reached."""
+    edges = [
+        Edge(signal, model, 0.1, 0.8, 0.4, 0.25, 0.3 + 0.1 * n, -1.0)
+        for n, signal in enumerate(SIGNALS[:2])
+        for model in MODELS[:4]
+    ]
+    edges[-1] = replace(edges[-1], edge=None)
+    write_edges(edges, path)
 
 
 def write_cells(path: Path) -> None:
@@ -179,6 +192,7 @@ class Inputs:
         self.folder = folder
         write_order_sweep(folder / "errors.csv")
         write_cells(folder / "cells.csv")
+        write_step_edges(folder / "edges.csv")
         write_contest(folder / "contest.csv")
         write_blind(folder / "blind")
         write_identified(folder / "identified.json", self.records[SIGNALS[0]])
@@ -196,15 +210,17 @@ class Inputs:
         """Give a figure what it is drawn from."""
         one = {"records": self.record(SIGNALS[0])}
         pair = one | {"runs": self.runs(SIGNALS[:1], ("gpo",))}
+        loops = {
+            "records": self.record(*SIGNALS),
+            "runs": self.runs(SIGNALS, ("gpo",)),
+        }
         everything = {"runs": self.runs(SIGNALS, MODELS)}
         return {
             "figure-03-play": {},
             "figure-04-generalized-play": {},
             "figure-07-order": one | {"table": self.folder / "errors.csv"},
-            "figure-08-loops": {
-                "records": self.record(*SIGNALS),
-                "runs": self.runs(SIGNALS, ("gpo",)),
-            },
+            "figure-08-loops": loops,
+            "headline": loops,
             "figure-09-chirp": pair,
             "figure-10-sum": pair,
             "figure-11-sum": pair,
@@ -213,6 +229,7 @@ class Inputs:
             "learning-curves": everything,
             "errors-heat-map": {"table": self.folder / "cells.csv"},
             "contest": {"table": self.folder / "contest.csv"},
+            "step-edges": {"table": self.folder / "edges.csv"},
             "blind-confusion": {"table": self.folder / "blind" / "confusion.csv"},
             "blind-effects": {"table": self.folder / "blind" / "effects.csv"},
             "blind-power": {"table": self.folder / "blind" / "power.csv"},

@@ -73,13 +73,19 @@ def test_order_sweep_draws_each_finite_error_and_marks_the_other(inputs):
 
 def test_loops_show_one_full_cycle_of_record_and_model(inputs):
     figure = draw("figure-08-loops", **inputs.of("figure-08-loops"))
-    assert [axes.get_title(loc="left") for axes in figure.axes] == [
+    loops, errors = figure.axes[::2], figure.axes[1::2]
+    assert [axes.get_title(loc="left") for axes in loops] == [
         "10 Hz sine",
         "20 Hz sine",
         "40 Hz sine",
     ]
-    for axes, period in zip(figure.axes, (100, 50, 25), strict=True):
+    for axes, below, period in zip(loops, errors, (100, 50, 25), strict=True):
         record, model = axes.get_lines()
+        (error,) = below.get_lines()
+        np.testing.assert_allclose(
+            error.get_ydata(), record.get_ydata() - model.get_ydata(), atol=1e-12
+        )
+        np.testing.assert_array_equal(error.get_xdata(), model.get_xdata())
         assert len(record.get_xdata()) == len(model.get_xdata()) == period + 1
         # The cycle closes: the output comes back to where it was.
         assert record.get_ydata()[0] == pytest.approx(record.get_ydata()[-1])
@@ -91,8 +97,28 @@ def test_chirp_marks_the_moments_of_the_paper(inputs):
     text = load_text()
     for moment in (text.chirp_minimum, text.chirp_resonance):
         assert any(f"{moment.time_s} s in the paper" in word for word in words(figure))
-    times = {line.get_xdata()[0] for line in figure.axes[1].get_lines()[2:]}
-    assert times == {1.28, 1.41}
+    _, _, ranges, error = figure.axes
+    for axes, drawn in ((ranges, 2), (error, 1)):
+        assert {line.get_xdata()[0] for line in axes.get_lines()[drawn:]} == {
+            1.28,
+            1.41,
+        }
+
+
+def test_chirp_is_zoomed_where_the_paper_has_its_resonance(inputs):
+    _, zoom, ranges, error = draw(
+        "figure-09-chirp", **inputs.of("figure-09-chirp")
+    ).axes
+    record, model, moment = zoom.get_lines()
+    assert moment.get_xdata()[0] == load_text().chirp_resonance.time_s
+    for line in (record, model):
+        assert line.get_xdata()[0] == pytest.approx(1.408, abs=1e-3)
+        assert line.get_xdata()[-1] == pytest.approx(1.411, abs=1e-3)
+        assert np.ptp(line.get_xdata()) == pytest.approx(0.003, abs=1e-3)
+    # The others show the whole record.
+    assert np.ptp(error.get_lines()[0].get_xdata()) == pytest.approx(3.999)
+    # A sine of 9 um has the same range in every cycle.
+    np.testing.assert_allclose(ranges.get_lines()[0].get_ydata(), 18, rtol=5e-3)
 
 
 def test_dense_records_make_small_files(tmp_path):
@@ -247,6 +273,28 @@ def test_arrays_must_be_beside_a_run(inputs, tmp_path):
     run.with_suffix(".npz").unlink()
     with pytest.raises(InputError, match="not the arrays of a run"):
         draw("figure-10-sum", records=inputs.record("sine-010hz"), runs=[run])
+
+
+def test_step_edges_stand_beside_both_bounds(inputs):
+    figure = draw("step-edges", **inputs.of("step-edges"))
+    assert len(figure.axes) == 4
+    gpo, *_, delayed = figure.axes
+    marks = sorted(
+        (line.get_ydata()[0], line.get_xdata()[0])
+        for line in gpo.lines
+        if line.get_marker() != "None"
+    )
+    # As written: 1/max|H|^2, the edge and 1/tr R; the edge of the second moves.
+    assert marks == [
+        (0, pytest.approx(0.25)),
+        (0, pytest.approx(0.3)),
+        (0, pytest.approx(0.4)),
+        (1, pytest.approx(0.25)),
+        (1, pytest.approx(0.4)),
+        (1, pytest.approx(0.4)),
+    ]
+    marked = [line for line in delayed.lines if line.get_marker() != "None"]
+    assert len(marked) == 5  # an edge that was not reached has no mark
 
 
 def test_contest_has_a_panel_for_each_twin_and_algorithm(inputs):

@@ -14,20 +14,23 @@ from hystbench.filters.gpo import GPOFilter
 from hystbench.record import FloatArray
 
 OPTIONS = {
-    "delayed": [{}],
+    "delayed": [{}, {"constant_tap": 0.3}],
     "backlash": [
         {"amplitude": 0.7},
         {"amplitude": 0.7, "structure": "current-input"},
         {"amplitude": 0.7, "form": "eq4", "initial_state": "settled", "x_before": 0.1},
+        {"amplitude": 0.7, "constant_tap": 0.3},
     ],
     "gpo": [
         {"amplitude": 0.7},
         {"amplitude": 0.7, "form": "eq4", "x_before": -0.2},
         {"amplitude": 0.7, "initial_state": "settled", "x_before": 0.3},
+        {"amplitude": 0.7, "constant_tap": 0.1},
     ],
     "volterra": [
         {"second_order_step": 1.0},
         {"second_order_step": 1.0, "x_before": 0.2},
+        {"second_order_step": 1.0, "constant_tap": 0.3},
     ],
 }
 CASES = [(name, options) for name, several in OPTIONS.items() for options in several]
@@ -60,6 +63,11 @@ def signals():
 def plain_regressors(case, adaptive, x):
     """Regressor of every sample, from the definitions alone, tap by tap."""
     name, options = case
+    if options.get("constant_tap"):
+        without = {k: v for k, v in options.items() if k != "constant_tap"}
+        taps = plain_regressors((name, without), adaptive, x)
+        constant = np.full((len(x), 1), options["constant_tap"])
+        return np.hstack((taps, constant))
     order = adaptive.order
     before = options.get("x_before", 0.0)
     at = lambda k: x[k] if k >= 0 else before  # noqa: E731
@@ -146,8 +154,9 @@ def test_normalized_equals_the_equations_written_out(case, order, signals):
     adaptive = make(case, order, 0.1, normalized=True, regularization=0.01)
     h = plain_regressors(case, adaptive, x)
     if case[0] == "volterra":
+        constant = [0.1] * ("constant_tap" in case[1])
         h_steps = np.concatenate(
-            (np.full(order + 1, 0.1), np.full((order + 1) ** 2, 1.0))
+            (np.full(order + 1, 0.1), np.full((order + 1) ** 2, 1.0), constant)
         )
     else:
         h_steps = 0.1
@@ -162,7 +171,7 @@ def test_regressor_equals_the_definitions(case, order, signals):
     x = signals[0][:200]
     adaptive = make(case, order)
     line = np.concatenate((np.full(adaptive.history, adaptive.x_before), x))
-    h, _ = adaptive.regressor(line, adaptive.start().operators)
+    h, _ = adaptive.whole_regressor(line, adaptive.start().operators)
     np.testing.assert_allclose(h, plain_regressors(case, adaptive, x), atol=1e-15)
 
 
@@ -237,6 +246,46 @@ def test_a_filter_finds_the_weights_it_was_given(case):
     true = rng.standard_normal(adaptive.size)
     result = adaptive.run(np.tile(x, 3), np.tile(h @ true, 3))
     assert np.abs(result.error[-100:]).max() < 1e-3 * np.abs(result.error[:100]).max()
+
+
+# --- how much of an error an update corrects
+
+
+def test_an_update_corrects_the_share_of_the_error_that_is_told(case, signals):
+    x, d = signals[0][:200], signals[1][:200]
+    adaptive = stable(case, 6, x)
+    rows = plain_regressors(case, adaptive, x)
+    # By Eq. 18 alone: the error on the regressor that the update was made from.
+    left = []
+    for h, wanted in zip(rows, d, strict=True):
+        w = 2 * adaptive.steps * wanted * h  # from weights of zero, e = d
+        left.append(1 - (wanted - w @ h) / wanted)
+    told = adaptive.correction(adaptive.largest_power(x))
+    assert told == pytest.approx(max(left), rel=1e-9)
+
+
+def test_a_constant_regressor_is_unstable_beyond_a_correction_of_two():
+    x, d = np.full(400, 0.5), np.full(400, 2.0)
+    for step_size, stays in ((1.99, True), (2.01, False)):
+        adaptive = DelayedFilter(order=3, step_size=1.0, x_before=0.5)
+        mu = step_size / adaptive.correction(adaptive.largest_power(x))
+        error = replace(adaptive, step_size=mu).run(x, d).error
+        assert (abs(error[-1]) < abs(error[0])) == stays
+
+
+def test_taps_have_the_rms_of_their_definition(case, signals):
+    x = signals[0][:200]
+    adaptive = make(case, 6)
+    taps = plain_regressors(case, adaptive, x)[:, :7]
+    assert adaptive.tap_rms(x) == pytest.approx(np.sqrt(np.mean(taps**2)))
+
+
+def test_a_constant_tap_finds_a_constant(signals):
+    x = signals[0]
+    adaptive = DelayedFilter(order=2, step_size=0.2, constant_tap=0.5)
+    result = adaptive.run(x, 0.3 * x + 2.0)
+    assert np.abs(result.error[-50:]).max() < 1e-3
+    assert result.weights[-1] * 0.5 == pytest.approx(2.0, abs=1e-2)
 
 
 # --- divergence
@@ -355,7 +404,10 @@ def test_bound_by_plain_numpy(case, order, signals):
     assert bound.rank <= np.linalg.matrix_rank(correlation, tol=1e-14 * values[-1])
     if case[0] == "volterra":
         taps = order + 1
-        parts = h[:, :taps], h[:, taps:]
+        constant = "constant_tap" in case[1]
+        ones = np.arange(h.shape[1]) < taps
+        ones[-1] |= constant  # has the step size of the first-order weights
+        parts = h[:, ones], h[:, ~ones]
         first, second = (np.mean(np.sum(part**2, axis=1)) for part in parts)
         assert bound.first_order == pytest.approx(first, rel=1e-12)
         assert bound.second_order == pytest.approx(second, rel=1e-12)

@@ -97,7 +97,8 @@ def write_lagging(folder):
     """Write a plain gain whose output lags: a lag of the drive would do as well."""
     chain = (block("gain", value=12.0),)
     made = measured((*chain, block("sensor-lag", time_constant_s=0.004)), 0.02)
-    held = replace(made[0], name="held", use="hold-out")
+    first = made[0]
+    held = replace(first, name="held", use="hold-out", u=0.8 * first.u, y=0.8 * first.y)
     write_folder(folder / "rig", [*made, held], noise_rms=0.02)
     Model("rig", CURRENT, DISPLACEMENT, chain).save(folder / "base.yaml")
 

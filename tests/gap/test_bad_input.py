@@ -11,9 +11,11 @@ import pytest
 import yaml
 
 from hystbench.errors import InputError
+from hystbench.files import write_text
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.model import load_model
+from hystbench.written import ENTRIES, TEMPORARY
 from tests.gap.made import record, write_folder
 
 ABOUT = {
@@ -99,10 +101,19 @@ def changed(name, change):
     return records
 
 
+def shown(folder):
+    """Texts of all files of a result, but the list of what was written."""
+    return {
+        str(item.relative_to(folder)): item.read_text()
+        for item in folder.rglob("*")
+        if item.is_file() and ENTRIES not in item.parts
+    }
+
+
 def test_what_is_right_is_written_whole(rig):
     """The same rig without a fault: what is refused below is refused for its fault."""
     rig()
-    found = {str(item.relative_to(rig.out)) for item in rig.out.rglob("*.*")}
+    found = set(shown(rig.out))
     assert found == {"gap.json", "model.yaml", "curves.json", "holdout/three.csv"}
     content = json.loads((rig.out / "gap.json").read_text())
     assert content["verdict"] in ("named", "unnamed")
@@ -237,7 +248,10 @@ def test_an_input_that_rests_is_no_fault(tmp_path, shape, frequency_hz, damping)
         "ramps and drops": drop,
     }[shape]
     y = respond(u, frequency_hz, damping)
-    made = [record(u, y, name=k, use=use) for k, use in USES.items()]
+    sizes = dict(zip(USES, (1.0, 0.9, 0.8), strict=True))
+    made = [
+        record(sizes[k] * u, sizes[k] * y, name=k, use=use) for k, use in USES.items()
+    ]
     load_evidence(write_folder(tmp_path / "rests", made))
 
 
@@ -304,26 +318,28 @@ def test_a_page_that_fails_leaves_no_half_of_a_result(rig, monkeypatch, earlier)
         raise RuntimeError("no ink")
 
     if earlier:
-        rig.out.mkdir()
-        for name in ("gap.json", "report.html", "notes.txt"):
-            (rig.out / name).write_text("before")
-    before = {item: item.read_text() for item in rig.out.rglob("*")}
+        for name in ("gap.json", "report.html"):
+            write_text(rig.out / name, "before")
+        (rig.out / "notes.txt").write_text("before")
+    before = shown(rig.out)
     monkeypatch.setattr(PAGE, fail)
     with pytest.raises(RuntimeError, match="no ink"):
         rig(report=True)
     assert rig.out.exists() is earlier
-    assert {item: item.read_text() for item in rig.out.rglob("*")} == before
-    assert not list(rig.out.parent.glob(".*"))
+    assert shown(rig.out) == before
+    assert not list(rig.out.parent.glob(f"{TEMPORARY}*"))
 
 
 def test_nothing_of_an_earlier_result_stays_and_what_is_foreign_does(rig):
     old = ("holdout/gone.csv", "report.html", "gap.json")
     mine = ("notes.txt", "holdout/notes.txt", "stages/decision.json")
-    for name in (*old, *mine):
+    for name in old:
+        write_text(rig.out / name, "before")
+    for name in mine:
         (rig.out / name).parent.mkdir(parents=True, exist_ok=True)
         (rig.out / name).write_text("before")
     rig()
-    found = {str(item.relative_to(rig.out)) for item in rig.out.rglob("*.*")}
+    found = set(shown(rig.out))
     new = {"gap.json", "model.yaml", "curves.json", "holdout/three.csv"}
     assert found == new | set(mine)
     assert (rig.out / "gap.json").read_text() != "before"

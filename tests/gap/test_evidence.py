@@ -21,7 +21,7 @@ def pair(y=Y, u=U, **about):
     """A fit record with a given output, and a sound one held out."""
     return [
         record(u, y, name="a", **about),
-        record(U, Y, name="b", use="hold-out"),
+        record(0.8 * U, 0.8 * Y, name="b", use="hold-out"),
     ]
 
 
@@ -230,7 +230,7 @@ def test_the_slowest_fit_record_is_for_identification_unless_named(tmp_path):
 def test_simulated_output_is_read_and_its_unit_checked(tmp_path):
     made = [
         record(U, Y, name="a", simulated=5 * U),
-        record(U, Y, name="b", use="hold-out", simulated=4 * U),
+        record(0.8 * U, 0.8 * Y, name="b", use="hold-out", simulated=4 * U),
     ]
     found = load_evidence(write_folder(tmp_path / "d", made))
     assert found.simulated_column == "simulated_um"
@@ -250,7 +250,7 @@ def test_nan_in_simulated_output_is_refused(tmp_path):
     spoilt[7] = np.nan
     made = [
         record(U, Y, name="a", simulated=spoilt),
-        record(U, Y, name="b", use="hold-out", simulated=5 * U),
+        record(0.8 * U, 0.8 * Y, name="b", use="hold-out", simulated=5 * U),
     ]
     said = message(lambda: load_evidence(write_folder(tmp_path / "d", made)))
     assert "row 9: column 'simulated_um' is 'nan'" in said

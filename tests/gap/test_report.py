@@ -1,12 +1,18 @@
+import base64
 import json
 import re
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 from hystbench.errors import InputError
-from hystbench.gap.report import write_report
+from hystbench.figures.style import PAGE, in_style
+from hystbench.gap.report import pictures, where, words, write_report
+from hystbench.gap.report.page import OPTIONAL, headline
+from hystbench.gap.report.read import Content
 from hystbench.gap.report.words import number, with_error
 from hystbench.gap.schema import SCHEMA
 from hystbench.schema import check_against_schema
@@ -303,13 +309,20 @@ class Reader(HTMLParser):
     def __init__(self):
         super().__init__()
         self.numbers, self.sources, self.tags, self.text = [], [], [], []
+        self.headlines, self.last = 0, None
 
     def handle_starttag(self, tag, attrs):
         about = dict(attrs)
         self.tags.append(tag)
         if tag == "data":
             self.numbers.append(float(about["value"]))
-        self.sources += [about[key] for key in ("src", "href") if key in about]
+        asked = [about[key] for key in ("src", "href") if key in about]
+        self.sources += [each for each in asked if not each.startswith("#")]
+        if tag == "h1":
+            self.headlines += 1
+        if tag == "table":
+            assert self.last == ("div", "scroll")
+        self.last = (tag, about.get("class"))
         if tag == "img":
             assert about["alt"]
 
@@ -366,7 +379,114 @@ def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
 
 
 def test_how_much_of_the_gap_the_map_holds_is_said(page):
-    assert "these cells hold 41 % of the gap" in page.said
+    assert "These cells hold 41 % of the gap" in page.said
+
+
+def image(text):
+    """Give the text of a picture that stands inside the page."""
+    return base64.b64decode(text.partition("base64,")[2]).decode()
+
+
+def test_the_headline_has_before_and_after_as_a_picture(tmp_path):
+    """Of the hold-out record that the simulator misses most, and of all together."""
+    folder = write_folder(tmp_path, with_curves=False)
+    text = write_report(folder).read_text()
+    head = text[text.index("<h1>") : text.index("<h2>")]
+    glimpse, sizes = re.findall(r'<img src="(.*?)" alt="(.*?)">', head)
+    # Both records ring alike: the one whose share of it is plain comes first.
+    assert "measured, the simulator, and with effects" in glimpse[1]
+    assert "simulator 0.512; with effects 0.103; noise floor 0.0911" in sizes[1]
+    assert all(image(source).startswith("<?xml") for source, _ in (glimpse, sizes))
+
+
+@pytest.mark.parametrize(
+    ("gap", "expected"),
+    [
+        ({"verdict": "no-gap"}, "simulator 0.5; noise floor 0.0911"),
+        (
+            {
+                "verdict": "unnamed",
+                "withdrawn": {
+                    "names": ["creep"],
+                    "verdict": "named",
+                    "before": 0.5,
+                    "after": 0.9,
+                },
+            },
+            "simulator 0.5; withdrawn 0.9; noise floor 0.0911",
+        ),
+    ],
+)
+def test_what_is_not_changed_is_drawn_once(gap, expected):
+    same = {**GAP["gap"], "before": 0.5, "after": 0.5}
+    content = Content({**OPTIONAL, **GAP, "effects": [], **gap, "gap": same}, (), None)
+    (sizes,) = headline(content.gap, content)
+    assert sizes.words.endswith(expected)
+
+
+SIMULATOR = {
+    "input": {"name": "coil current", "unit": "A"},
+    "output": {"name": "displacement", "unit": "um"},
+    "functions": [],
+    "runs_again": True,
+    "sampling_interval_s": 0.0005,
+}
+
+
+def test_what_to_do_next_closes_the_page(tmp_path):
+    gap = {**GAP, "simulator": SIMULATOR}
+    said = read(write_report(write_folder(tmp_path, gap, False, False))).said
+    closing = said[said.index("What to do next", said.index("A black box")) :]
+    assert "Try steps with holds: it separates creep" in closing
+    assert 'y = load_model("model.yaml").simulate(u, dt)' in closing
+    assert "hystbench simulate model.yaml input.csv --out output.csv" in closing
+    assert "time_s and coil_current_A" in closing
+    assert "takes coil current in A and gives displacement in µm" in closing
+
+
+def test_a_stored_column_is_not_said_to_run_on_other_inputs(tmp_path):
+    gap = {**GAP, "simulator": {**SIMULATOR, "runs_again": False}}
+    said = read(write_report(write_folder(tmp_path, gap, False, False))).said
+    assert "answers to the inputs of this dataset alone" in said
+    assert "load_model" not in said
+
+
+def test_a_function_must_be_importable_where_the_model_runs(tmp_path):
+    gap = {**GAP, "simulator": {**SIMULATOR, "functions": ["rig.sim:move"]}}
+    said = read(write_report(write_folder(tmp_path, gap, False, False))).said
+    assert "where Python can import rig.sim:move" in said
+
+
+def test_a_search_that_calls_ended_is_said_to_be_none_to_the_end(tmp_path):
+    gap = {**GAP, "calls_used_up": {"bound": 50, "sentence": "it ended at 50 calls"}}
+    check_against_schema(gap, SCHEMA, "example")
+    said = read(write_report(write_folder(tmp_path, gap, False, False))).said
+    assert "Not searched to the end: it ended at 50 calls." in said
+
+
+@pytest.mark.parametrize("over", ["steps", "maps"])
+def test_no_legend_lies_over_curves(over):
+    """Its box and the axes have no area in common."""
+    with in_style():
+        figure = Figure(figsize=(PAGE, 2.4))
+        panels = figure.subplots(1, 1 if over == "steps" else 2, squeeze=False)[0]
+        if over == "steps":
+            rungs = [("base", 0.5), ("resonance", 0.2)]
+            pictures.steps(panels, rungs, 0.1, "um")
+        else:
+            about = curves()
+            where.maps(panels, about["over_input"], about["over_rate"], about["units"])
+        figure.canvas.draw()
+        legends = [panel.get_legend() for panel in panels if panel.get_legend()]
+        legends += figure.legends
+        assert len(legends) == len(panels)
+        for legend in legends:
+            box = legend.get_window_extent()
+            assert box.x0 >= 0
+            assert box.x1 <= figure.bbox.x1
+            for panel in panels:
+                shared = Bbox.intersection(box.shrunk(0.99, 0.99), panel.bbox)
+                assert shared is None or shared.height < 1
 
 
 def test_second_looks_are_told_in_words(page):
@@ -402,7 +522,10 @@ def test_page_stands_alone(page):
 
 def test_verdict_comes_first(page):
     verdict = page.said.index("The simulator lacks resonance and creep.")
+    assert page.headlines == 1
     assert verdict < page.said.index("Effects")
+    # The user's own name of the simulator stands above it.
+    assert page.said.index("bench against the simulator rig.yaml") < verdict
     assert page.said.index(GAP["reason"]) < page.said.index("Where the gap is")
 
 
@@ -455,7 +578,7 @@ def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
     there = {"units": curves()["units"], key: curves()[key]}
     (folder / "curves.json").write_text(json.dumps(there))
     page = read(write_report(folder))
-    assert len(page.sources) == 1
+    assert len(page.sources) == 2  # with the sizes of the gap in the headline
     for name in DRAWN:
         assert (f"Not drawn: curves.json: no {name}." in page.said) == (name != key)
 
@@ -589,3 +712,10 @@ def test_values_are_rounded_to_their_errors(value, error, shown):
 def test_a_number_keeps_its_digits_in_the_source():
     assert 'value="0.123456789"' in number(0.123456789)
     assert "10<sup>\u22127</sup>" in number(2.5e-7)
+
+
+def test_micro_is_written_one_way_in_sentences():
+    """Whatever the sentence says; names of columns and files keep their letters."""
+    page = "from 2 um to 0.3 um rms (um), a 4 us step of displacement_um at b.um"
+    wanted = "from 2 µm to 0.3 µm rms (µm), a 4 µs step of displacement_um at b.um"
+    assert words.one_micro(page) == wanted

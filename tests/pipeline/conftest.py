@@ -14,6 +14,9 @@ from pathlib import Path
 import pytest
 import yaml
 
+from hystbench.written import ENTRIES
+from tests.conftest import shorten
+
 ROOT = Path(__file__).parents[2]
 
 
@@ -21,7 +24,7 @@ def small_config() -> dict:
     """The project's config, cut down to seconds."""
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
     config["signals"] = ["sine-100hz", "sine-200hz"]
-    config["excitation"] |= {"duration_s": 0.2}
+    shorten(config, 0.2)
     config["excitations"]["sine-001hz"] = {"sine": {"frequency_hz": 1, "duration_s": 1}}
     config["identification"] |= {"starts": 1, "max_iterations": 5}
     config["filters"]["order"] = 6
@@ -71,12 +74,12 @@ class Workflow:
         return self.run("--dry-run", *arguments)
 
     def files(self) -> dict[str, bytes]:
-        """Content of each file of results, logs aside."""
+        """Content of each file of results, logs and the list of them aside."""
         results = self.folder / "results"
         return {
             str(path.relative_to(results)): path.read_bytes()
             for path in sorted(results.rglob("*"))
-            if path.is_file() and "logs" not in path.parts
+            if path.is_file() and not {"logs", ENTRIES} & {*path.parts}
         }
 
 

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import shutil
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -94,8 +95,8 @@ def test_gap_json_holds_the_rms_of_the_hold_out_record(whole):
 def test_a_job_an_effect_gives_the_same(whole, effects):
     stages = effects.folder / "results/gap/tiny/stages"
     rounds = [stages / f"round-{number}" for number in range(1, ROUNDS + 1)]
-    assert sorted(path for path in stages.iterdir() if path.is_dir()) == rounds
-    assert {path.stem for path in rounds[0].iterdir()} == {
+    assert sorted(path for path in stages.glob("round-*") if path.is_dir()) == rounds
+    assert {path.stem for path in rounds[0].glob("*.json")} == {
         item["name"] for item in load(whole)["ranking"]
     }
     written, as_written = whole.files(), effects.files()
@@ -283,3 +284,19 @@ def test_the_example_runs_from_identification_to_summary(workflow, config):
     workflow.configure(config)
     planned = workflow.would_run("results/gap/summary.csv")
     assert planned["gap_twin"] == planned["gap_decide"] == 1
+
+
+def test_a_strangers_table_among_hold_out_results_is_refused(whole, tmp_path):
+    """Snakemake would remove the whole folder before it shows the records again."""
+    shutil.copytree(whole.folder, tmp_path / "copy", symlinks=True)
+    workflow = Workflow(tmp_path / "copy")
+    mine = workflow.folder / "results/gap/tiny/holdout/notes.csv"
+    mine.write_text("mine")
+    result = workflow.snakemake("--forcerun", "gap_show", "--", PAGE)
+    assert result.returncode != 0
+    told = "hystbench: results/gap/tiny/holdout/notes.csv: not written by hystbench"
+    assert told in result.stdout + result.stderr
+    assert mine.read_text() == "mine"
+    assert (mine.parent / "unseen.csv").is_file()
+    mine.unlink()
+    assert workflow.run("--forcerun", "gap_show", "--", PAGE)["gap_show"] == 1

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 import yaml
 
+from tests.browser.seen import SIZES, all_faults, look
+
 from .conftest import ROOT, Workflow
 
 FILTERS = ["gpo", "backlash", "volterra", "delayed"]
@@ -34,6 +36,11 @@ def test_every_stage_leaves_its_files(finished):
         "identify/identified.json",
         "identify/envelopes.csv",
         "order-sweep/errors.csv",
+        "order-sweep/other-rule.csv",
+        "random-sum/draws.csv",
+        "random-sum/readings.csv",
+        "step-sweep/edges.csv",
+        "pressure/constants.csv",
         "rdgpi/identified.json",
         "rdgpi/published-parameters.csv",
         "twins/errors.csv",
@@ -43,9 +50,12 @@ def test_every_stage_leaves_its_files(finished):
         "compare/claims.csv",
         "compare/audit.csv",
         "compare/summary.json",
+        "compare/first.md",
+        "compare/margins.csv",
         "compare/verdict.rst",
         "compare/tables/table-1.md",
         "compare/tables/table-4.tex",
+        "report.html",
     ]:
         assert (results / file).stat().st_size > 0, file
 
@@ -99,9 +109,12 @@ def test_the_twin_says_the_same_in_memory_and_job_by_job(finished):
         "not testable": "not testable",
     }
     judged = rows(results / "twins" / "claims.csv")
-    assert judged
+    assert {row["experiment"] for row in judged} == {"0", "1"}
     for row in judged:
-        assert verdicts[row["claim"]] == words[row["holds"]], row
+        verdict = verdicts[row["claim"]]
+        # The ledger is of the configured experiment; the paper's own tables come first.
+        if row["experiment"] == "0" and verdict != "refuted by the paper":
+            assert verdict == words[row["holds"]], row
     for row in rows(results / "twins" / "errors.csv"):
         run = load(results / "filters" / row["signal"] / f"{row['model']}.json")
         assert float(row["mse"]) == pytest.approx(run["mse"], rel=1e-9)
@@ -167,7 +180,10 @@ def test_a_changed_step_size_reruns_its_filter_and_what_follows(workflow, config
     assert planned.pop("order_sweep") == 1
     assert planned.pop("twin_runs") == 1
     assert planned.pop("twins") == 1
+    for sweep in ("random_sum", "step_sweep", "constants"):
+        assert planned.pop(sweep) == 1
     assert planned.pop("tables") == 1
+    assert planned.pop("page") == 1
     assert all(name.startswith("draw_") for name in planned)
 
 
@@ -202,7 +218,10 @@ def test_an_edited_module_reruns_what_imports_it(workflow):
     assert planned.pop("order_sweep") == 1
     assert planned.pop("twin_runs") == 1
     assert planned.pop("twins") == 1
+    for sweep in ("random_sum", "step_sweep", "constants"):
+        assert planned.pop(sweep) == 1
     assert planned.pop("tables") == 1
+    assert planned.pop("page") == 1
     assert all(name.startswith("draw_") for name in planned)
 
 
@@ -232,11 +251,46 @@ def test_a_filter_that_diverges_is_a_visible_entry(workflow, config):
 
 
 def test_the_report_holds_the_verdict_and_says_twin(finished):
-    result = finished.snakemake("--report", "results/report.html")
+    """Snakemake's own, beside the front page."""
+    result = finished.snakemake("--report", "provenance.html")
     assert result.returncode == 0, result.stderr
-    text = (finished.folder / "results" / "report.html").read_text()
+    text = (finished.folder / "provenance.html").read_text()
     assert "twin" in text
     assert "figure-07-order" in text
+
+
+def test_the_front_page_shows_what_was_made(finished, browser):
+    results = finished.folder / "results"
+    assert all_faults(browser, results / "report.html") == []
+    about = look(browser, results / "report.html", SIZES[0]).about
+    drawn = {
+        *(file.stem for file in (results / "figures").glob("*.svg")),
+        *(file.stem for file in (results / "identify").glob("*.svg")),
+    }
+    assert {image["name"] for image in about["images"]} == drawn
+    counted = {table["name"]: table["rows"] for table in about["tables"]}
+    for name, file in (
+        ("claims", "compare/claims.csv"),
+        ("audit", "compare/audit.csv"),
+        ("envelopes", "identify/envelopes.csv"),
+        ("published-parameters", "rdgpi/published-parameters.csv"),
+    ):
+        assert counted[name] == len(rows(results / file)), name
+    for link in about["links"]:
+        assert link.startswith("#") or (results / link).is_file(), link
+
+
+def test_an_edited_caption_makes_the_page_again(workflow, tmp_path):
+    """And nothing else; the captions are those of Snakemake's report."""
+    shutil.copytree(ROOT / "workflow", workflow.folder / "workflow")
+    shutil.copy(ROOT / "Snakefile", workflow.folder)
+    own = ("--snakefile", "Snakefile", "--rerun-triggers", "mtime")
+    assert workflow.snakemake(*own, "--touch").returncode == 0
+    with (workflow.folder / "workflow/report/claims.rst").open("a") as stream:
+        stream.write("Edited.\n")
+    assert workflow.run(*own) == {"page": 1}
+    page = workflow.folder / "results" / "report.html"
+    assert "Edited." in page.read_text()
 
 
 @pytest.mark.parametrize(
@@ -279,7 +333,7 @@ records:
 
 
 def test_measured_records_go_the_same_way_beside_the_reproduction(
-    workflow, write_dataset
+    workflow, write_dataset, browser
 ):
     # Names that a shell would take apart.
     files = {"slow.csv": measured_csv(2), "it's $HOME.csv": measured_csv(20)}
@@ -298,6 +352,18 @@ def test_measured_records_go_the_same_way_beside_the_reproduction(
     assert "slow" in table
     assert "rdgpi" in table
     assert workflow.would_run("--config", f"source={dataset}") == {}
+    page = results / "report.html"
+    assert all_faults(browser, page) == []
+    about = look(browser, page, SIZES[0]).about
+    assert "2 measured records of bench" in about["headline_text"]
+    assert {image["name"] for image in about["images"]} == {
+        "headline",
+        "identification",
+        "figure-07-order",
+        "learning-curves",
+        "loops",
+        "errors-by-record",
+    }
 
 
 def test_a_bad_row_of_a_dataset_is_one_line(workflow, write_dataset):

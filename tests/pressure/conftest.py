@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from hystbench.settings import read_settings
-from tests.conftest import ROOT
+from tests.conftest import ROOT, shorten
 
 SIGNALS = ["sine-100hz", "sine-150hz", "sine-120hz", "multisine-random-0-100hz"]
 
@@ -34,7 +34,7 @@ def small_settings():
     """The project's settings, cut down."""
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
     config["signals"] = SIGNALS
-    config["excitation"] |= {"duration_s": 0.2}
+    shorten(config, 0.2)
     config["excitations"]["sine-001hz"] = {"sine": {"frequency_hz": 1, "duration_s": 1}}
     config["identification"] |= {"starts": 1, "max_iterations": 5}
     config["filters"]["order"] = 6

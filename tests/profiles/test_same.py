@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from hystbench.challenge.contest.plan import chunks, plan
-from hystbench.schema import load_yaml
 from hystbench.settings import read_settings
+from hystbench.yaml_files import load_yaml
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = ROOT / "profiles" / "slurm" / "test"

@@ -25,8 +25,8 @@ if CONTEST["transfer_scale"]:
         dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
     )
 if CONTEST["solver"] not in CONTEST["solvers"]:
-    sys.exit(
-        f"hystbench: {PLACE}: blind: solver: {CONTEST['solver']!r}; "
+    refuse(
+        f"{PLACE}: blind: solver: {CONTEST['solver']!r}; "
         + nearest(CONTEST["solver"], CONTEST["solvers"])
     )
 

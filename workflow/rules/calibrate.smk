@@ -62,7 +62,7 @@ if TWIN:
         message:
             "{params.folder} holds the twin and its like"
         shell:
-            "{{ cp {input.model:q} {params.folder:q}"
+            "{{ " + COMMITTED + "cp {input.model:q} {params.folder:q}"
             " && rm -f {params.folder:q}/uncertainty/gma-*.yaml"
             " && cp {input.uncertainty:q} {params.folder:q}/uncertainty; }} 2> {log:q}"
 

@@ -11,6 +11,7 @@ import grimp
 import hystbench
 from hystbench.errors import InputError
 from hystbench.settings import read_settings
+from hystbench.written import check_replaceable, claim_logs
 
 # Jobs call `hystbench`: the one of the interpreter that runs Snakemake.
 shell.prefix(f"PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; ")
@@ -25,6 +26,8 @@ PLACE = ", ".join(
         + ["--config"] * bool(workflow.config_settings.config)
     )
 )
+
+
 KERNELS = sorted(PACKAGE.glob("kernels/*.so"))
 
 try:
@@ -44,7 +47,69 @@ try:
     for argument in sys.argv[1:]:
         SETTINGS.check_target(argument)
 except InputError as error:
-    sys.exit(f"hystbench: {error}")
+    refuse(error)
+for line in SETTINGS.warnings:
+    print(f"hystbench: warning: {line}", file=sys.stderr)
+
+
+# Before files of the package are replaced: what is committed can be had again.
+COMMITTED = (
+    'if ! told=$(git -C {params.folder:q} status --porcelain .) || [ -n "$told" ];'
+    " then echo {params.folder:q}': not committed; expected git to have what is there'"
+    " >&2; exit 1; fi; "
+)
+
+
+def keep_out(key, files):
+    """Refuse inputs in results/: all in there can be made again, and may be removed."""
+    results = Path("results")
+    for file in files:
+        places = {Path(file).absolute(), Path(file).resolve()}
+        if any(
+            place.is_relative_to(folder)
+            for place in places
+            for folder in (results.absolute(), results.resolve())
+        ):
+            sys.exit(
+                f"hystbench: {PLACE}: {key}: {file} lies in results/, where all may be "
+                "written anew; expected a file outside it"
+            )
+
+
+if SETTINGS.dataset is None:
+    keep_out("twin: model", [SETTINGS.model_file])
+    keep_out("pressure: twins", SETTINGS.twin_files)
+    keep_out("contest: twins", SETTINGS.contest_files)
+else:
+    keep_out("source", [SETTINGS.dataset.path, *SETTINGS.dataset.record_files.values()])
+
+
+def keep_others_files(dag):
+    """Refuse to start where a job would remove or write over a file that is not ours.
+
+    Snakemake removes what a job declares before the job runs.
+    """
+    waiting = list(dag.needrun_jobs())
+    outputs = {str(file) for job in waiting for file in job.output}
+    # Jobs of later rounds are not known yet.
+    for job in waiting:
+        if job.rule.name == "gap_choose":
+            rounds = Path(str(job.output[0])).parent.glob("round-*")
+            outputs |= {str(path) for path in rounds}
+    made = {str(file) for job in dag.jobs for file in job.output}
+    inputs = {str(file) for job in waiting for file in job.input} - made
+    logs = {}
+    for job in waiting:
+        for file in filter(None, [*job.log, job.benchmark]):
+            above = [path for path in Path(str(file)).parents if path.name == "logs"]
+            logs.setdefault(above[-1], []).append(str(file))
+    try:
+        check_replaceable(sorted(outputs), sorted(inputs))
+        for folder, files in sorted(logs.items()):
+            claim_logs(folder, sorted(files))
+    except InputError as error:
+        sys.exit(f"hystbench: {error}")
+
 
 RESULTS = SETTINGS.results
 COMPARE = f"{RESULTS}/compare"
@@ -109,7 +174,7 @@ def structures_tried(wildcards):
     try:
         asked = asked_structures(SETTINGS.structures)
     except InputError as error:
-        sys.exit(f"hystbench: {PLACE}: structures: tried: {error}")
+        refuse(f"{PLACE}: structures: tried: {error}")
     return [f"{RESULTS}/structures/{each.name}.json" for each in asked]
 
 

@@ -6,9 +6,13 @@ if TWIN:
         input:
             runs=runs(),
             records=[record(signal) for signal in SETTINGS.signals],
-            order_sweep=rules.order_sweep.output,
+            order_sweep=rules.order_sweep.output.configured,
+            order_sweep_other=rules.order_sweep.output.other,
             identified=rules.identify.output,
             envelopes=rules.envelopes.output,
+            draws=rules.random_sum.output.draws,
+            edges=rules.step_sweep.output.edges,
+            constants=rules.constants.output,
             twin_errors=rules.twins.output.errors,
             twin_claims=rules.twins.output.claims,
             published=PUBLISHED,
@@ -37,6 +41,8 @@ if TWIN:
             summary=f"{COMPARE}/summary.json",
             verdict=f"{COMPARE}/verdict.rst",
             page=f"{COMPARE}/verdict.md",
+            first=f"{COMPARE}/first.md",
+            margins=f"{COMPARE}/margins.csv",
             text=f"{COMPARE}/tables.txt",
             tables=report(
                 expand(f"{COMPARE}/tables/table-{{number}}.csv", number=[1, 2, 3, 4]),
@@ -61,6 +67,8 @@ if TWIN:
         shell:
             "hystbench compare {params.runs} {params.records}"
             " --order-sweep {input.order_sweep:q} --identified {input.identified:q}"
+            " --order-sweep-other {input.order_sweep_other:q} --draws {input.draws:q}"
+            " --edges {input.edges:q} --constants {input.constants:q}"
             " --envelopes {input.envelopes:q} --twin-errors {input.twin_errors:q}"
             " --twin-claims {input.twin_claims:q} --settings {params.settings:q}"
             " --out {params.folder:q} 2> {log:q}"
@@ -71,7 +79,7 @@ else:
         input:
             runs=runs(),
             envelopes=rules.envelopes.output,
-            order_sweep=rules.order_sweep.output,
+            order_sweep=rules.order_sweep.output.configured,
             code=code("hystbench.commands.compare_measured"),
         output:
             errors=report(

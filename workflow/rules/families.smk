@@ -42,4 +42,4 @@ rule families:
     message:
         "{params.folder} holds the twins of other families"
     shell:
-        "cp {input:q} {params.folder:q} 2> {log:q}"
+        "{{ " + COMMITTED + "cp {input:q} {params.folder:q}; }} 2> {log:q}"

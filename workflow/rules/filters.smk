@@ -36,7 +36,8 @@ rule order_sweep:
             *[f"hystbench.filters.{name}" for name in SETTINGS.filters],
         ),
     output:
-        f"{RESULTS}/order-sweep/errors.csv",
+        configured=f"{RESULTS}/order-sweep/errors.csv",
+        other=f"{RESULTS}/order-sweep/other-rule.csv",
     log:
         f"{RESULTS}/logs/order-sweep.log",
     benchmark:
@@ -47,4 +48,5 @@ rule order_sweep:
         "error against order"
     shell:
         "hystbench order-sweep {input.record:q} --identified {input.identified:q}"
-        " --settings {params.settings:q} --threads {threads} --out {output:q} 2> {log:q}"
+        " --settings {params.settings:q} --threads {threads}"
+        " --out {output.configured:q} --other {output.other:q} 2> {log:q}"

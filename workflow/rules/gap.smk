@@ -2,6 +2,7 @@
 # `snakemake gap` runs the worked example (config: gap: twin) and the datasets listed
 # there; `all` leaves it out for its time.
 from hystbench.dataset import load_dataset
+from hystbench.gap.asked import check_base
 
 GAP = f"{RESULTS}/gap"
 GAP_CASE = f"{GAP}/{{case}}"
@@ -64,8 +65,9 @@ for GIVEN in config["gap"]["datasets"]:
         GAP_DATASET = load_dataset(GIVEN["dataset"])
         if GAP_DATASET.name in GAP_CASES:
             raise InputError(f"a second dataset {GAP_DATASET.name!r}; expected one")
+        check_base(GIVEN["model"])
     except InputError as error:
-        sys.exit(f"hystbench: {PLACE}: gap: datasets: {error}")
+        refuse(f"{PLACE}: gap: datasets: {error}")
     GAP_CASES[GAP_DATASET.name] = {
         "dataset": str(GAP_DATASET.path),
         "fit": [
@@ -81,6 +83,8 @@ for GIVEN in config["gap"]["datasets"]:
         "model": GIVEN["model"],
         "limits": GIVEN.get("limits", {}),
     }
+    keep_out("gap: datasets", [GAP_DATASET.path, *GAP_DATASET.record_files.values()])
+    keep_out("gap: datasets: model", model_files(GIVEN["model"]))
 
 
 wildcard_constraints:
@@ -100,7 +104,7 @@ rule gap_check:
         model=model_of_case,
         code=code("hystbench.commands.gap_check"),
     output:
-        touch(f"{STAGES}/checked"),
+        f"{STAGES}/checked",
     log:
         f"{RESULTS}/logs/gap/{{case}}/check.log",
     benchmark:
@@ -111,7 +115,8 @@ rule gap_check:
     message:
         "files of {wildcards.case}"
     shell:
-        "hystbench gap-check {input.dataset:q} --model {params.model:q} 2> {log:q}"
+        "hystbench gap-check {input.dataset:q} --model {params.model:q} --out {output:q}"
+        " 2> {log:q}"
 
 
 # The base, read or identified, and the floor.

@@ -11,7 +11,11 @@ def model_of_case(wildcards):
 
     A base that is identified has none.
     """
-    model = GAP_CASES[wildcards.case]["model"]
+    return model_files(GAP_CASES[wildcards.case]["model"])
+
+
+def model_files(model):
+    """Files of a base: a model file, or the module of a function that lies here."""
     if model.endswith((".yaml", ".yml")):
         return [model]
     dotted, function, _ = model.partition(":")

@@ -7,6 +7,74 @@ FILTER_MODULES = [f"hystbench.filters.{name}" for name in SETTINGS.filters]
 
 if TWIN:
 
+    # The random sum drawn anew: its cells are medians over the draws.
+    rule random_sum:
+        input:
+            twin=SETTINGS.model_file,
+            identified=rules.identify.output,
+            rdgpi=rules.rdgpi_identify.output if "rdgpi" in SETTINGS.models else [],
+            published=PUBLISHED,
+            code=code("hystbench.commands.random_sum", *FILTER_MODULES),
+        output:
+            draws=f"{RESULTS}/random-sum/draws.csv",
+            readings=f"{RESULTS}/random-sum/readings.csv",
+        log:
+            f"{RESULTS}/logs/random-sum.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/random_sum.tsv"
+        params:
+            settings=settings_text(SETTINGS.random_sum_job),
+            rdgpi=lambda wildcards, input: options("--rdgpi", input.rdgpi),
+        message:
+            "draws of the random sum"
+        shell:
+            "hystbench random-sum {input.twin:q} --identified {input.identified:q}"
+            " {params.rdgpi} --settings {params.settings:q}"
+            " --draws {output.draws:q} --readings {output.readings:q} 2> {log:q}"
+
+    # How far each step size can go, beside Eq. 19's bound.
+    rule step_sweep:
+        input:
+            records=[record(signal) for signal in SETTINGS.signals],
+            identified=rules.identify.output,
+            code=code("hystbench.commands.step_sweep", *FILTER_MODULES),
+        output:
+            edges=f"{RESULTS}/step-sweep/edges.csv",
+            points=f"{RESULTS}/step-sweep/points.csv",
+        log:
+            f"{RESULTS}/logs/step-sweep.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/step_sweep.tsv"
+        params:
+            settings=settings_text(SETTINGS.step_sweep_job),
+        message:
+            "how far each step size can go"
+        shell:
+            "hystbench step-sweep {input.records:q} --identified {input.identified:q}"
+            " --settings {params.settings:q}"
+            " --edges {output.edges:q} --points {output.points:q} 2> {log:q}"
+
+    # The ranking with other zero errors, and with a constant tap.
+    rule constants:
+        input:
+            twins=SETTINGS.contest_files,
+            identified=rules.identify.output,
+            published=PUBLISHED,
+            code=code("hystbench.commands.constants", *FILTER_MODULES),
+        output:
+            f"{PRESSURE}/constants.csv",
+        log:
+            f"{RESULTS}/logs/pressure/constants.log",
+        benchmark:
+            f"{RESULTS}/logs/benchmarks/constants.tsv"
+        params:
+            settings=settings_text(SETTINGS.constants_job),
+        message:
+            "the ranking with other constants"
+        shell:
+            "hystbench constants {input.twins:q} --identified {input.identified:q}"
+            " --settings {params.settings:q} --out {output:q} 2> {log:q}"
+
     # As configured, for the spread of each cell and for where each claim holds. A
     # changed step size runs its filter again on the twins, and no other. What takes
     # longest goes first, so that no core waits for it at the end.
@@ -143,7 +211,35 @@ if TWIN:
             "hystbench figure contest --table {input.table:q}"
             " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
 
-    # `snakemake pressure`; `all` leaves it out for its time.
+    # What could explain the errors that stay far off; for docs/.
+    HYPOTHESES = []
+    if {"chirp-1-100hz", "sine-100hz", "sine-150hz", "sine-200hz"} <= {
+        *SETTINGS.signals
+    } and len(SETTINGS.filters) == 4:
+
+        rule hypotheses:
+            input:
+                twin=SETTINGS.model_file,
+                published=PUBLISHED,
+                code=code("hystbench.commands.hypotheses", *FILTER_MODULES),
+            output:
+                chirp=f"{RESULTS}/hypotheses/chirp.csv",
+                volterra=f"{RESULTS}/hypotheses/volterra.csv",
+            log:
+                f"{RESULTS}/logs/hypotheses.log",
+            benchmark:
+                f"{RESULTS}/logs/benchmarks/hypotheses.tsv"
+            params:
+                settings=settings_text(SETTINGS.hypotheses_job),
+            message:
+                "what could explain the errors that stay far off"
+            shell:
+                "hystbench hypotheses {input.twin:q} --settings {params.settings:q}"
+                " --chirp {output.chirp:q} --volterra {output.volterra:q} 2> {log:q}"
+
+        HYPOTHESES = rules.hypotheses.output
+
+        # `snakemake pressure`; `all` leaves it out for its time.
     rule pressure:
         input:
             rules.press.output,

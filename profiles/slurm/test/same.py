@@ -1,7 +1,8 @@
 """Whether two folders, or two files, hold the same results: same.py ONE OTHER.
 
-Every file but logs must be there in both and have the same bytes. Of JSON and CSV the
-times that a solver took are left out: the keys, columns and figures of TIMES.
+Every file but logs and lists of digests must be there in both and have the same bytes.
+Of JSON and CSV the times that a solver took are left out: the keys, columns and figures
+of TIMES.
 """
 
 import csv
@@ -39,11 +40,14 @@ def of_time(content: Any) -> bool:
 
 
 def files(folder: Path) -> set[Path]:
-    """Files of a folder, by their place in it, without logs; or the one file."""
+    """Files of a folder, by their place in it, or the one file.
+
+    Without logs, and without the digests that hystbench keeps of what it wrote.
+    """
     if folder.is_file():
         return {Path()}
     found = (file.relative_to(folder) for file in folder.rglob("*") if file.is_file())
-    return {file for file in found if "logs" not in file.parts}
+    return {file for file in found if not {"logs", ".hystbench"} & {*file.parts}}
 
 
 def main() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import yaml
 
-from hystbench.schema import load_yaml
+from hystbench.yaml_files import load_yaml
 
 config = load_yaml(sys.argv[1])
 config["signals"] = ["sine-040hz", "sine-100hz", "multisine-10-30-50hz"]

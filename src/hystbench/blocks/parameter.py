@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field
 from typing import Any, Literal
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, nearest, short
 
 Kind = Literal["number", "numbers", "choice", "text"]
 Value = float | tuple[float, ...] | str
@@ -60,19 +60,19 @@ class Parameter:
         if self.kind == "choice":
             if value not in self.options:
                 raise InputError(
-                    f"{name}: {value!r} is unknown; {nearest(value, self.options)}"
+                    f"{name}: {short(value)} is unknown; {nearest(value, self.options)}"
                 )
             return str(value)
         if self.kind == "text":
             if not isinstance(value, str) or not value.strip():
-                raise InputError(f"{name}: expected {self.meaning}, got {value!r}")
+                raise InputError(f"{name}: expected {self.meaning}, got {short(value)}")
             return value
         if self.kind == "number":
             return self._number(name, value)
         if self.names and isinstance(value, Mapping):
             value = self._in_order(name, value)
         if isinstance(value, str) or not isinstance(value, Sequence):
-            raise InputError(f"{name}: expected a list of numbers, got {value!r}")
+            raise InputError(f"{name}: expected a list of numbers, got {short(value)}")
         if self.names and len(value) != len(self.names):
             raise InputError(
                 f"{name}: expected {len(self.names)} numbers, got {len(value)}"
@@ -102,9 +102,9 @@ class Parameter:
     def _number(self, name: str, value: object) -> float:
         # bool is an int to Python, but `true` is no number in a model file.
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise InputError(f"{name}: expected a number, got {value!r}")
+            raise InputError(f"{name}: expected a number, got {short(value)}")
         if not math.isfinite(value):
-            raise InputError(f"{name}: expected a finite number, got {value!r}")
+            raise InputError(f"{name}: expected a finite number, got {short(value)}")
         if not self.low <= value <= self.high:
             raise InputError(
                 f"{name}: {value:g} is out of bounds, "

@@ -7,7 +7,7 @@ from typing import Any
 
 from hystbench.files import write_csv
 from hystbench.published import FILTERS
-from hystbench.schema import load_yaml
+from hystbench.yaml_files import load_yaml
 
 FIRST_ROUND = Path(__file__).with_suffix(".yaml")
 WHAT = ("structure", "input_zero", "window_start_s")

@@ -16,6 +16,7 @@ from hystbench.calibration.targets import Target
 from hystbench.calibration.twin import STEP_NAMES, UNKNOWNS, Unknown, make_twin
 from hystbench.errors import InputError
 from hystbench.files import read_json, write_json
+from hystbench.filters import MOST_CORRECTION
 from hystbench.record import FloatArray
 
 Tell = Callable[[str], None]
@@ -128,7 +129,10 @@ def jacobian(
         moved[k] += h
         values = to_values(moved, objective.unknowns)
         if name in owner:
-            rows = np.arange(len(targets)) * len(models) + models.index(owner[name])
+            place = models.index(owner[name])
+            errors = np.arange(len(targets)) * len(models) + place
+            # After the errors come an RMS a target, then a margin a model.
+            rows = [*errors, len(targets) * (len(models) + 1) + place]
             after = objective.step_residuals(values, targets, owner[name])
             columns[rows, k] = (after - now[rows]) / h
         else:
@@ -186,13 +190,31 @@ def calibrate(
         _write_state(state, key, done)
     final = done[-1]
     tell(f"finished: cost {final.cost:.4g}")
-    for name, excess in violations(make_twin(final.values)).items():
+    excesses = violations(make_twin(final.values)) | margin_excesses(
+        objective, targets, final.values
+    )
+    for name, excess in excesses.items():
         if excess > 1e-3:
             raise InputError(
                 f"calibration: constraint {name!r} is exceeded by {excess:.3g}; "
                 "expected a twin that meets it (more starts, other bounds)"
             )
     return final
+
+
+def margin_excesses(
+    objective: Objective, targets: tuple[Target, ...], values: dict[str, float]
+) -> dict[str, float]:
+    """Tell how far each filter's margin is exceeded; zero or less where it is kept."""
+    names = [target.signal for target in targets]
+    objective.cells(values, names)  # measures the records
+    return {
+        f"stability margin of {model}": max(
+            objective.corrections(values, model, names).values(), default=0.0
+        )
+        - MOST_CORRECTION
+        for model in STEP_NAMES
+    }
 
 
 def _place(item: Unknown, value: float) -> float:

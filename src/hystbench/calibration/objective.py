@@ -18,6 +18,7 @@ from hystbench.calibration.twin import (
     make_twin,
     step_sizes,
 )
+from hystbench.filters import MOST_CORRECTION
 from hystbench.measurement import measure
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -34,6 +35,8 @@ CONSTRAINT_SCALE = {
     "rise at the mode": 0.01,
 }
 """An excess over a constraint that counts as one: little, since it must be met."""
+MARGIN_SCALE = 0.005
+"""An excess over :data:`MOST_CORRECTION` that counts as one."""
 INCONSISTENT_WEIGHT = 0.5
 DIVERGED = 1e4  # um^2, stands for an MSE that is not a number
 
@@ -92,6 +95,7 @@ class Objective:
     identification: Mapping[str, Any] = field(default_factory=dict)
     identified: Mapping[str, Any] | None = None
     _records: dict[str, Record] = field(default_factory=dict, repr=False)
+    _powers: dict[tuple[Any, ...], float] = field(default_factory=dict, repr=False)
 
     def record(self, name: str, model: Model, input_zero: float) -> Record:
         """Measure a signal on the twin as ``hystbench measure`` does."""
@@ -116,7 +120,32 @@ class Objective:
             return self
         slow = self._measured(self.loop, self.make(dict(values)), values)
         found = identify_slow_loop(slow, self.identification)
-        return replace(self, identified=found.to_dict())
+        return replace(self, identified=found.to_dict(), _powers={})
+
+    def corrections(
+        self, values: Mapping[str, float], model: str, names: Iterable[str]
+    ) -> dict[str, float]:
+        """Largest correction of a filter on some signals, 2 mu max|H|^2.
+
+        It is the filter's stability margin; see
+        :meth:`hystbench.filters.AdaptiveFilter.correction`. The records are those of
+        the last :meth:`cells`.
+        """
+        settings = {
+            **self.filters[model],
+            "convergence_factor": step_sizes(dict(values))[model],
+        }
+        found = {}
+        for name in names:
+            record = self._records[name]
+            adaptive = make_filter(model, settings, record, self.identified)
+            # No plant and no step size changes the regressor: only the input does.
+            recorded = (values.get("input zero", 0.0), values.get("input noise", 0.0))
+            key = (model, name, *recorded)
+            if key not in self._powers:
+                self._powers[key] = adaptive.largest_power(record.u)
+            found[name] = adaptive.correction(self._powers[key])
+        return found
 
     def mse(self, model: str, record: Record, steps: Mapping[str, float]) -> float:
         """MSE of a filter on a record after the start of the window."""
@@ -145,8 +174,12 @@ class Objective:
     def residuals(
         self, values: Mapping[str, float], targets: tuple[Target, ...]
     ) -> FloatArray:
-        """Give the residuals: errors by signal and filter, RMS, constraints."""
-        found = self.cells(values, [target.signal for target in targets])
+        """Give the residuals: errors, RMS, stability margins, constraints.
+
+        Errors come by signal and filter, RMS by signal and margins by filter.
+        """
+        names = [target.signal for target in targets]
+        found = self.cells(values, names)
         out = [
             error_residual(model, found.mse[target.signal][model], target)
             for target in targets
@@ -156,6 +189,7 @@ class Objective:
             (found.rms[target.signal] / target.rms - 1) / RMS_SCALE
             for target in targets
         ]
+        out += [self._margin_residual(values, model, names) for model in STEP_NAMES]
         out += [
             max(excess, 0.0) / CONSTRAINT_SCALE[name]
             for name, excess in violations(self.make(dict(values))).items()
@@ -167,19 +201,24 @@ class Objective:
     ) -> FloatArray:
         """Give one filter's residuals on the records of the last :meth:`cells`.
 
-        A step size changes nothing else, so its column of the Jacobian is cheap.
+        Its errors by signal, then its stability margin. A step size changes nothing
+        else, so its column of the Jacobian is cheap.
         """
         steps = step_sizes(dict(values))[model]
-        return np.array(
-            [
-                error_residual(
-                    model,
-                    self.mse(model, self._records[target.signal], steps),
-                    target,
-                )
-                for target in targets
-            ]
-        )
+        errors = [
+            error_residual(
+                model, self.mse(model, self._records[target.signal], steps), target
+            )
+            for target in targets
+        ]
+        names = [target.signal for target in targets]
+        return np.array([*errors, self._margin_residual(values, model, names)])
+
+    def _margin_residual(
+        self, values: Mapping[str, float], model: str, names: Iterable[str]
+    ) -> float:
+        most = max(self.corrections(values, model, names).values(), default=0.0)
+        return max(most - MOST_CORRECTION, 0.0) / MARGIN_SCALE
 
 
 def error_residual(model: str, mse: float, target: Target) -> float:

@@ -56,13 +56,13 @@ BASE_UNKNOWNS = (
     Unknown("zero", "Hz", 1900, 20, 5000, True, "zero of the eddy-current lag"),
     Unknown("pole", "Hz", 166, 10, 2000, True, "pole of the eddy-current lag"),
     Unknown("mode", "Hz", 63, 60, 70, False, "first mode; 69.7 Hz seen in a sweep"),
-    Unknown("damping", "-", 0.011, 0.01, 0.15, True, "damping ratio of the mode"),
+    Unknown("damping", "-", 0.011, 0.003, 0.15, True, "damping ratio of the mode"),
     Unknown(
         "participation", "-", -0.0044, -0.3, 0.3, False, "static share of the mode"
     ),
     Unknown("asymmetry", "1/um", -6e-4, -0.02, 0.02, False, "square before the lag"),
     Unknown("offset", "um", -0.2, -2, 2, False, "sensor's zero"),
-    Unknown("noise", "um", 0.021, 0.02, 0.15, True, "RMS of the sensor noise"),
+    Unknown("noise", "um", 0.021, 0.003, 0.15, True, "RMS of the sensor noise"),
     Unknown(
         "input zero", "A", -0.0057, -0.03, 0.03, False, "recorded minus true input"
     ),

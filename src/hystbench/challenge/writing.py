@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.challenge.case import Case
 from hystbench.errors import InputError
-from hystbench.files import write_json, write_text
+from hystbench.files import whole_folder, write_json, write_text
 from hystbench.record import Record
 
 HEADER = "time_s,current_A,displacement_um\n"
@@ -34,8 +34,10 @@ def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
     """
     folder, truth_file = Path(folder), Path(truth_file)
     check_places(folder, truth_file)
-    write_folder(case, folder)
+    # The folder comes last: next time it would be refused, as it would not be empty.
     write_json(truth_file, case.truth)
+    with whole_folder(folder, ()) as fresh:
+        write_folder(case, fresh)
 
 
 def write_folder(case: Case, folder: Path) -> None:

@@ -8,14 +8,16 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.challenge.contest.chunk import make_chunk
+from hystbench.challenge.contest.chunk import WRITTEN, make_chunk
 from hystbench.challenge.contest.plan import chunks, plan
+from hystbench.files import whole_folder
 
 
 @click.command()
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def blind_make(settings: dict[str, Any], out: Path) -> None:
     """Write a folder a case; no truth is written anywhere."""
     entries = chunks(plan(settings["set"], settings["scale"]), settings["size"])
-    make_chunk(entries[settings["chunk"]], out)
+    with whole_folder(out, WRITTEN) as fresh:
+        make_chunk(entries[settings["chunk"]], fresh)

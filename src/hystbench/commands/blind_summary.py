@@ -10,14 +10,15 @@ import click
 from hystbench import options
 from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
 from hystbench.challenge.contest.rows import read_rows
-from hystbench.challenge.contest.writing import write_score
+from hystbench.challenge.contest.writing import WRITTEN, write_score
+from hystbench.files import whole_folder
 
 
 @click.command()
 @click.argument("judged", type=options.FILE, nargs=-1, required=True)
 @click.option("--transfer", type=options.FILE, multiple=True, help="Judged elsewhere.")
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def blind_summary(
     judged: tuple[Path, ...],
     transfer: tuple[Path, ...],
@@ -39,11 +40,12 @@ def blind_summary(
             )
         },
     }
-    write_score(
-        read_rows(judged),
-        read_rows(transfer),
-        settings["solver"],
-        about,
-        settings["skipped"],
-        out,
-    )
+    with whole_folder(out, WRITTEN) as fresh:
+        write_score(
+            read_rows(judged),
+            read_rows(transfer),
+            settings["solver"],
+            about,
+            settings["skipped"],
+            fresh,
+        )

@@ -10,11 +10,15 @@ import click
 from hystbench import options
 from hystbench.calibration.run import run_calibration
 from hystbench.calibration.twin import step_sizes
+from hystbench.files import whole_folder
+from hystbench.written import check_free, remove
+
+WRITTEN = ("gma.yaml", "report.json", "uncertainty/gma-*.yaml")
 
 
 @click.command()
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def calibrate(settings: dict[str, Any], out: Path) -> None:
     """Fit the twin and one step size a filter to the calibration signals' errors.
 
@@ -23,14 +27,16 @@ def calibrate(settings: dict[str, Any], out: Path) -> None:
     finished descents: an interrupted run goes on after the last of them.
     """
     state = out / "state.json"
-    best = run_calibration(
-        settings,
-        model=out / "gma.yaml",
-        uncertainty=out / "uncertainty",
-        report=out / "report.json",
-        state=state,
-        tell=lambda line: click.echo(line, err=True),
-    )
+    check_free(state)
+    with whole_folder(out, WRITTEN) as fresh:
+        best = run_calibration(
+            settings,
+            model=fresh / "gma.yaml",
+            uncertainty=fresh / "uncertainty",
+            report=fresh / "report.json",
+            state=state,
+            tell=lambda line: click.echo(line, err=True),
+        )
     for model, steps in step_sizes(best.values).items():
         for key, value in steps.items():
             click.echo(
@@ -39,4 +45,4 @@ def calibrate(settings: dict[str, Any], out: Path) -> None:
     click.echo(f"config.yaml: twin: input_zero_error: {best.values['input zero']:.6g}")
     click.echo(f"config.yaml: twin: input_noise: {best.values['input noise']:.6g}")
     # Done: another run shall calculate, not remember.
-    state.unlink(missing_ok=True)
+    remove(state)

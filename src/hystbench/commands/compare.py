@@ -9,6 +9,7 @@ import click
 
 from hystbench import options
 from hystbench.compare import comparison
+from hystbench.files import whole_folder
 
 
 @click.command()
@@ -18,9 +19,13 @@ from hystbench.compare import comparison
 @click.option("--envelopes", type=options.FILE, help="GPO errors by envelopes (CSV).")
 @click.option("--twin-errors", type=options.FILE, help="Errors by twin (CSV).")
 @click.option("--twin-claims", type=options.FILE, help="Claims by twin (CSV).")
+@click.option("--draws", type=options.FILE, help="Draws of the random sum (CSV).")
+@click.option("--edges", type=options.FILE, help="Edges of the step sizes (CSV).")
+@click.option("--constants", type=options.FILE, help="Ranking by constant (CSV).")
+@click.option("--order-sweep-other", type=options.FILE, help="By order, other rule.")
 @options.identified
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def compare(
     runs: tuple[Path, ...],
     records: tuple[Path, ...],
@@ -28,19 +33,28 @@ def compare(
     envelopes: Path | None,
     twin_errors: Path | None,
     twin_claims: Path | None,
+    draws: Path | None,
+    edges: Path | None,
+    constants: Path | None,
+    order_sweep_other: Path | None,
     identified: Path | None,
     settings: dict[str, Any],
     out: Path,
 ) -> None:
     """Compare runs with the paper: cells, claims, audit, summary and tables."""
-    comparison.compare(
-        out,
-        runs,
-        records,
-        order_sweep,
-        identified,
-        envelopes,
-        held_out=comparison.held_out_signals(settings["calibrated"]),
-        twin_errors=twin_errors,
-        twin_claims=twin_claims,
-    )
+    with whole_folder(out, comparison.WRITTEN) as fresh:
+        comparison.compare(
+            fresh,
+            runs,
+            records,
+            order_sweep,
+            identified,
+            envelopes,
+            held_out=comparison.held_out_signals(settings["calibrated"]),
+            twin_errors=twin_errors,
+            twin_claims=twin_claims,
+            draws=draws,
+            edges=edges,
+            constants=constants,
+            order_sweep_other=order_sweep_other,
+        )

@@ -8,12 +8,14 @@ import click
 
 from hystbench import options
 from hystbench.compare import measured
+from hystbench.files import whole_folder
 
 
 @click.command()
 @click.argument("dataset")
 @click.option("--run", "runs", multiple=True, type=options.FILE, help="Run (JSON).")
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def compare_measured(dataset: str, runs: tuple[Path, ...], out: Path) -> None:
     """Write the errors of all models on the records of DATASET."""
-    measured.compare_measured(out, dataset, runs)
+    with whole_folder(out, measured.WRITTEN) as fresh:
+        measured.compare_measured(fresh, dataset, runs)

@@ -8,8 +8,9 @@ from typing import Any
 import click
 
 from hystbench import options
+from hystbench.files import whole_folder
 from hystbench.pressure.contest import Entry, hold_contest, rank
-from hystbench.pressure.contest_report import write_contest
+from hystbench.pressure.contest_report import WRITTEN, write_contest
 from hystbench.pressure.twins import read_twins
 from hystbench.published import load
 
@@ -17,12 +18,13 @@ from hystbench.published import load
 @click.command()
 @click.argument("twins", type=options.FILE, nargs=-1, required=True)
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def contest(twins: tuple[Path, ...], settings: dict[str, Any], out: Path) -> None:
     """Run all filters on TWINS with a grid of step sizes, LMS and normalized LMS."""
-    entries: list[Entry] = []
-    for twin in read_twins(twins):
-        click.echo(f"twin {twin.name} ({twin.family})", err=True)
-        entries += hold_contest(twin, settings)
-    published = {(p.signal, p.model): p.mse.value for p in load()}
-    write_contest(entries, rank(entries, published), out)
+    with whole_folder(out, WRITTEN) as fresh:
+        entries: list[Entry] = []
+        for twin in read_twins(twins):
+            click.echo(f"twin {twin.name} ({twin.family})", err=True)
+            entries += hold_contest(twin, settings)
+        published = {(p.signal, p.model): p.mse.value for p in load()}
+        write_contest(entries, rank(entries, published), fresh)

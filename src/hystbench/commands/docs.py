@@ -73,7 +73,7 @@ def _fill(page: Path) -> None:
     for found in pictures:
         _copy(Path(found["source"]), page.parent / found["copy"])
     if filled != text:
-        write_text(page, filled)
+        write_text(page, filled, edit=True)
 
 
 def _maker(source: str) -> str:
@@ -122,5 +122,5 @@ def _table(page: Path, source: Path, choice: str) -> str:
 def _copy(source: Path, copy: Path) -> None:
     content = source.read_bytes()
     if not copy.is_file() or copy.read_bytes() != content:
-        with atomic_path(copy) as temporary:
+        with atomic_path(copy, edit=True) as temporary:
             temporary.write_bytes(content)

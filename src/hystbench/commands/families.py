@@ -10,7 +10,7 @@ import click
 from hystbench import options
 from hystbench.calibration.targets import targets
 from hystbench.families import FAMILIES, Task, fit_family
-from hystbench.files import write_json
+from hystbench.files import whole_folder, write_json
 from hystbench.model import Model, load_model
 from hystbench.signals import load_signal
 
@@ -20,9 +20,7 @@ from hystbench.signals import load_signal
 @click.option("--model", type=options.FILE, required=True, help="The twin (YAML).")
 @click.option("--loop", type=options.FILE, required=True, help="The slow signal.")
 @options.settings
-@click.option(
-    "--out", type=options.NEW_FILE, required=True, help="Folder of the model files."
-)
+@options.out_folder
 def families(
     signals: tuple[Path, ...],
     model: Path,
@@ -46,14 +44,15 @@ def families(
         settings["seed"],
     )
     report = {task.model.name: _judge(task, task.model)}
-    for family in FAMILIES.values():
-        fit = fit_family(family, task, tell=lambda line: click.echo(line, err=True))
-        fit.twin.save(out / f"{fit.twin.name}.yaml")
-        report[fit.twin.name] = {
-            **_judge(task, fit.twin),
-            "at_bounds": list(fit.at_bounds),
-        }
-    write_json(out / "families.json", report)
+    with whole_folder(out, ("families.json", "*.yaml")) as fresh:
+        for family in FAMILIES.values():
+            fit = fit_family(family, task, tell=lambda line: click.echo(line, err=True))
+            fit.twin.save(fresh / f"{fit.twin.name}.yaml")
+            report[fit.twin.name] = {
+                **_judge(task, fit.twin),
+                "at_bounds": list(fit.at_bounds),
+            }
+        write_json(fresh / "families.json", report)
 
 
 def _judge(task: Task, twin: Model) -> dict[str, Any]:

@@ -7,24 +7,26 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.files import check_writable
+from hystbench.gap.asked import check_base
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
+from hystbench.gap.limits import Limits
 from hystbench.gap.run import close_gap
 from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option(
     "--model",
     required=True,
     help="Model file, gpi, linear, column, or package.module:function.",
 )
-@click.option("--out", type=click.Path(path_type=Path), required=True)
+@options.out_folder
 @options.write_experiment
 @options.limits
 @options.unnamed_share
+@options.calls
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
 def gap(
     dataset: Path,
@@ -35,28 +37,37 @@ def gap(
     limit_high: float | None,
     limit_rate: float | None,
     unnamed_share: float,
+    calls: int | None,
+    keep_calls: bool,
     report: bool,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
 
     Writes OUT/gap.json, model.yaml, holdout/ and report.html.
     """
-    if write_experiment is not None:
-        check_writable(write_experiment.parent)
+
+    def say(line: str) -> None:
+        click.echo(line, err=True)
+
+    asked = options.asked_limits(limit_low, limit_high, limit_rate)
+    check_base(model)
     evidence = load_evidence(dataset)
-    base, note = load_base(model, evidence)
-    if note:
-        click.echo(note)
-    finding = close_gap(
-        evidence,
-        base,
-        out,
-        place=model,
-        limits=options.asked_limits(limit_low, limit_high, limit_rate),
-        unnamed_share=unnamed_share,
-        report=report,
-        say=lambda line: click.echo(line, err=True),
-    )
+    options.warn(evidence.warnings)
+    Limits.within(evidence.fit, asked)  # refuses, before work is paid
+    with options.counted_calls(calls, keep_calls, say):
+        base, note = load_base(model, evidence)
+        if note:
+            click.echo(note)
+        finding = close_gap(
+            evidence,
+            base,
+            out,
+            place=model,
+            limits=asked,
+            unnamed_share=unnamed_share,
+            report=report,
+            say=say,
+        )
     if write_experiment is not None:
         click.echo(write_wanted(finding, evidence.input, write_experiment))
     effects = [item["name"] for item in finding.content["effects"]]

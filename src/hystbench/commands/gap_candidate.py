@@ -17,12 +17,13 @@ from hystbench.gap.stages import try_one
 
 @click.command()
 @click.argument("effect")
-@click.option("--dataset", type=click.Path(path_type=Path), required=True)
+@click.option("--dataset", type=options.DATASET, required=True)
 @click.option("--base", type=options.FILE, required=True, help="Model file.")
 @click.option(
     "--before", type=options.FILE, required=True, help="Progress before the round."
 )
 @options.out
+@options.kept_calls
 def gap_candidate(
     effect: str, dataset: Path, base: Path, before: Path, out: Path
 ) -> None:

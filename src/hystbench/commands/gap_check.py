@@ -6,25 +6,34 @@ from pathlib import Path
 
 import click
 
-from hystbench.gap.bases import IDENTIFIED, given_base
+from hystbench import options
+from hystbench.files import write_text
+from hystbench.gap.asked import IDENTIFIED, check_base
+from hystbench.gap.bases import given_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.start import run_base
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option("--model", required=True, help="As for hystbench gap.")
-def gap_check(dataset: Path, model: str) -> None:
+@click.option("--out", type=options.NEW_FILE, help="Empty file to write.")
+@options.kept_calls
+def gap_check(dataset: Path, model: str, out: Path | None = None) -> None:
     """Check all records of DATASET, those held out too, and the base MODEL on them.
 
-    A base that is to be identified is not checked. Writes nothing.
+    A base that is to be identified is not checked.
     """
+    check_base(model)
     evidence = load_evidence(dataset)
+    options.warn(evidence.warnings)
     if model not in IDENTIFIED:
         base, _ = given_base(model, evidence)
         run_base(base, evidence.hold_out, evidence.hold)
-    click.echo(
+    told = (
         f"{evidence.name}: {len(evidence.fit)} records to fit and "
-        f"{len(evidence.hold_out)} held out can be used",
-        err=True,
+        f"{len(evidence.hold_out)} held out can be used"
     )
+    click.echo(told, err=True)
+    if out is not None:
+        write_text(out, "")  # nothing of the hold-out records is told to later jobs

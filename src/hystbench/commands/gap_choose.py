@@ -15,12 +15,13 @@ from hystbench.gap.stages import choose
 
 @click.command()
 @click.argument("candidates", nargs=-1, required=True, type=options.FILE)
-@click.option("--dataset", type=click.Path(path_type=Path), required=True)
+@click.option("--dataset", type=options.DATASET, required=True)
 @click.option("--base", type=options.FILE, required=True, help="Model file.")
 @click.option(
     "--before", type=options.FILE, required=True, help="Progress before the round."
 )
 @options.out
+@options.kept_calls
 def gap_choose(
     candidates: tuple[Path, ...], dataset: Path, base: Path, before: Path, out: Path
 ) -> None:

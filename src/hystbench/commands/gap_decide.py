@@ -14,7 +14,7 @@ from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option("--base", type=options.FILE, required=True, help="Model file.")
 @click.option(
     "--named",
@@ -24,7 +24,8 @@ from hystbench.gap.wanted import write_wanted
 @options.write_experiment
 @options.limits
 @options.unnamed_share
-@click.option("--out", type=click.Path(path_type=Path), required=True)
+@options.out_folder
+@options.kept_calls
 def gap_decide(
     dataset: Path,
     base: Path,

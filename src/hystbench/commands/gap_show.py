@@ -13,9 +13,10 @@ from hystbench.gap.jobs import show_in
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option("--base", type=options.FILE, required=True, help="Model file.")
-@click.option("--out", type=click.Path(path_type=Path), required=True)
+@options.out_folder
+@options.kept_calls
 def gap_show(dataset: Path, base: Path, out: Path) -> None:
     """Show on the hold-out records of DATASET how far the gap shrinks.
 

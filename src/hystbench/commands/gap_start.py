@@ -14,10 +14,11 @@ from hystbench.gap.stages import begin
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option("--model", required=True, help="As for hystbench gap.")
 @click.option("--base", type=options.NEW_FILE, required=True, help="Model to write.")
 @options.out
+@options.kept_calls
 def gap_start(dataset: Path, model: str, base: Path, out: Path) -> None:
     """Read or identify the base MODEL, and measure the noise floor.
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.files import read_json
-from hystbench.gap.example import write_example
+from hystbench.files import read_json, whole_folder
+from hystbench.gap.example import WRITTEN, write_example
 from hystbench.record import load_record
 
 
@@ -23,7 +23,7 @@ from hystbench.record import load_record
     required=True,
     help="What Algorithm 1 found (JSON).",
 )
-@click.option("--out", type=click.Path(path_type=Path), required=True)
+@options.out_folder
 def gap_twin(
     fit: tuple[Path, ...], hold_out: tuple[Path, ...], identified: Path, out: Path
 ) -> None:
@@ -31,9 +31,10 @@ def gap_twin(
 
     Writes OUT/dataset/ and OUT/base.yaml.
     """
-    write_example(
-        [load_record(path) for path in fit],
-        [load_record(path) for path in hold_out],
-        read_json(identified),
-        out,
-    )
+    with whole_folder(out, WRITTEN) as fresh:
+        write_example(
+            [load_record(path) for path in fit],
+            [load_record(path) for path in hold_out],
+            read_json(identified),
+            fresh,
+        )

@@ -16,7 +16,7 @@ from hystbench.errors import InputError, nearest
 from hystbench.files import read_json, write_csv
 from hystbench.published import FILTERS, load
 from hystbench.published.consistency import check
-from hystbench.schema import load_yaml
+from hystbench.yaml_files import load_yaml
 
 COLUMNS = (
     "structure",
@@ -33,7 +33,7 @@ COLUMNS = (
 @click.argument("tried", type=options.FILE, nargs=-1, required=True)
 @click.option("--choice", type=options.FILE, required=True, help="Committed choice.")
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True)
+@options.out
 def held_out(
     tried: tuple[Path, ...], choice: Path, settings: dict[str, Any], out: Path
 ) -> None:

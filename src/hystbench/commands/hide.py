@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from hystbench import options
 from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec, draw_spec, kind_of
 from hystbench.challenge.writing import check_places, write_case
@@ -25,8 +26,8 @@ from hystbench.errors import InputError
 @click.option("--seed", type=int, required=True)
 @click.option("--spread", type=float, default=1.0, help="Factor on the ranges.")
 @click.option("--campaign", default="standard", help="standard or other records.")
-@click.option("--out", type=click.Path(path_type=Path), required=True)
-@click.option("--truth", type=click.Path(path_type=Path), required=True)
+@options.out_folder
+@click.option("--truth", type=options.NEW_FILE, required=True)
 def hide(
     effects: tuple[str, ...],
     kind: str | None,

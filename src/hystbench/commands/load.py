@@ -8,18 +8,24 @@ import click
 
 from hystbench import options
 from hystbench.dataset import load_dataset
+from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
 
 
 @click.command()
-@click.argument("dataset", type=click.Path(exists=True, path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.argument("name")
 @options.out
 def load(dataset: Path, name: str, out: Path) -> None:
-    """Read the record NAME of DATASET (a dataset.yaml or its folder)."""
+    """Read the record NAME of DATASET (a dataset.yaml or its folder).
+
+    Warnings that concern it are shown; for them the other records are read too.
+    """
     measured = load_dataset(dataset)
     if name not in measured.record_files:
         raise InputError(
             f"{dataset}: no record {name!r}; {nearest(name, measured.record_files)}"
         )
-    measured.read(name).save(out)
+    records = {other: measured.read(other) for other in measured.record_files}
+    options.warn(doubts(measured, list(records.values()), name))
+    records[name].save(out)

@@ -11,20 +11,24 @@ import click
 from hystbench import options
 from hystbench.compare.claims.claim import Claim
 from hystbench.compare.comparison import held_out_signals
+from hystbench.files import whole_folder
 from hystbench.pressure.ensemble import run_ensemble, step_choices
 from hystbench.pressure.fits import fit_rdgpi
 from hystbench.pressure.judging import Count, count, press, pressed_claims
-from hystbench.pressure.report import write_pressure
+from hystbench.pressure.report import WRITTEN, write_pressure
 from hystbench.pressure.runs import filter_jobs
 from hystbench.pressure.twins import read_twins
+from hystbench.written import check_free
 
 
 @click.command()
 @click.argument("twins", type=options.FILE, nargs=-1, required=True)
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def pressure(twins: tuple[Path, ...], settings: dict[str, Any], out: Path) -> None:
     """Judge the claims on TWINS with several seeds and step sizes."""
+    for name in WRITTEN:
+        check_free(out / name)
     design = settings["design"]
     factors, filters = design["step_factors"], list(filter_jobs(settings))
     held_out = held_out_signals(settings["calibrated"])
@@ -48,4 +52,5 @@ def pressure(twins: tuple[Path, ...], settings: dict[str, Any], out: Path) -> No
         "step_choices": min(design["step_choices"], possible),
         "step_choices_possible": possible,
     }
-    write_pressure(press(counts, claims), counts, told, out)
+    with whole_folder(out, WRITTEN) as fresh:
+        write_pressure(press(counts, claims), counts, told, fresh)

@@ -9,6 +9,7 @@ import click
 
 from hystbench import options
 from hystbench.errors import InputError, nearest
+from hystbench.written import writes
 
 #: Modules of hystbench.entrants by the rivals' names.
 RIVALS = {
@@ -22,9 +23,9 @@ RIVALS = {
 
 @click.command()
 @click.argument("name")
-@click.argument("dataset", type=click.Path(exists=True, path_type=Path))
+@click.argument("dataset", type=options.DATASET)
 @click.option("--model", type=options.FILE, required=True, help="Model file (YAML).")
-@click.option("--out", type=options.NEW_FILE, required=True, help="Folder to write.")
+@options.out_folder
 def rival(name: str, dataset: Path, model: Path, out: Path) -> None:
     """Let the rival NAME write a gap.json for DATASET.
 
@@ -33,6 +34,7 @@ def rival(name: str, dataset: Path, model: Path, out: Path) -> None:
     """
     if name not in RIVALS:
         raise InputError(f"rival: no {name!r}; {nearest(name, RIVALS)}")
+    writes(out / "gap.json")
     importlib.import_module(f"hystbench.entrants.{RIVALS[name]}").solve(
         dataset, model, out
     )

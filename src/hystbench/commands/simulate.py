@@ -11,11 +11,11 @@ import numpy as np
 
 from hystbench import options
 from hystbench.blocks.held import HOLDS, Hold
-from hystbench.dataset import load_dataset
+from hystbench.dataset import load_dataset, read_input
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_csv
 from hystbench.model import load_model
-from hystbench.record import Channel, FloatArray, Record, load_record
+from hystbench.record import Channel, FloatArray, Record, column_name, load_record
 from hystbench.signals import load_signal
 from hystbench.units import check_same_unit
 
@@ -38,7 +38,7 @@ class Run(NamedTuple):
 @click.argument("record", type=options.FILE)
 @click.option(
     "--dataset",
-    type=click.Path(exists=True, path_type=Path),
+    type=options.DATASET,
     help="The dataset.yaml of a CSV record; by default the one beside it.",
 )
 @click.option(
@@ -52,10 +52,12 @@ def simulate(
 ) -> None:
     """Run MODEL on RECORD and write time, input, measured and simulated output.
 
-    RECORD is a CSV file of a dataset, or an archive (.npz) of a record or a signal.
+    RECORD is a CSV file of a dataset, or an archive (.npz) of a record or a signal; or
+    a CSV file of one's own, with no dataset.yaml beside it, of two columns: time_s and
+    the model's input, named with its unit, such as current_A.
     """
     system = load_model(model)
-    run = _read(record, dataset)
+    run = _read(record, dataset, system.input)
     pairs = [("input", system.input, run.input), ("output", system.output, run.output)]
     for side, ours, theirs in pairs:
         if theirs is not None:
@@ -74,11 +76,11 @@ def simulate(
             f"{record} on; expected a model that stays bounded"
         )
     time = np.arange(len(y)) * run.dt
-    columns = {"time_s": time, _column(run.input.name, run.input.unit): run.u}
+    columns = {"time_s": time, column_name(run.input.name, run.input.unit): run.u}
     if run.y is not None and run.output is not None:
-        columns[_column("measured", run.output.unit)] = run.y
+        columns[column_name("measured", run.output.unit)] = run.y
     unit = (run.output or system.output).unit  # one unit, in the record's spelling
-    columns[_column("simulated", unit)] = y
+    columns[column_name("simulated", unit)] = y
     cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
     write_csv(out, list(columns), zip(*cells, strict=True))
     click.echo(
@@ -87,9 +89,9 @@ def simulate(
     )
 
 
-def _read(record: Path, dataset: Path | None) -> Run:
+def _read(record: Path, dataset: Path | None, expected: Channel) -> Run:
     if record.suffix != ".npz":
-        return _read_csv(record, dataset)
+        return _read_csv(record, dataset, expected)
     if dataset is not None:
         raise InputError(f"{record}: an archive; expected no --dataset with it")
     if _names(record) >= {"name", "dt", "u", "unit"}:
@@ -100,12 +102,11 @@ def _read(record: Path, dataset: Path | None) -> Run:
     return Run(found.dt, found.u, found.input, found.y, found.output, None, found)
 
 
-def _read_csv(record: Path, dataset: Path | None) -> Run:
+def _read_csv(record: Path, dataset: Path | None, expected: Channel) -> Run:
     beside = record.parent / "dataset.yaml"
     if dataset is None and not beside.is_file():
-        raise InputError(
-            f"{record}: no dataset.yaml beside it; expected one, or --dataset"
-        )
+        dt, u = read_input(record, column_name(expected.name, expected.unit))
+        return Run(dt, u, expected, None, None, None)
     about = load_dataset(dataset or beside)
     for name, file in about.record_files.items():
         if file.resolve() == record.resolve():
@@ -127,8 +128,3 @@ def _names(archive: Path) -> set[str]:
             return {Path(name).stem for name in content.namelist()}
     except (OSError, zipfile.BadZipFile) as error:
         raise InputError(f"{archive}: not an archive of NumPy ({error})") from error
-
-
-def _column(name: str, unit: str) -> str:
-    """Name of a column with its unit, as files of datasets have it."""
-    return f"{name}_{unit}".replace("/", "_per_").replace(" ", "_")

@@ -16,7 +16,7 @@ from hystbench.files import write_json
 @click.command()
 @click.argument("name")
 @options.settings
-@click.option("--out", type=options.NEW_FILE, required=True)
+@options.out
 def structure(name: str, settings: dict[str, Any], out: Path) -> None:
     """Fit the structure NAME to the calibration signals; leave each out in turn."""
     found = try_structure(

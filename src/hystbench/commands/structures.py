@@ -13,7 +13,7 @@ from hystbench.files import read_json
 
 @click.command()
 @click.argument("tried", type=options.FILE, nargs=-1, required=True)
-@click.option("--out", type=options.NEW_FILE, required=True)
+@options.out
 @click.option(
     "--choice", type=options.NEW_FILE, required=True, help="What the rule chooses."
 )

@@ -9,7 +9,7 @@ import click
 
 from hystbench import options
 from hystbench.files import read_json
-from hystbench.pressure.configured import join
+from hystbench.pressure.configured import join, join_experiments
 from hystbench.pressure.report import write_twins
 from hystbench.pressure.runs import draw_signals
 from hystbench.pressure.twins import read_twins
@@ -33,5 +33,11 @@ def twins(
     """Put what was run on TWINS together: errors, and where claims hold."""
     parts = [read_json(path) for path in (fits, *runs)]
     signals = draw_signals(settings["signals"], 0).values()
-    found = [join(twin, signals, settings, parts) for twin in read_twins(twins)]
-    write_twins(found, errors, claims)
+    read = read_twins(twins)
+    found = [join(twin, signals, settings, parts) for twin in read]
+    others = (
+        ensemble
+        for place, twin in enumerate(read)
+        for ensemble in join_experiments(twin, place, settings, parts)
+    )
+    write_twins(found, others, errors, claims)

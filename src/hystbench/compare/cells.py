@@ -32,10 +32,14 @@ class ComparedCell:
     published : str
         As printed.
     ours : float or None
-        None where it was not run or diverged.
+        None where it was not run or diverged. Of a signal that was drawn many times
+        the median over the draws.
     spread_low, spread_high : float or None
         Smallest and largest of ours over equally good twins, infinite where a run
         diverged; None where there are no two of them.
+    draws_low, draws_high : float or None
+        Smallest and largest of ours over the draws of the signal, infinite where a run
+        diverged; None where it has none.
     published_consistent : {"yes", "no", "undecided"}
         Whether the printed pair of MSE and RE can be true beside the others of its
         signal; undecided where one of several pairs must be wrong.
@@ -52,6 +56,8 @@ class ComparedCell:
     ours: float | None
     spread_low: float | None
     spread_high: float | None
+    draws_low: float | None
+    draws_high: float | None
     published_consistent: Standing
     status: str
 
@@ -80,6 +86,14 @@ def twin_runs(runs: Mapping[Cell, Run]) -> dict[Cell, Run]:
     return {cell: run for cell, run in runs.items() if run.origin == "twin"}
 
 
+def _status(run: Run | None, ours: float | None) -> str:
+    if run is None:
+        return NOT_RUN
+    if ours is None and run.diverged is None:
+        return "diverged in half of the draws or more"
+    return run.status
+
+
 def compare_cells(
     evidence: Evidence, held_out: Iterable[str] = ()
 ) -> tuple[ComparedCell, ...]:
@@ -101,6 +115,11 @@ def compare_cells(
             ours = None
             if run is not None and run.diverged is None:
                 ours = run.error(metric)
+            drawn = evidence.drawn.get(pair.signal)
+            errors = drawn.errors.get((pair.model, metric), ()) if drawn else ()
+            if ours is not None and drawn and errors:
+                middle = drawn.median(pair.model, metric)
+                ours = middle if math.isfinite(middle) else None
             low, high = evidence.spreads.get(
                 (pair.signal, pair.model, metric), (None, None)
             )
@@ -115,8 +134,10 @@ def compare_cells(
                     ours=ours,
                     spread_low=low,
                     spread_high=high,
+                    draws_low=min(errors, default=None),
+                    draws_high=max(errors, default=None),
                     published_consistent=consistent[pair.signal, pair.model],
-                    status=NOT_RUN if run is None else run.status,
+                    status=_status(run, ours),
                 )
             )
     return tuple(cells)

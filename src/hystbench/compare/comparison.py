@@ -11,17 +11,28 @@ from typing import Any
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
+from hystbench.compare.edges import Edge, write_margins
 from hystbench.compare.evidence import Evidence, read_evidence
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.summary import rms_error_percent, summarise
 from hystbench.compare.tables import Table, paper_tables
-from hystbench.compare.verdict import print_tables, verdict_markdown, verdict_rst
+from hystbench.compare.verdict import (
+    first_result,
+    print_tables,
+    verdict_markdown,
+    verdict_rst,
+)
 from hystbench.files import write_csv, write_json, write_text
 from hystbench.published import load, signals
 from hystbench.published.audit import write_audit
 
 __all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
 
+WRITTEN = (
+    *("cells.csv", "off.csv", "claims.csv", "audit.csv", "summary.json", "margins.csv"),
+    *("first.md", "verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
+)
+"""Files of a comparison, as names or patterns."""
 CELL_COLUMNS = (
     "table",
     "signal",
@@ -32,6 +43,8 @@ CELL_COLUMNS = (
     "ours",
     "spread_low",
     "spread_high",
+    "draws_low",
+    "draws_high",
     "log10_ratio",
     "published_consistent",
     "status",
@@ -47,6 +60,8 @@ class Comparison:
     claims: tuple[Judgement, ...]
     summary: dict[str, Any]
     tables: tuple[Table, ...]
+    edges: tuple[Edge, ...]
+    held_out: frozenset[str]
 
     def text(self) -> str:
         """Give the comparison for a terminal."""
@@ -59,9 +74,11 @@ class Comparison:
         write_off(self.off, out / "off.csv")
         write_claims(self.claims, out / "claims.csv")
         write_audit(out / "audit.csv")
+        write_margins(self.edges, self.held_out, out / "margins.csv")
         write_json(out / "summary.json", self.summary)
         write_text(out / "verdict.rst", verdict_rst(self.summary))
         write_text(out / "verdict.md", verdict_markdown(self.summary))
+        write_text(out / "first.md", first_result(self.summary))
         write_text(out / "tables.txt", self.text())
         for table in self.tables:
             table.write(out / "tables")
@@ -75,7 +92,11 @@ def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
 
 def _cell_text(cell: ComparedCell, column: str) -> object:
     value = getattr(cell, column)
-    if column.startswith("spread") and value is not None and math.isinf(value):
+    if (
+        column.startswith(("spread", "draws"))
+        and value is not None
+        and math.isinf(value)
+    ):
         return "diverged"
     return value
 
@@ -90,13 +111,25 @@ def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Compar
     """Compare evidence that is already read; ``held_out`` as in ``summarise``."""
     unseen = set(held_out)
     cells = compare_cells(evidence, unseen)
-    claims = judge_all(evidence)
+    claims = judge_all(evidence, unseen)
     return Comparison(
         cells=cells,
         off=off_cells(cells, evidence),
         claims=claims,
-        summary=summarise(cells, claims, unseen, rms_error_percent(evidence)),
-        tables=paper_tables(cells),
+        summary=summarise(
+            cells,
+            claims,
+            unseen,
+            rms_error_percent(evidence),
+            rms_used=evidence.drawn,
+            edges=evidence.edges,
+            constants=evidence.constants,
+        ),
+        tables=paper_tables(
+            cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
+        ),
+        edges=evidence.edges,
+        held_out=frozenset(unseen),
     )
 
 
@@ -110,6 +143,10 @@ def compare(
     held_out: Iterable[str] = (),
     twin_errors: str | Path | None = None,
     twin_claims: str | Path | None = None,
+    draws: str | Path | None = None,
+    edges: str | Path | None = None,
+    constants: str | Path | None = None,
+    order_sweep_other: str | Path | None = None,
 ) -> Comparison:
     """Read the files of the runs, compare them with the paper, write what came out.
 
@@ -117,8 +154,9 @@ def compare(
     ----------
     out_dir : path
         Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
-        ``summary.json``, ``verdict.rst``, ``verdict.md``, ``tables.txt`` for the
-        terminal and ``tables/`` (Tables 1-4 as CSV, Markdown and LaTeX).
+        ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
+        ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
+        (Tables 1-4 as CSV, Markdown and LaTeX).
     runs : iterable of paths
         One JSON file for each signal and model.
     records : iterable of paths
@@ -132,6 +170,10 @@ def compare(
     twin_errors, twin_claims : path, optional
         Errors and claims on other twins, for the spread of each cell and for the
         families of twins on which each claim holds.
+
+    draws, edges, constants, order_sweep_other : path, optional
+        Draws of the random sum, edges of the step sizes, the ranking with other
+        constants, and the order sweep under the other rule for the step size.
 
     Raises
     ------
@@ -147,6 +189,10 @@ def compare(
             envelopes,
             twin_errors,
             twin_claims,
+            draws,
+            edges,
+            constants,
+            order_sweep_other,
         ),
         held_out,
     )

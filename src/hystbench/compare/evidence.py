@@ -11,6 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.compare.constants import Row, read_constants
+from hystbench.compare.draws import Drawn, read_draws
+from hystbench.compare.edges import Edge, read_edges
 from hystbench.compare.rows import finite_or_infinite, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
@@ -93,11 +96,15 @@ class Run:
 
 @dataclass(frozen=True)
 class OrderPoint:
-    """Error of one filter at one order (Figure 7); infinity where it diverged."""
+    """Error of one filter at one order (Figure 7); infinity where it diverged.
+
+    ``rule`` tells how the step size follows the order.
+    """
 
     model: str
     order: int
     mse: float
+    rule: str = ""
 
 
 @dataclass(frozen=True)
@@ -118,7 +125,10 @@ class Identification:
 class Evidence:
     """All that the claims are judged by; what was not run is missing here.
 
-    ``spreads`` and ``holdings`` are what other twins say; no claim is judged by them.
+    ``spreads`` and ``holdings`` are what other twins say, and ``constants`` what the
+    ranking is with other constants; no claim is judged by them. Errors of a signal in
+    ``drawn`` are the medians over its draws. ``order_sweep_other`` is the order
+    sweep with one step size for all orders.
     """
 
     published: tuple[Pair, ...] = field(default_factory=load)
@@ -126,12 +136,16 @@ class Evidence:
     runs: Mapping[Cell, Run] = field(default_factory=dict)
     records: Mapping[str, Record] = field(default_factory=dict)
     order_sweep: tuple[OrderPoint, ...] = ()
+    order_sweep_other: tuple[OrderPoint, ...] = ()
     identification: Identification | None = None
     envelope_errors: Mapping[Cell, float] = field(default_factory=dict)
     spreads: Mapping[tuple[str, str, Metric], tuple[float, float]] = field(
         default_factory=dict
     )
     holdings: Mapping[str, tuple[Holding, ...]] = field(default_factory=dict)
+    drawn: Mapping[str, Drawn] = field(default_factory=dict)
+    edges: tuple[Edge, ...] = ()
+    constants: tuple[Row, ...] = ()
 
 
 def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:
@@ -198,12 +212,16 @@ _ERRORS = ("mse", "re", "mse_after_transient", "re_after_transient")
 
 
 def read_order_sweep(path: str | Path) -> tuple[OrderPoint, ...]:
-    """Read the errors by order of each filter: model, order, mse, status."""
+    """Read the errors by order of each filter: model, order, mse, status, rule."""
+    columns = ("model", "order", "mse", "status", "rule")
     return tuple(
         OrderPoint(
-            row["model"], int(row["order"]), finite_or_infinite(row["mse"], path, n)
+            row["model"],
+            int(row["order"]),
+            finite_or_infinite(row["mse"], path, n),
+            row["rule"],
         )
-        for n, row in enumerate(read_rows(path, ("model", "order", "mse", "status")), 1)
+        for n, row in enumerate(read_rows(path, columns), 1)
     )
 
 
@@ -248,6 +266,10 @@ def read_evidence(
     envelopes: str | Path | None = None,
     twin_errors: str | Path | None = None,
     twin_claims: str | Path | None = None,
+    draws: str | Path | None = None,
+    edges: str | Path | None = None,
+    constants: str | Path | None = None,
+    order_sweep_other: str | Path | None = None,
 ) -> Evidence:
     """Read the files of a comparison; a path left out was not run.
 
@@ -270,4 +292,10 @@ def read_evidence(
         envelope_errors={} if envelopes is None else read_envelope_errors(envelopes),
         spreads={} if twin_errors is None else read_spreads(twin_errors),
         holdings={} if twin_claims is None else read_holdings(twin_claims),
+        drawn={} if draws is None else read_draws(draws),
+        edges=() if edges is None else read_edges(edges),
+        constants=() if constants is None else read_constants(constants),
+        order_sweep_other=(
+            () if order_sweep_other is None else read_order_sweep(order_sweep_other)
+        ),
     )

@@ -27,6 +27,10 @@ COLUMNS = (
 )
 
 
+WRITTEN = ("errors.csv", "tables.txt", "verdict.rst", "tables/errors.*")
+"""Files of a comparison, as names or patterns."""
+
+
 def compare_measured(
     out_dir: str | Path, dataset: str, runs: Iterable[str | Path]
 ) -> None:

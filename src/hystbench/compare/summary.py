@@ -11,12 +11,14 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 from statistics import fmean, median
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.claims.claim import Judgement
+from hystbench.compare.claims.claim import Basis, Judgement, Verdict
+from hystbench.compare.constants import Row
+from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import Evidence
 from hystbench.published import FILTERS
 from hystbench.published.consistency import check
@@ -76,22 +78,101 @@ def _agree(one: ComparedCell, other: ComparedCell) -> bool:
 def claim_counts(judgements: Iterable[Judgement]) -> dict[str, Any]:
     """Count verdicts, in all and by kind of claim."""
     listed = list(judgements)
-    by_kind: dict[str, dict[str, int]] = {}
-    for kind in dict.fromkeys(j.claim.kind for j in listed):
-        verdicts = Counter(j.verdict for j in listed if j.claim.kind == kind)
-        by_kind[kind] = {
-            "reproduced": verdicts["reproduced"],
-            "not_reproduced": verdicts["not reproduced"],
-            "not_testable": verdicts["not testable"],
-        }
+    by_kind = {
+        kind: _verdicts(j for j in listed if j.claim.kind == kind)
+        for kind in dict.fromkeys(j.claim.kind for j in listed)
+    }
+    bases = [b for b in get_args(Basis) if b]
     return {
-        "claims_reproduced": sum(k["reproduced"] for k in by_kind.values()),
-        "claims_not_reproduced": sum(k["not_reproduced"] for k in by_kind.values()),
-        "claims_not_testable": sum(k["not_testable"] for k in by_kind.values()),
         "claims_total": len(listed),
         "claims_reproduced_where": _where(listed),
         "claims_by_kind": by_kind,
+        "claims_by_basis": {
+            basis: _verdicts(j for j in listed if j.claim.basis == basis)
+            for basis in bases
+        },
+        "claims_without_basis": _verdicts(j for j in listed if not j.claim.basis),
+        "claims_on_held_out": _on_held_out(listed),
     }
+
+
+def _verdicts(judgements: Iterable[Judgement]) -> dict[str, int]:
+    counts = Counter(each.verdict for each in judgements)
+    return {word.replace(" ", "_"): counts[word] for word in get_args(Verdict)}
+
+
+def _on_held_out(judgements: Iterable[Judgement]) -> list[dict[str, str]]:
+    """List the results that can be judged on held-out signals alone, each with how.
+
+    A claim that is fitted in part stands where it is reproduced on the held-out signals
+    and on all: a trend over few of them says less. What the paper's own tables refute
+    is no result to be reproduced.
+    """
+    found = []
+    for each in judgements:
+        verdict = {"held-out": each.verdict, "fitted": each.held_out_verdict}.get(
+            each.claim.basis, ""
+        )
+        if verdict == "reproduced":
+            verdict = each.verdict
+        if (
+            each.claim.kind == "result"
+            and verdict in ("reproduced", "not reproduced")
+            and each.verdict != "refuted by the paper"
+        ):
+            own = {"id": each.claim.id, "claim": each.claim.claim, "verdict": verdict}
+            found.append(own | {"basis": each.claim.basis})
+    return found
+
+
+def eq19_finding(edges: Sequence[Edge]) -> dict[str, Any] | None:
+    """Count the edges inside Eq. 19's bound; None without a sweep.
+
+    ``example`` is the edge that lies deepest inside, or None.
+    """
+    if not edges:
+        return None
+    inside = [e for e in edges if e.edge is not None and e.edge < e.at_trace]
+    worst = min(inside, key=lambda e: (e.edge or 0) / e.at_trace, default=None)
+    return {
+        "edges": len(edges),
+        "inside": len(inside),
+        "example": worst
+        and {
+            "signal": worst.signal,
+            "model": worst.model,
+            "edge": worst.edge,
+            "bound": worst.at_trace,
+        },
+    }
+
+
+def constant_tap_finding(rows: Sequence[Row]) -> dict[str, Any] | None:
+    """Set the ranking with the largest constant tap beside that without one.
+
+    On the first twin. None where no constant tap was tried.
+    """
+    mine = [row for row in rows if row.twin == rows[0].twin]
+    usual = [row for row in mine if row.configured]
+    taps = [row for row in mine if row.constant_tap and not row.configured]
+    if not usual or not taps:
+        return None
+    chosen = max(taps, key=lambda row: row.constant_tap)
+
+    def told(row: Row) -> dict[str, Any]:
+        agree, total = (
+            sum(pair)
+            for pair in zip(row.pairs_calibrated, row.pairs_held_out, strict=True)
+        )
+        return {
+            "constant_tap": row.constant_tap,
+            "gpo_first": row.gpo_first,
+            "signals": row.signals,
+            "pairs_as_published": agree,
+            "pairs": total,
+        }
+
+    return {"without": told(usual[0]), "with": told(chosen)}
 
 
 def _where(judgements: Iterable[Judgement]) -> dict[str, int]:
@@ -114,6 +195,10 @@ def summarise(
     judgements: Iterable[Judgement],
     held_out: Iterable[str] = (),
     rms_errors: Mapping[str, float] | None = None,
+    *,
+    rms_used: Iterable[str] = (),
+    edges: Sequence[Edge] = (),
+    constants: Sequence[Row] = (),
 ) -> dict[str, Any]:
     """Sum up a comparison.
 
@@ -128,6 +213,11 @@ def summarise(
         step sizes. The filters' cells are split by them where there are any.
     rms_errors : mapping of str to float, optional
         As :func:`rms_error_percent` gives them.
+    rms_used : iterable of str
+        Held-out signals whose RMS displacement was used nevertheless: it counts with
+        the calibrated ones.
+    edges, constants : sequence
+        Edges of the step sizes, and the ranking with other constants.
 
     Returns
     -------
@@ -147,13 +237,15 @@ def summarise(
             for model in FILTERS
         },
         "orderings": orderings(filters),
-        **_split(filters, set(held_out), rms_errors or {}),
+        **_split(filters, set(held_out), rms_errors or {}, set(rms_used)),
         "rms_error_percent": dict(rms_errors or {}),
         "without_inconsistent": {
             "without_no": nearness(not_refuted),
             "without_no_and_undecided": nearness(sure),
         },
         "rdgpi": nearness([cell for cell in mse if cell.model == "rdgpi"]),
+        "eq19": eq19_finding(edges),
+        "constant_tap": constant_tap_finding(constants),
         **claim_counts(judgements),
     }
 
@@ -164,7 +256,8 @@ def rms_error_percent(evidence: Evidence) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        By signal of which there is a record: 100 (ours / implied - 1). The implied
+        By signal of which there is a record: 100 (ours / implied - 1); of a signal
+        that was drawn many times, the median over the draws. The implied
         one is the middle of what the consistent rows share; where one of several
         rows must be wrong, the mean of the middles.
     """
@@ -175,6 +268,8 @@ def rms_error_percent(evidence: Evidence) -> dict[str, float]:
             continue
         implied = fmean((rms.low + rms.high) / 2 for rms in checked.rms)
         ours = float(np.sqrt(np.mean(record.y**2)))
+        if signal in evidence.drawn:
+            ours = median(evidence.drawn[signal].rms)
         errors[signal] = 100 * (ours / implied - 1)
     return errors
 
@@ -183,23 +278,31 @@ def _split(
     cells: Sequence[ComparedCell],
     held_out: set[str],
     rms_errors: Mapping[str, float],
+    rms_used: set[str],
 ) -> dict[str, Any]:
-    """Sum up both halves apart, with a median for each model."""
+    """Sum up both halves apart, with a median for each model.
+
+    A signal whose RMS was used counts with the calibrated ones in that alone.
+    """
     if not held_out:
         return {}
     halves = {}
     for key, inside in (("calibrated", False), ("held_out", True)):
         half = [c for c in cells if (c.signal in held_out) is inside]
         found = nearness(half)
-        sizes = [abs(v) for s, v in rms_errors.items() if (s in held_out) is inside]
+        unseen = held_out - rms_used
+        sizes = [abs(v) for s, v in rms_errors.items() if (s in unseen) is inside]
+        per_model = {
+            model: nearness([c for c in half if c.model == model]) for model in FILTERS
+        }
         halves[key] = found | {
+            "per_model": per_model,
             "median_abs_log10_ratio": {
-                model: nearness([c for c in half if c.model == model])[
-                    "median_abs_log10_ratio"
-                ]
-                for model in FILTERS
+                model: part["median_abs_log10_ratio"]
+                for model, part in per_model.items()
             },
             "median_abs_log10_ratio_all": found["median_abs_log10_ratio"],
             "largest_rms_error_percent": max(sizes, default=None),
+            "orderings": orderings(half),
         }
     return halves

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -150,8 +150,13 @@ def error_kind(models: Iterable[str]) -> str:
     return f"{others}: {ONE_STEP}; rdgpi: {FREE_RUN}"
 
 
-def paper_table(number: int, cells: Iterable[ComparedCell]) -> Table:
-    """Set ours beside one table of the paper; Table 4 repeats the GPO filter."""
+def paper_table(
+    number: int, cells: Iterable[ComparedCell], draws: Mapping[str, int] | None = None
+) -> Table:
+    """Set ours beside one table of the paper; Table 4 repeats the GPO filter.
+
+    ``draws`` tells how often a signal was drawn.
+    """
     listed = list(cells)
     rows = list(dict.fromkeys(c.signal for c in listed if c.table == number))
     models = {c.model for c in listed if c.table == number}
@@ -177,7 +182,15 @@ def paper_table(number: int, cells: Iterable[ComparedCell]) -> Table:
             "its twin, a simulation."
         ),
         legend="; ".join(
-            [LEGEND, *_divergences(c for c in listed if c.table == number)]
+            [
+                LEGEND,
+                *(
+                    f"ours on {signal} are medians over {count} draws of its phases"
+                    for signal, count in (draws or {}).items()
+                    if signal in rows
+                ),
+                *_divergences(c for c in listed if c.table == number),
+            ]
         ),
         frame=pd.DataFrame(content, dtype=str),
     )
@@ -193,7 +206,9 @@ def _divergences(cells: Iterable[ComparedCell]) -> list[str]:
     return [f"{signal}, {model}: {status}" for (signal, model), status in told.items()]
 
 
-def paper_tables(cells: Iterable[ComparedCell]) -> tuple[Table, ...]:
-    """Make Tables 1-4."""
+def paper_tables(
+    cells: Iterable[ComparedCell], draws: Mapping[str, int] | None = None
+) -> tuple[Table, ...]:
+    """Make Tables 1-4; ``draws`` as in :func:`paper_table`."""
     listed = list(cells)
-    return tuple(paper_table(number, listed) for number in TITLES)
+    return tuple(paper_table(number, listed, draws) for number in TITLES)

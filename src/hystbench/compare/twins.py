@@ -12,22 +12,22 @@ from hystbench.published import METRICS, Metric
 
 #: Columns of the errors on all twins; an empty error is a diverged run.
 ERROR_COLUMNS = ("twin", "family", "signal", "model", "mse", "re", "status")
-#: Columns of the claims on all twins.
-CLAIM_COLUMNS = ("twin", "family", "claim", "holds")
+#: Columns of the claims on all twins; experiment 0 is the configured one.
+CLAIM_COLUMNS = ("twin", "family", "experiment", "claim", "holds")
 #: What the last of them may say.
 HOLDS = ("yes", "no", "not testable")
 
 
 @dataclass(frozen=True)
 class Holding:
-    """On how many twins of a family a claim holds.
+    """In how many experiments on the twins of a family a claim holds.
 
     Parameters
     ----------
     family : str
         Name of the block that makes the hysteresis.
     held, judged : int
-        Twins on which it holds, and on which it could be judged.
+        Experiments in which it holds, and in which it could be judged.
     """
 
     family: str
@@ -36,7 +36,7 @@ class Holding:
 
     @property
     def throughout(self) -> bool:
-        """Whether it holds on each of them."""
+        """Whether it holds in each of them."""
         return self.held == self.judged
 
     def __str__(self) -> str:
@@ -75,7 +75,7 @@ def read_spreads(
 
 
 def read_holdings(path: str | Path) -> dict[str, tuple[Holding, ...]]:
-    """Read on how many twins of each family each claim holds.
+    """Read in how many experiments on twins of each family each claim holds.
 
     Raises
     ------

@@ -20,7 +20,8 @@ from typing import Any
 import hystbench
 from hystbench.entrants.process import OWN, preload, run
 from hystbench.errors import InputError
-from hystbench.files import digest, read_json, write_json
+from hystbench.files import atomic_path, digest, read_json, write_json
+from hystbench.written import ENTRIES, remove_below
 
 #: What may stand in a command, and what stands there when it runs.
 PLACES = ("{dataset}", "{model}", "{out}")
@@ -94,7 +95,7 @@ def answer_all(
         cases[case.name] = read_json(done)
     command = list(solver.command)
     write_json(out, {"solver": solver.name, "command": command, "cases": cases})
-    shutil.rmtree(unfinished, ignore_errors=True)
+    remove_below(unfinished)
 
 
 def answer(
@@ -112,7 +113,7 @@ def answer(
     """
     with tempfile.TemporaryDirectory(prefix="gap-") as place:
         given, out, here = (Path(place, name) for name in ("case", "out", "work"))
-        shutil.copytree(case, given)
+        shutil.copytree(case, given, ignore=shutil.ignore_patterns(ENTRIES))
         here.mkdir()
         paths = {
             "{dataset}": str(given / "dataset"),
@@ -134,8 +135,8 @@ def answer(
             return told | {"status": f"exit status {ended.status}: {_last(log)}"}
         for name in keep:
             if kept is not None and (out / name).is_file():
-                kept.mkdir(parents=True, exist_ok=True)
-                shutil.copy(out / name, kept / name)
+                with atomic_path(kept / name) as temporary:
+                    shutil.copy(out / name, temporary)
         status, gap = _read(out / "gap.json")
         return told | {"status": status, "gap": gap}
 

@@ -47,7 +47,7 @@ def preload(command: Sequence[str]) -> None:
     """
     if command[0] != OWN or len(command) < 2:
         return
-    importlib.import_module("hystbench.cli")
+    importlib.import_module("hystbench.group")
     with contextlib.suppress(ModuleNotFoundError):
         # no such command: said by the command line itself, case by case
         importlib.import_module(f"hystbench.commands.{command[1].replace('-', '_')}")

@@ -43,6 +43,15 @@ def error_in_time(axes: Axes, record: Record, output: Output, part: slice) -> No
         axes.plot(x, y, color=style.look(output.run.model).color, linewidth=0.6)
 
 
+def error_over_input(axes: Axes, record: Record, output: Output, part: slice) -> None:
+    """Draw the error, the record's output minus the model's, over the input."""
+    if len(output.error) < part.stop:
+        say_diverged(axes, record, output)
+    else:
+        color = style.look(output.run.model).color
+        axes.plot(record.u[part], output.error[part], color=color, linewidth=0.6)
+
+
 def say_diverged(axes: Axes, record: Record, output: Output) -> None:
     """Mark a panel whose run ended before the part that is shown."""
     axes.text(

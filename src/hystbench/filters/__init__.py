@@ -6,6 +6,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 from hystbench.filters.base import FILTERS as FILTERS
+from hystbench.filters.base import MOST_CORRECTION as MOST_CORRECTION
 from hystbench.filters.base import AdaptiveFilter as AdaptiveFilter
 from hystbench.filters.base import Result as Result
 from hystbench.filters.base import State as State

@@ -31,6 +31,14 @@ ROWS = 2048
 MAX_ORDER = 4095
 """Highest order: the kernels keep a regressor on the stack."""
 
+MOST_CORRECTION = 1.7
+"""Most that one update may correct of an error where a margin is asked for.
+
+Beyond 2 the LMS of Eq. 18 is unstable while its regressor moves little; see
+:meth:`AdaptiveFilter.correction`. Errors at that edge are those of a beginning
+instability. 1.7 leaves 15 %.
+"""
+
 FILTERS: dict[str, type[AdaptiveFilter]] = {}
 """Every filter by its name."""
 
@@ -110,6 +118,9 @@ class AdaptiveFilter(ABC):
         Keeps that division from zero; in the unit of ``H'H``.
     x_before : float
         Input before the first sample.
+    constant_tap : float
+        A constant at the end of the regressor, with a weight of its own; zero for
+        none, as in the paper. Its step size is ``step_size``.
 
     Raises
     ------
@@ -124,6 +135,7 @@ class AdaptiveFilter(ABC):
     normalized: bool = False
     regularization: float = 1e-6
     x_before: float = 0.0
+    constant_tap: float = 0.0
 
     def __init_subclass__(cls) -> None:
         """Enter the filter in the registry."""
@@ -138,6 +150,10 @@ class AdaptiveFilter(ABC):
         positive("regularization", self.regularization)
         if not np.isfinite(self.x_before):
             raise InputError(f"x_before: {self.x_before} is not a finite number")
+        if not 0 <= self.constant_tap < np.inf:
+            raise InputError(
+                f"constant_tap: {self.constant_tap} given, zero or more expected"
+            )
 
     @property
     def taps(self) -> int:
@@ -147,7 +163,7 @@ class AdaptiveFilter(ABC):
     @property
     def size(self) -> int:
         """Number of weights."""
-        return self.taps
+        return self.taps + bool(self.constant_tap)
 
     @property
     def history(self) -> int:
@@ -163,7 +179,7 @@ class AdaptiveFilter(ABC):
     def regressor(
         self, line: FloatArray, operators: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Give the regressor H at each sample of a chunk.
+        """Give the regressor H at each sample of a chunk, without a constant tap.
 
         Parameters
         ----------
@@ -176,10 +192,19 @@ class AdaptiveFilter(ABC):
         Returns
         -------
         H : ndarray, shape (n, size)
-            Regressors.
+            Regressors; a column less where there is a constant tap.
         operators : ndarray
             Outputs of the operators after the chunk.
         """
+
+    def whole_regressor(
+        self, line: FloatArray, operators: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Give what :meth:`regressor` gives, with the constant tap if there is one."""
+        rows, operators = self.regressor(line, operators)
+        if self.constant_tap:
+            rows = np.hstack((rows, np.full((len(rows), 1), self.constant_tap)))
+        return rows, operators
 
     def start(self, weights: ArrayLike | None = None) -> State:
         """Give the state before the first sample.
@@ -254,6 +279,46 @@ class AdaptiveFilter(ABC):
         """
         return eigenvalue_bound(self._correlation(x), self.size)
 
+    def largest_power(self, x: ArrayLike) -> float:
+        """Largest ``H'H`` over an input; what :meth:`correction` takes.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,)
+            Input, at least one sample.
+        """
+        largest, operators = 0.0, self._first_operators()
+        for line in self._chunks(x):
+            rows, operators = self.whole_regressor(line, operators)
+            largest = max(largest, float(np.einsum("ij,ij->i", rows, rows).max()))
+        return largest
+
+    def tap_rms(self, x: ArrayLike) -> float:
+        """RMS over an input of the taps, the constant one aside."""
+        total, count, operators = 0.0, 0, self._first_operators()
+        for line in self._chunks(x):
+            rows, operators = self.regressor(line, operators)
+            taps = rows[:, : self.taps]
+            total += float(np.einsum("ij,ij->", taps, taps))
+            count += taps.size
+        return math.sqrt(total / count)
+
+    def correction(self, power: float) -> float:
+        """Share of an error that one update corrects, ``2 mu H'H``.
+
+        After the update by Eq. 18 the error on the same regressor is one minus this
+        share of what it was: it is gone at 1 and grows without end beyond 2. So a
+        step size whose correction is above 2 at the largest power of a record is
+        unstable while the regressor moves little from sample to sample. This holds
+        for the plain LMS, not for the normalized one.
+
+        Parameters
+        ----------
+        power : float
+            ``H'H``, as :meth:`largest_power` gives it.
+        """
+        return 2 * self.step_size * power
+
     def _windows(self, line: FloatArray) -> FloatArray:
         """Taps at each sample, newest first, as a view of the line."""
         start = 1 + self.history - self.taps
@@ -277,7 +342,7 @@ class AdaptiveFilter(ABC):
         total, count = np.zeros((self.size, self.size)), 0
         operators = self._first_operators()
         for line in self._chunks(x):
-            rows, operators = self.regressor(line, operators)
+            rows, operators = self.whole_regressor(line, operators)
             total += rows.T @ rows
             count += len(rows)
         return total / count
@@ -338,7 +403,7 @@ class AdaptiveFilter(ABC):
         while done < len(d):
             part = slice(done, done + ROWS)
             chunk = line[done : done + self.history + ROWS]
-            h, operators = self.regressor(chunk, operators)
+            h, operators = self.whole_regressor(chunk, operators)
             rows = np.zeros((len(h), len(lanes)))
             rows[:, : self.size] = h
             signals = (d[part], limit, lanes, output[part], error[part])

@@ -41,6 +41,8 @@ class DelayedFilter(AdaptiveFilter):
         output: FloatArray,
         error: FloatArray,
     ) -> tuple[int, End]:
+        if self.constant_tap:  # no column of the line
+            return super()._adapt(line, d, weights, operators, limit, output, error)
         # rows are windows of the line itself, one sample apart, oldest first
         lanes = kernels.pad_front(weights[::-1])
         steps = np.zeros(len(lanes))

@@ -112,6 +112,9 @@ class PlayFilter(AdaptiveFilter):
         error: FloatArray,
         start: int,
     ) -> list[tuple[int, End]]:
+        if self.constant_tap:  # the kernel has none
+            signals = (output, error, start)
+            return super()._adapt_all(filters, line, d, ends, limit, *signals)
         # All have seen the same input: they share envelopes and operators so far.
         left, right, r, state = self._lanes(line, ends[0][1])
         count = len(filters)

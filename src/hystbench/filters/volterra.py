@@ -73,13 +73,14 @@ class VolterraFilter(AdaptiveFilter):
     @property
     def size(self) -> int:
         """Number of weights."""
-        return self.taps + self.taps**2
+        return self.taps + self.taps**2 + bool(self.constant_tap)
 
     @property
     def steps(self) -> FloatArray:
         """Step size of each weight."""
-        sizes = (self.step_size, self.second_order_step)
-        return np.repeat(sizes, (self.taps, self.taps**2))
+        sizes = (self.step_size, self.second_order_step, self.step_size)
+        counts = (self.taps, self.taps**2, int(bool(self.constant_tap)))
+        return np.repeat(sizes, counts)
 
     def regressor(
         self, line: FloatArray, operators: FloatArray
@@ -98,20 +99,41 @@ class VolterraFilter(AdaptiveFilter):
         """
         rows, columns = np.triu_indices(self.taps)
         scale = np.where(rows == columns, 1.0, np.sqrt(2.0))
-        size = self.taps + len(rows)
+        constant = [self.constant_tap] if self.constant_tap else []
+        size = self.taps + len(rows) + len(constant)
         total, count = np.zeros((size, size)), 0
         for line in self._chunks(x):
             taps = self._windows(line)
-            h = np.hstack((taps, scale * taps[:, rows] * taps[:, columns]))
+            products = scale * taps[:, rows] * taps[:, columns]
+            h = np.hstack((taps, products, np.tile(constant, (len(taps), 1))))
             total += h.T @ h
             count += len(h)
         total /= count
         power = np.diag(total)
         return VolterraBound(
             **vars(eigenvalue_bound(total, self.size)),
-            first_order=float(power[: self.taps].sum()),
-            second_order=float(power[self.taps :].sum()),
+            first_order=float(power[: self.taps].sum()) + self.constant_tap**2,
+            second_order=float(power[self.taps :][: len(rows)].sum()),
         )
+
+    def largest_power(self, x: ArrayLike) -> float:
+        """Largest ``H'H`` of the taps x(k-i); that of their products is its square."""
+        largest = 0.0
+        for line in self._chunks(x):
+            taps = self._windows(line)
+            largest = max(largest, float(np.einsum("ij,ij->i", taps, taps).max()))
+        return largest
+
+    def correction(self, power: float) -> float:
+        """Share of an error that one update corrects, both parts together.
+
+        Parameters
+        ----------
+        power : float
+            Of the taps x(k-i), as :meth:`largest_power` gives it.
+        """
+        first = self.step_size * (power + self.constant_tap**2)
+        return 2 * (first + self.second_order_step * power**2)
 
     def _adapt(
         self,
@@ -123,6 +145,8 @@ class VolterraFilter(AdaptiveFilter):
         output: FloatArray,
         error: FloatArray,
     ) -> tuple[int, End]:
+        if self.constant_tap:  # the kernel has none
+            return super()._adapt(line, d, weights, operators, limit, output, error)
         spare = -self.taps % TILE
         # the kernel's taps run from the oldest to the newest
         newest_last = np.concatenate((np.zeros(spare), weights[: self.taps][::-1]))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset
+from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap import folds, nuisance
 from hystbench.gap.usable import check_usable
@@ -35,6 +36,8 @@ class Evidence:
         the slowest.
     simulated_column : str, optional
         Column of the output that a simulator gave elsewhere, if the records have one.
+    warnings : tuple of str
+        What of the records is hardly meant, one line each.
     """
 
     name: str
@@ -44,6 +47,7 @@ class Evidence:
     noise_rms: float | None = None
     identification: str | None = None
     simulated_column: str | None = None
+    warnings: tuple[str, ...] = ()
 
     @property
     def input(self) -> Channel:
@@ -75,7 +79,8 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     Raises
     ------
     InputError
-        If a record cannot be used, or there is none to fit or none held out.
+        If a record cannot be used, there is none to fit or none held out, or one held
+        out is a copy of one to fit.
     """
     dataset = load_dataset(path)
     if not any(dataset.use(name) == "hold-out" for name in dataset.record_files):
@@ -110,6 +115,7 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         about.get("noise_rms"),
         named,
         dataset.simulated_column,
+        doubts(dataset, records),
     )
 
 

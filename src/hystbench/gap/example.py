@@ -22,6 +22,8 @@ from hystbench.model import Model
 from hystbench.record import Channel, FloatArray, Record
 
 NAME = "twin"
+WRITTEN = ("base.yaml", "dataset/dataset.yaml", "dataset/*.csv")
+"""Files of the example, as names or patterns."""
 EXCITED = 1e-3
 """Of the largest line: a smaller one is the noise of the input's measurement."""
 

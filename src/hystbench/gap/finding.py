@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
 from hystbench.gap.augmented import augmented
 from hystbench.gap.beside_errors import beside_errors
@@ -36,6 +37,7 @@ from hystbench.gap.told import (
     effect_mapping,
     not_tried,
     ranking_rows,
+    simulator_mapping,
 )
 from hystbench.gap.uncertainty import on_more_samples, size_error, standard_errors
 from hystbench.gap.unnamed import SHARE, what_is_unnamed
@@ -190,11 +192,13 @@ def decide(
     )
     untried = not_tried(named)
     reason += _untried(untried) if state.added else ""
+    used_up = _used_up(current())
     reason += f"; beside {own.words} of some records' own" if own.records else ""
     findings = new_in_every_record(state, left) if verdict == "named" else []
     if findings:
         verdict = "unnamed"
         reason = "; ".join(item["sentence"] for item in findings)
+    reason += f"; {used_up}" if used_up else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -233,10 +237,13 @@ def decide(
         "taken_out": [item._asdict() for item in named.gone],
         "next_experiment": None if experiment is None else experiment.mapping(),
         "base_parameters": base_parameters(base, state),
+        "simulator": simulator_mapping(model, records),
         "black_box": {"explained_on_folds": box.explained_on_folds},
     }
     if why_none:
         content["no_experiment"] = why_none
+    if used_up:
+        content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
     return Finding(
         base,
         model,
@@ -275,7 +282,18 @@ def _untried(names: Sequence[str]) -> str:
     """Tell which effects a name was not held against."""
     if not names:
         return ""
-    return f"; not tried, as the simulator cannot be run again: {', '.join(names)}"
+    why = USED_UP if current().refused() else "the simulator cannot be run again"
+    return f"; not tried, as {why}: {', '.join(names)}"
+
+
+def _used_up(calls: Calls) -> str:
+    """Tell that a bound on calls has ended the search, if so."""
+    if not calls.refused():
+        return ""
+    return (
+        f"the search ended early, as the {calls.bound} calls of the simulator that "
+        "--calls allows were used up"
+    )
 
 
 def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:

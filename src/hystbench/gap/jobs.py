@@ -14,13 +14,14 @@ from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
 from hystbench.gap.named_apart import named_apart
 from hystbench.gap.own_values import OwnValues
-from hystbench.gap.run import SHOWN, outcome, write_shown
+from hystbench.gap.run import DECISIVE, SHOWN, outcome, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
 from hystbench.gap.unnamed import SHARE
 from hystbench.model import Model
+from hystbench.written import writes
 
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
@@ -54,6 +55,7 @@ def decide_in(
     unnamed_share : float
         Share of the power of the gap that may stay unnamed beside a name.
     """
+    writes(*(folder / name for name in DECIDED))
     asked = Limits.within(evidence.fit, limits) if limits else None
     start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     if progress is None:
@@ -91,6 +93,8 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     evidence : Evidence
     base : Model
     """
+    tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
+    writes(*(folder / name for name in (*DECISIVE, *tables)))
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)
@@ -103,6 +107,16 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     ]
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(start, floor)
-    shown = outcome(base, decided, state, floor, box, evidence.hold_out, steps, own)
+    shown = outcome(
+        base,
+        decided,
+        state,
+        floor,
+        box,
+        evidence.hold_out,
+        steps,
+        own,
+        evidence.warnings,
+    )
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

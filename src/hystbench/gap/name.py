@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.gap.fit import finished, ready
+from hystbench.gap.foretell import foretell, foretell_rest
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.reconsider import reconsidered
 from hystbench.gap.rounds import Candidate, Round, reasons
@@ -58,7 +60,14 @@ class Named:
 
 def name(state: State, floor_rms: float, say: Say = silent) -> Named:
     """Add effects to a model for as long as one pays."""
-    return settled(_path(state, floor_rms, say), state, floor_rms, say)
+    foretell(state, say)
+    found = _path(state, floor_rms, say)
+    try:
+        return settled(found, state, floor_rms, say)
+    except CallsUsedUp:
+        return Named(found.state, found.rounds)
+    finally:
+        current().release()
 
 
 def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
@@ -68,12 +77,17 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     that scores best, that effect may still be one of several that do without it. So
     they are tried first; if the shape is needed after all, it goes first.
     """
-    if found.deferred and any(item.effect == SHAPE for item in found.state.added):
+    cut_short = current().refused()
+    if (
+        not cut_short
+        and found.deferred
+        and any(item.effect == SHAPE for item in found.state.added)
+    ):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
         found = _path(start, floor_rms, say, shape_first=True)
     state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
     rounds = found.rounds
-    if len(state.added) > 1 and _others_than_taken(state, rounds):
+    if not cut_short and len(state.added) > 1 and _others_than_taken(state, rounds):
         state, again = reconsidered(state, rounds, floor_rms, say, True)
         last = replace(rounds[-1], looks=(*rounds[-1].looks, *again))
         rounds = (*rounds[:-1], last)
@@ -131,8 +145,18 @@ def _path(
 ) -> Progress:
     """Add effects one by one."""
     progress = Progress.begun(state, floor_rms)
-    while not progress.done:
-        progress = advance(progress, floor_rms, say, shape_first)
+    calls = current()
+    while not (progress.done or calls.refused()):
+        try:
+            further = advance(progress, floor_rms, say, shape_first)
+        except CallsUsedUp:
+            break
+        # A round that was cut short counts only where nothing in it needed a call.
+        if not calls.refused() or not progress.state.added:
+            progress = further
+        foretell_rest(progress.state, len(progress.rounds))
+    if calls.refused():
+        say(f"{USED_UP}: the search ends here")
     return progress
 
 

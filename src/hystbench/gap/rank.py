@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
+from hystbench.blocks.external import External
 from hystbench.errors import InputError
 from hystbench.gap.change import at_end
 from hystbench.gap.effects import effects
@@ -111,6 +113,7 @@ def rank(
         if not any(trial is item for item in likely)
     ]
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
+    judged = [_not_cut_short(item, state) for item in judged]
     declined += [item for item in judged if item.declined]
     candidates = in_order(item for item in judged if not item.declined)
     exact = [
@@ -124,7 +127,10 @@ def rank(
     )
     if not folds:
         return (*candidates, *declined)
-    candidates = in_order(on_folds(item, state, score) for item in candidates)
+    candidates = [on_folds(item, state, score) for item in candidates]
+    judged = [_not_cut_short(item, state) for item in candidates]
+    declined += [item for item in judged if item.declined]
+    candidates = in_order(item for item in judged if not item.declined)
     # Folds may put one first that was not simulated exactly.
     while candidates and candidates[0].effect not in exact and candidates[0].held_back:
         first = candidates.pop(0)
@@ -171,11 +177,29 @@ def _judged(
     return replace(item, score=value, gain=now - value, state=after)
 
 
+def _not_cut_short(item: Candidate, state: State) -> Candidate:
+    """Decline what needs calls of a simulator, once a call was not allowed.
+
+    Its refit or its folds may have ended before they were done. What lies behind the
+    simulator needs no call.
+    """
+    if not current().refused() or not item.variants or item.declined:
+        return item
+    places = [k for k, x in enumerate(state.chain) if isinstance(x, External)]
+    position = item.variants[0].position
+    if not places or position is None or position > places[-1]:
+        return item
+    return Candidate(item.effect, item.place, declined=USED_UP)
+
+
 def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:
     """Simulate a candidate exactly: what steps of time miss may look like an effect."""
     if item.state is None:
         return item
-    after, value = work.finished(item.state, score)
+    try:
+        after, value = work.finished(item.state, score)
+    except CallsUsedUp as error:
+        return Candidate(item.effect, item.place, declined=str(error))
     return replace(item, state=after, score=value, gain=now - value)
 
 
@@ -187,6 +211,9 @@ def on_folds(item: Candidate, before: State, score: Score) -> Candidate:
     """
     if item.state is None or item.gain < PAYS:
         return item
-    held = gain_held_back(before, item.state, score)
+    try:
+        held = gain_held_back(before, item.state, score)
+    except CallsUsedUp as error:
+        return Candidate(item.effect, item.place, declined=str(error))
     lost = max(item.gain - held, 0.0)
     return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.files import check_writable, whole_folder, write_csv, write_json
+from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.augmented import augmented
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
+from hystbench.gap.foretell import keep_back
 from hystbench.gap.nuisance import Nuisance, degree_that_carries_on, path_and_mains
 from hystbench.gap.outcome import first_figure, withdrawal, without_names
 from hystbench.gap.own_values import NONE, OwnValues
@@ -38,11 +39,15 @@ from hystbench.gap.unnamed import SHARE
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
+from hystbench.written import writes
 
-SHOWN = ("gap.json", "holdout/*.csv", "model.yaml")
-"""What the hold-out records show: also whether the model is better than the base."""
-RESULT = (*SHOWN, "curves.json", "report.html")
-"""Files of a folder that a later result replaces; any other stays."""
+DECISIVE = ("gap.json", "model.yaml")
+"""Written when the hold-out records were read, as these may take names back."""
+SHOWN = (*DECISIVE, "holdout/*.csv")
+"""The same with the records themselves."""
+FILES = (*DECISIVE, "curves.json", "report.html")
+RESULT = (*FILES, "holdout/*.csv")
+"""Files of a folder, as names or patterns, that a later result replaces."""
 
 
 def close_gap(
@@ -64,7 +69,8 @@ def close_gap(
     base : Model
     folder : Path
         Gets gap.json, model.yaml, curves.json, holdout/ and report.html, all together
-        when the last is done. Those of an earlier result go; any other file stays.
+        when the last is done. Those of an earlier result go; any other file stays,
+        and where one stands in the way it is refused before the search.
     place : str
         Where the base came from, for messages.
     limits : mapping of str to float, optional
@@ -80,12 +86,15 @@ def close_gap(
     Raises
     ------
     InputError
-        If units do not match or the base does not run; nothing is written then.
+        If units do not match, the base does not run, or a file that hystbench did
+        not write, or an input, stands in the way; nothing is written then.
     """
     check_units(evidence, base, place)
-    check_writable(folder)
+    tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
+    writes(*(folder / name for name in (*FILES, *tables)))
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
+    keep_back(evidence)
     finding = find(
         evidence.name,
         evidence.fit,
@@ -107,6 +116,7 @@ def close_gap(
         evidence.hold_out,
         finding.rungs,
         finding.own,
+        evidence.warnings,
     )
     with whole_folder(folder, RESULT) as fresh:
         write_json(fresh / "curves.json", finding.curves)
@@ -164,6 +174,7 @@ def outcome(
     records: tuple[Record, ...],
     steps: Sequence[Rung],
     own: OwnValues = NONE,
+    warnings: Sequence[str] = (),
 ) -> Outcome:
     """Show a finding on the hold-out records; take back what is worse there.
 
@@ -174,16 +185,24 @@ def outcome(
         What gap.json holds, but for what the hold-out records show.
     state, floor, box, records, steps, own
         As for :func:`show`.
+    warnings : sequence of str
+        What of the dataset is hardly meant.
     """
     shown = show(base, state, floor, box, records, steps, own)
-    content = {**decided, "withdrawn": None, **shown.content}
-    model = augmented(base, state)
+    content = {
+        **decided,
+        "withdrawn": None,
+        **shown.content,
+        "warnings": list(warnings),
+    }
+    model = augmented(base, state).with_hold(state.hold)
     taken = withdrawal(content)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
         alone = show(base, steps[0].state, floor, box, records, steps[:1], own)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
-        content, model = without_names({**content, **kept}, taken), base
+        content = without_names({**content, **kept}, taken)
+        model = base.with_hold(state.hold)
         shown = alone
     elif content["effects"] or content["verdict"] == "parameters":
         content["reason"] = f"{first_figure(content)}; {content['reason']}"

@@ -304,6 +304,22 @@ SCHEMA = _object(
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
     black_box={"type": ["object", "null"]},
     base_parameters={"type": "object"},
+    # The model with its effects: what it takes and gives, how to run it.
+    simulator=_object(
+        {
+            "input": _object({"name": WORDS, "unit": WORDS}),
+            "output": _object({"name": WORDS, "unit": WORDS}),
+            # Functions that must be importable where it runs.
+            "functions": NAMES,
+            # Whether it answers to other inputs than those of the records.
+            "runs_again": {"type": "boolean"},
+            "sampling_interval_s": NUMBER,
+        }
+    ),
+    # Where --calls ended the search: how many were allowed.
+    calls_used_up=_object({"bound": {"type": "integer"}, "sentence": WORDS}),
+    # What of the dataset is hardly meant: copies, strange times, sizes and units.
+    warnings={"type": "array", "items": WORDS},
     # Why next_experiment is null though effects cannot be told apart.
     no_experiment={"type": "string"},
 )

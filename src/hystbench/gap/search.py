@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hystbench.blocks.calls import CallsUsedUp
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Values, Variant
 from hystbench.gap.reshape import orthonormal
@@ -218,6 +219,8 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     for point in itertools.product(*(axis.tolist() for axis in axes)):
         try:
             trials.append((look.at(tuple(point)).score, point))
+        except CallsUsedUp as error:  # half a grid may miss what is best
+            raise Declined(str(error)) from error
         except InputError as error:
             refused = error  # values that the block itself refuses are no candidates
     found = []

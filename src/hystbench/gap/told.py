@@ -9,6 +9,8 @@ import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.blocks.calls import USED_UP
+from hystbench.blocks.external import External
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.beside_errors import Errors
 from hystbench.gap.effects import effects
@@ -18,7 +20,7 @@ from hystbench.gap.state import Added, State, beside_count
 from hystbench.gap.units import unit_behind, written
 from hystbench.gap.verdict import Left, confidence, error_of
 from hystbench.model import Model
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
 OFFSET = "offset"
 """Of a plain gain."""
@@ -190,13 +192,28 @@ def _errors_of(
 
 
 def not_tried(named: Named) -> list[str]:
-    """Name the effects that no fit could try, as the simulator cannot be run again."""
+    """Name the effects that no fit could try: the simulator could not be run for them.
+
+    It cannot be run again at all, or not more often than was allowed.
+    """
     return [
         item.effect
         for one in named.rounds[:1]
         for item in one.ranking
-        if item.declined == NEEDS_RERUN
+        if item.declined == NEEDS_RERUN or USED_UP in item.declined
     ]
+
+
+def simulator_mapping(model: Model, records: Sequence[Record]) -> dict[str, Any]:
+    """Tell what the model with its effects takes and gives, and how it can be run."""
+    channels = {"input": model.input, "output": model.output}
+    return {
+        side: {"name": item.name, "unit": item.unit} for side, item in channels.items()
+    } | {
+        "functions": [x.function for x in model.chain if isinstance(x, External)],
+        "runs_again": all(block.reruns for block in model.chain),
+        "sampling_interval_s": records[0].dt,
+    }
 
 
 def ranking_rows(named: Named) -> list[dict[str, Any]]:

@@ -45,6 +45,10 @@ PROTOCOLS = {
 }
 
 
+WRITTEN = ("contest.csv", "ranking.csv", "contest.md")
+"""Files of a contest."""
+
+
 def write_contest(
     entries: Sequence[Entry], rankings: Sequence[Ranking], out: Path
 ) -> None:

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from hystbench.compare.claims import CLAIMS
-from hystbench.compare.claims.claim import BornOut, Claim, NotTestable
+from hystbench.compare.claims.claim import BornOut, Claim
+from hystbench.compare.claims.halves import about_signals, holds, on_signals
 from hystbench.compare.evidence import Evidence
 from hystbench.pressure.runs import Ensemble, Steps
 
@@ -36,28 +37,6 @@ class Count:
     members: int
     held_finite: int
     finite: int
-
-
-def holds(claim: Claim, evidence: Evidence) -> bool | None:
-    """Tell whether a claim holds; None where it cannot be tested."""
-    try:
-        return claim.ours(evidence).holds
-    except NotTestable:
-        return None
-
-
-def on_signals(evidence: Evidence, signals: Iterable[str]) -> Evidence:
-    """Keep what evidence says on some signals, the published errors among it."""
-    kept = set(signals)
-    return replace(
-        evidence,
-        published=tuple(p for p in evidence.published if p.signal in kept),
-        runs={cell: r for cell, r in evidence.runs.items() if cell[0] in kept},
-        records={name: r for name, r in evidence.records.items() if name in kept},
-        envelope_errors={
-            cell: e for cell, e in evidence.envelope_errors.items() if cell[0] in kept
-        },
-    )
 
 
 def pressed_claims(evidence: Evidence) -> tuple[Claim, ...]:
@@ -104,15 +83,9 @@ def count(
     found = []
     for claim in claims:
         found.append(_count(ensemble, claim, members, False))
-        if unseen and _about_signals(claim, restricted[0]):
+        if unseen and about_signals(claim, restricted[0]):
             found.append(_count(ensemble, claim, restricted, True))
     return found
-
-
-def _about_signals(claim: Claim, restricted: Evidence) -> bool:
-    """Tell whether a claim can be judged on some signals, and only with them."""
-    without = replace(restricted, runs={}, records={}, envelope_errors={})
-    return holds(claim, without) is None and holds(claim, restricted) is not None
 
 
 def _count(

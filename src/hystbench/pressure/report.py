@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from tabulate import tabulate
 
+from hystbench.compare.claims.halves import holds
+from hystbench.compare.evidence import Evidence
 from hystbench.compare.twins import CLAIM_COLUMNS, ERROR_COLUMNS
 from hystbench.files import write_csv, write_json, write_text
-from hystbench.pressure.judging import Count, Pressed, born_out, holds, pressed_claims
+from hystbench.pressure.judging import Count, Pressed, born_out, pressed_claims
 from hystbench.pressure.runs import Ensemble
 
 COLUMNS = (
@@ -32,26 +34,46 @@ TWIN_COLUMNS = ("claim", "twin", "family", "signals", "held", "members")
 FIRM = 0.9
 
 
-def write_twins(ensembles: Sequence[Ensemble], errors: Path, claims: Path) -> None:
-    """Write the errors and the claims on each twin with the configured step sizes."""
+def write_twins(
+    ensembles: Sequence[Ensemble],
+    others: Iterable[Ensemble],
+    errors: Path,
+    claims: Path,
+) -> None:
+    """Write the errors on each twin as configured, and the claims in each experiment.
+
+    Parameters
+    ----------
+    ensembles, others : Ensemble
+        Each twin as configured, and in other experiments.
+    errors, claims : Path
+        Files to write.
+    """
     error_rows: list[list[Any]] = []
     claim_rows: list[list[Any]] = []
-    configured = [
-        each.evidence(dict.fromkeys((model for model, _ in each.runs), 1.0))
-        for each in ensembles
-    ]
+    configured = [_evidence(each) for each in ensembles]
     pressed = pressed_claims(configured[0])
     for each, evidence in zip(ensembles, configured, strict=True):
-        place = [each.twin.name, each.twin.family]
         for run in evidence.runs.values():
             cell = [run.signal, run.model, run.mse, run.re, run.status]
-            error_rows.append(place + cell)
+            error_rows.append([each.twin.name, each.twin.family, *cell])
+    for each in (*ensembles, *others):
+        evidence = _evidence(each)
+        place = [each.twin.name, each.twin.family, each.seed]
         for claim in pressed:
             found = holds(claim, evidence)
             word = {True: "yes", False: "no", None: "not testable"}[found]
             claim_rows.append([*place, claim.id, word])
     write_csv(errors, ERROR_COLUMNS, error_rows)
     write_csv(claims, CLAIM_COLUMNS, claim_rows)
+
+
+WRITTEN = ("claims.csv", "by-twin.csv", "summary.json", "claims.md")
+"""Files of the claims under pressure."""
+
+
+def _evidence(ensemble: Ensemble) -> Evidence:
+    return ensemble.evidence(dict.fromkeys((model for model, _ in ensemble.runs), 1.0))
 
 
 def write_pressure(

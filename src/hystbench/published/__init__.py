@@ -14,7 +14,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, Literal
 
-import yaml
+from hystbench.yaml_files import parse_yaml
 
 Metric = Literal["mse", "re"]
 METRICS: tuple[Metric, ...] = ("mse", "re")
@@ -155,7 +155,7 @@ class Text:
 def load_text() -> Text:
     """Read the numbers of the text."""
     source = files(__package__).joinpath("text.yaml").read_text(encoding="utf-8")
-    content: dict[str, Any] = yaml.safe_load(source)
+    content: dict[str, Any] = parse_yaml(source, "text.yaml")
     chirp = content.pop("chirp")
     random = content.pop("random_sum")
     low, high = random["band_of_nyquist"]

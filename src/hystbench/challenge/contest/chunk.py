@@ -20,6 +20,9 @@ from hystbench.errors import InputError
 from hystbench.files import digest
 from hystbench.refit import within_noise
 
+WRITTEN = ("*/model.yaml", "*/dataset/*")
+"""Files of a chunk, as patterns."""
+
 
 def make_chunk(entries: Iterable[Entry], folder: Path) -> None:
     """Write what solvers get of some cases, a folder each."""

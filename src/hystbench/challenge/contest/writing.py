@@ -38,6 +38,14 @@ _RIVALS = (
 )
 
 
+WRITTEN = (
+    *("contest.csv", "reach.csv", "further.csv", "transfer.csv", "cases.csv"),
+    *("transfer-cases.csv", "confusion.csv", "confused.csv", "effects.csv"),
+    *("retuned.csv", "power.csv", "reliability.csv", "rivals.csv", "summary.json"),
+)
+"""Files of a score."""
+
+
 def write_score(
     rows: Sequence[Row],
     transfer: Sequence[Row],

@@ -12,10 +12,21 @@ from hystbench.compare.evidence import Cell, Evidence, Run
 from hystbench.compare.twins import Holding, holding_text
 from hystbench.published import FILTERS, Metric, Pair, sine_frequency
 
-Verdict = Literal["reproduced", "not reproduced", "not testable"]
+Verdict = Literal[
+    "reproduced", "not reproduced", "not testable", "refuted by the paper"
+]
 BornOut = Literal["yes", "no", "not in tables"]
-Kind = Literal["result", "theory", "condition"]
-"""What was found, what was derived, or how the experiment was set up."""
+Kind = Literal["result", "theory", "condition", "notation"]
+"""What was found, derived, set up for the experiment, or is a matter of writing."""
+Basis = Literal["", "held-out", "fitted", "constrained", "built-in"]
+"""What the twin knew of a claim before it was judged.
+
+- ``held-out``: nothing, no fit has read what the claim is judged by;
+- ``fitted``: cells or RMS displacements that it is judged by are in the calibration;
+- ``constrained``: a bound of the calibration asks for it;
+- ``built-in``: it follows from how twin and signals are made;
+- empty for theory, notation and what cannot be tested.
+"""
 
 
 @dataclass(frozen=True)
@@ -46,6 +57,8 @@ class Claim:
         What sort of sentence it is.
     reading : str
         How the sentence was made checkable, where its words alone do not say.
+    basis : str
+        What the twin knew of it; see ``Basis``.
     ours : callable
         Judges it by our own evidence.
     theirs : callable or None
@@ -57,6 +70,7 @@ class Claim:
     where: str
     kind: Kind
     reading: str
+    basis: Basis
     ours: Callable[[Evidence], Finding]
     theirs: Callable[[Evidence], Finding] | None = None
 
@@ -71,6 +85,8 @@ class Judgement:
     published_bears_out: BornOut
     published_evidence: str
     holdings: tuple[Holding, ...] = ()
+    #: Verdict on the held-out signals alone, of a claim that is fitted in part.
+    held_out_verdict: str = ""
 
     @property
     def holds_on(self) -> str:
@@ -93,6 +109,8 @@ def judge(claim: Claim, evidence: Evidence) -> Judgement:
         return Judgement(claim, verdict, sentence, "not in tables", "", holdings)
     printed = claim.theirs(evidence)
     born_out: BornOut = "yes" if printed.holds else "no"
+    if not printed.holds:
+        verdict = "refuted by the paper"
     return Judgement(claim, verdict, sentence, born_out, printed.evidence, holdings)
 
 
@@ -157,6 +175,10 @@ def our_errors(evidence: Evidence) -> Errors:
     for (signal, model), run in twin_runs(evidence.runs).items():
         values[signal, model, "mse"] = run.error("mse")
         values[signal, model, "re"] = run.error("re")
+    for signal, drawn in evidence.drawn.items():
+        for model, metric in drawn.errors:
+            if (signal, model, metric) in values:
+                values[signal, model, metric] = drawn.median(model, metric)
     return Errors(values, evidence.published)
 
 
@@ -189,6 +211,7 @@ def errors_claim(
     claim: str,
     where: str,
     reading: str = "",
+    basis: Basis = "fitted",
 ) -> Callable[[Callable[[Errors], Finding]], Claim]:
     """Make a claim on errors, tested alike on ours and on the paper's."""
 
@@ -199,6 +222,7 @@ def errors_claim(
             where=where,
             kind="result",
             reading=reading,
+            basis=basis,
             ours=lambda evidence: test(our_errors(evidence)),
             theirs=lambda evidence: test(published_errors(evidence)),
         )
@@ -213,11 +237,13 @@ def claim_on(
     kind: Kind,
     reading: str = "",
     theirs: Callable[[Evidence], Finding] | None = None,
+    *,
+    basis: Basis = "",
 ) -> Callable[[Callable[[Evidence], Finding]], Claim]:
     """Make a claim on other evidence than the errors."""
 
     def make(test: Callable[[Evidence], Finding]) -> Claim:
-        return Claim(id, claim, where, kind, reading, test, theirs)
+        return Claim(id, claim, where, kind, reading, basis, test, theirs)
 
     return make
 
@@ -234,7 +260,7 @@ def untestable(
     def test(_: Evidence) -> Finding:
         raise NotTestable(reason)
 
-    return Claim(id, claim, where, kind, "", test)
+    return Claim(id, claim, where, kind, "", "", test)
 
 
 def number(value: float) -> str:

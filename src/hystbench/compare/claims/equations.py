@@ -53,7 +53,7 @@ EXTREME_READING = (
     "eq7",
     "the largest output of a generalized play is f(max gamma_r(v), w(0))",
     "Section 2.2, Eq. 7",
-    "theory",
+    "notation",
     EXTREME_READING,
 )
 def eq7(evidence: Evidence) -> Finding:
@@ -65,7 +65,7 @@ def eq7(evidence: Evidence) -> Finding:
     "eq8",
     "the smallest output of a generalized play is f(min gamma_l(v), w(0))",
     "Section 2.2, Eq. 8",
-    "theory",
+    "notation",
     EXTREME_READING,
 )
 def eq8(evidence: Evidence) -> Finding:
@@ -143,6 +143,7 @@ def delay_line_difference(
     "Section 2.3, Eq. 10",
     "condition",
     "N + 1 identified thresholds rise in equal steps from zero, one weight each",
+    basis="built-in",
 )
 def eq10(evidence: Evidence) -> Finding:
     """Test the thresholds of the identification."""

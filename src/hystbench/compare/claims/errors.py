@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import pairwise
 
-from hystbench.compare.claims.claim import Errors, Finding, errors_claim, number
+from hystbench.compare.claims.claim import (
+    Errors,
+    Finding,
+    errors_claim,
+    number,
+    untestable,
+)
 from hystbench.compare.claims.statistics import rank_correlation
 from hystbench.published import FILTERS, MODELS, Metric, sine_frequency
 
@@ -212,6 +218,7 @@ def volterra_falls(errors: Errors) -> Finding:
     "under the chirp the errors of the GPO-based filter 'are smaller than those of "
     "the other adaptive filters'",
     "Section 4, Table 2",
+    basis="held-out",
 )
 def chirp_gpo_best(errors: Errors) -> Finding:
     """Compare the filters on the chirp."""
@@ -265,32 +272,18 @@ def sums_backlash_second(errors: Errors) -> Finding:
     return best(errors, errors.table(3), "backlash", ("volterra", "delayed"))
 
 
-@errors_claim(
+rdgpi_worse = untestable(
     "rdgpi-worse",
     "the GPO-based filter 'has a remarkable superiority' over the RDGPI model",
     "Section 4, Table 4",
-    "smaller MSE on each of the ten signals of Table 4",
+    "result",
+    "the RDGPI model here is our guess, for its equations are in the paper's reference "
+    "[32]; a filter that sees the last output is held against a free run",
 )
-def rdgpi_worse(errors: Errors) -> Finding:
-    """Hold the RDGPI model against the GPO-based filter."""
-    return best(errors, errors.table(4), "gpo", ("rdgpi",))
-
-
-@errors_claim(
+adaptive_structure = untestable(
     "adaptive-structure",
     "that superiority is 'owing to its adaptive filter structure'",
     "Section 4, Table 4",
-    "each adaptive filter, with or without hysteretic operators, has a smaller MSE "
-    "than the RDGPI model on each of the ten signals",
+    "result",
+    "a cause, and of a comparison with our guess of the RDGPI model",
 )
-def adaptive_structure(errors: Errors) -> Finding:
-    """Hold the RDGPI model against all adaptive filters."""
-    found = [best(errors, errors.table(4), m, ("rdgpi",)) for m in FILTERS]
-    failed = [finding for finding in found if not finding.holds]
-    if failed:
-        return failed[0]
-    return Finding(
-        True,
-        f"rdgpi has the largest MSE of all models on all {len(errors.table(4))} "
-        "signals",
-    )

@@ -178,6 +178,7 @@ def _order(evidence: Evidence) -> Finding:
     "ours: the identified envelopes, which the search holds to it; theirs: the "
     "published ones",
     theirs=_non_decreasing,
+    basis="built-in",
 )
 def envelopes_non_decreasing(evidence: Evidence) -> Finding:
     """Test the identified envelopes."""
@@ -194,6 +195,7 @@ def envelopes_non_decreasing(evidence: Evidence) -> Finding:
     "ours: the identified envelopes, which the search holds to it; theirs: the "
     "published ones",
     theirs=_order,
+    basis="built-in",
 )
 def envelopes_ordered(evidence: Evidence) -> Finding:
     """Test the identified envelopes."""

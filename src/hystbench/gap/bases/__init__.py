@@ -7,13 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench.blocks.external import FORM, External, called
+from hystbench.blocks.calls import current
+from hystbench.blocks.external import External, called
 from hystbench.blocks.simulated_column import SimulatedColumn
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError
+from hystbench.gap.asked import kind_of_base
 from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
 from hystbench.gap.evidence import Evidence, check_units
+from hystbench.gap.scene import Scene
 from hystbench.model import Model, load_model
 
 __all__ = [
@@ -26,11 +29,6 @@ __all__ = [
     "simulated_column",
     "written_base",
 ]
-
-IDENTIFIED = ("gpi", "linear")
-"""Words for a base that is identified from the fit records."""
-WORDS = (*IDENTIFIED, "column")
-"""What may stand in the place of a model file."""
 
 
 def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
@@ -92,16 +90,10 @@ def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
     """
     if text == "column":
         return simulated_column(evidence)
-    if Path(text).is_file() or text.endswith((".yaml", ".yml")):
+    if kind_of_base(text) == "file":
         model = written_base(Path(text), evidence)
         return model, f"base {model.name} from {text}"
-    if FORM.fullmatch(text):
-        return function_base(text, evidence)
-    files = [str(item) for item in Path(text).parent.glob("*.yaml")]
-    raise InputError(
-        f"--model: {text!r} is no model file, none of {', '.join(WORDS)}, and no "
-        f"package.module:function; {nearest(text, [*WORDS, *files])}"
-    )
+    return function_base(text, evidence)
 
 
 def written_base(path: Path, evidence: Evidence) -> Model:
@@ -125,7 +117,9 @@ def written_base(path: Path, evidence: Evidence) -> Model:
         )
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    _check_bounded(model.with_hold(evidence.hold), evidence, str(path))
+    held = model.with_hold(evidence.hold)
+    _check_bounded(held, evidence, str(path))
+    check_repeats(held, evidence)
     return model
 
 
@@ -166,16 +160,46 @@ def function_base(function: str, evidence: Evidence) -> tuple[Model, str]:
         sample, or something else when it is called again.
     """
     block = External(function=function)
-    first = evidence.fit[0]
-    outputs = [block.simulate(item.u, item.u, item.dt) for item in evidence.fit]
-    if not np.array_equal(called(function, first.u, first.dt), outputs[0]):
-        raise InputError(
-            f"{function}: called again with record {first.name} it gave another "
-            "output; expected the same one every time"
-        )
-    model = Model("external", evidence.input, evidence.output, (block,))
+    model = Model(function, evidence.input, evidence.output, (block,))
+    check_repeats(model, evidence)
     units = f"from {evidence.input.unit} to {evidence.output.unit}"
     return model, f"base {function}, taken to be {units}"
+
+
+def check_repeats(model: Model, evidence: Evidence) -> None:
+    """Refuse a model with a function that gives another output when called again.
+
+    The function runs on all fit records, and on the first of them once more: so one
+    that draws at random is found, and one that goes on from where it was left.
+
+    Parameters
+    ----------
+    model : Model
+    evidence : Evidence
+        Only its fit records are used.
+
+    Raises
+    ------
+    InputError
+        With the name of the function.
+    """
+    first = evidence.fit[0]
+    for k, block in enumerate(model.chain):
+        if not isinstance(block, External):
+            continue
+        inputs = [
+            Scene(model.chain[:k], (item,), evidence.hold).output[0] if k else item.u
+            for item in evidence.fit
+        ]
+        pairs = zip(inputs, evidence.fit, strict=True)
+        outputs = [block.simulate(z, item.u, item.dt) for z, item in pairs]
+        again = current().fresh(block.function, inputs[0], first.dt, called)
+        if not np.array_equal(again, outputs[0]):
+            raise InputError(
+                f"{block.function}: called again with record {first.name} it gave "
+                "another output; expected the same one every time, with no state kept "
+                "from call to call and nothing drawn at random"
+            )
 
 
 def simulated_column(evidence: Evidence) -> tuple[Model, str]:
@@ -204,7 +228,7 @@ def simulated_column(evidence: Evidence) -> tuple[Model, str]:
             "'simulated: {column: .., unit: ..}' in its dataset.yaml"
         )
     block = SimulatedColumn(column=column, records=(*evidence.fit, *evidence.hold_out))
-    model = Model("simulated-column", evidence.input, evidence.output, (block,))
+    model = Model(column, evidence.input, evidence.output, (block,))
     note = (
         f"base from the column {column!r}; what acts before it declines, since it "
         "needs a simulator that can be run again"

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterable
 from itertools import groupby
 from typing import Any
 
-from hystbench.figures.style import unit_text
+from hystbench.figures.style import COLUMN, unit_text
 from hystbench.gap.locate import LEVEL
 from hystbench.gap.locate.view import percent
 from hystbench.gap.report import pictures, where, words
 from hystbench.gap.report.pictures import Picture, draw
 from hystbench.gap.report.read import Content
+from hystbench.record import column_name
 
 TEMPLATE = "report.html.j2"
 #: What gap.json may leave out.
@@ -28,8 +29,11 @@ OPTIONAL: dict[str, Any] = {
     "no_experiment": "",
     "not_tried": [],
     "runs_away": [],
+    "warnings": [],
     "fit": None,
     "unnamed": None,
+    "simulator": None,
+    "calls_used_up": None,
 }
 #: And its parts with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
@@ -70,12 +74,15 @@ def page(content: Content) -> str:
     if gap["black_box"]:
         gap["black_box"] = INTERVALS | gap["black_box"]
     drawn, missing = _where(content)
-    return environment.get_template(TEMPLATE).render(
+    page = environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(gap),
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
         y=unit_text(gap["unit"]),
         named=[effect["name"] for effect in gap["effects"]],
+        glance=headline(gap, content),
+        advice=words.advice(gap),
+        input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
         shares=_shares(gap),
@@ -88,6 +95,62 @@ def page(content: Content) -> str:
         drawn=min(len(content.hold_out), pictures.RECORDS),
         held=len(content.hold_out),
     )
+    return words.one_micro(page)
+
+
+def headline(gap: dict[str, Any], content: Content) -> list[Picture]:
+    """Draw the headline: a stretch of a hold-out record, and the sizes of the gap."""
+    after = "with effects" if gap["effects"] else "re-tuned"
+    found = []
+    table = pictures.worst(content.hold_out)
+    same = gap["gap"]["after"] == gap["gap"]["before"]
+    if table is not None:
+        with_it = "" if same else f", and {after}"
+        found.append(
+            draw(
+                pictures.glimpse,
+                table,
+                gap["unit"],
+                None if same else after,
+                words=f"A stretch of the hold-out record {table.name}: measured, the "
+                f"simulator{with_it}",
+                height=2.1,
+                width=COLUMN,
+                clear=True,
+            )
+        )
+    rows = [("simulator", gap["gap"]["before"])]
+    if not same:
+        rows.append((after, gap["gap"]["after"]))
+    if gap["withdrawn"]:
+        rows.append(("withdrawn", gap["withdrawn"]["after"]))
+    said = "; ".join(
+        f"{name} {'unbounded' if size is None else f'{size:.3g}'}"
+        for name, size in rows
+    )
+    unit = unit_text(gap["unit"])
+    found.append(
+        draw(
+            pictures.sizes,
+            rows,
+            gap["gap"]["noise_floor"],
+            gap["unit"],
+            words=f"RMS residual on all hold-out records, in {unit}: {said}; noise "
+            f"floor {gap['gap']['noise_floor']:.3g}",
+            height=2.1,
+            width=COLUMN,
+            clear=True,
+        )
+    )
+    return found
+
+
+def _input_column(gap: dict[str, Any]) -> str:
+    """Name the column of an input of one's own, as hystbench simulate reads it."""
+    if not gap["simulator"]:
+        return ""
+    channel = gap["simulator"]["input"]
+    return column_name(channel["name"], channel["unit"])
 
 
 def _shares(gap: dict[str, Any]) -> Picture | None:
@@ -256,10 +319,12 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 where.plane,
                 curves["over_plane"],
                 units,
-                words="Mean residual over the input and its rate together: these cells "
-                f"hold {percent(curves['over_plane']['share'])} of the gap; "
-                "grey where there are few samples",
-                height=2.8,
+                words="How to read it: a cell shows by how much the measurement lies "
+                "above (red) or below (blue) the simulation, in the mean, where the "
+                "input had that value and moved at that rate; above zero it rises, "
+                "below it falls; grey cells have few samples. These cells hold "
+                f"{percent(curves['over_plane']['share'])} of the gap",
+                height=3.2,
             ),
         ),
         (

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 from hystbench.figures.style import (
     BLACK,
@@ -36,6 +36,9 @@ PERIODS = 3
 #: Points of a line: more than a page has pixels.
 POINTS = 1500
 
+#: Numbers below a small picture.
+TICKS = 5
+
 BEFORE, AFTER, FLOOR = VERMILION, BLUE, BLACK
 
 
@@ -52,15 +55,18 @@ def draw(
     *content: Any,
     words: str,
     height: float = 2.4,
+    width: float = PAGE,
+    clear: bool = False,
     panels: tuple[int, int] = (1, 1),
 ) -> Picture:
     """Draw a figure as SVG, the same bytes each time."""
     with in_style():
-        figure = Figure(figsize=(PAGE, height))
+        figure = Figure(figsize=(width, height))
         axes = figure.subplots(*panels, squeeze=False)
         paint(axes if panels[0] > 1 else axes[0], *content)
         buffer = io.BytesIO()
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+        about = {"Date": None, "Creator": None}
+        figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
     text = base64.b64encode(buffer.getvalue()).decode("ascii")
     return Picture(f"data:image/svg+xml;base64,{text}", words)
 
@@ -86,7 +92,7 @@ def bars(
 
 
 def steps(
-    axes: Sequence[Axes],
+    axes: Any,
     rungs: Sequence[tuple[str, float | None]],
     floor: float,
     unit: str,
@@ -114,7 +120,60 @@ def steps(
     panel.set_ylabel(f"rms residual ({unit_text(unit)})")
     panel.set_ylim(0, 1.15 * max(*sizes, floor))
     panel.grid(visible=False, axis="x")
-    panel.legend(loc="upper right")
+    legend_above(panel.figure, panel.get_legend_handles_labels()[0])
+
+
+def worst(tables: Sequence[HoldOut]) -> HoldOut | None:
+    """Give the hold-out record on which the simulator is off most, if there is one."""
+    return max(
+        tables,
+        key=lambda table: float(np.mean((table.measured - table.before) ** 2)),
+        default=None,
+    )
+
+
+def glimpse(axes: Any, table: HoldOut, unit: str, after: str | None) -> None:
+    """Draw a few periods of a record: measured, the simulator before and after."""
+    (panel,) = axes
+    part = _window(table)
+    time = table.time_s[part]
+    behind: dict[str, Any] = {"color": GREY, "linewidth": 2.6, "label": "measured"}
+    panel.plot(time, table.measured[part], **behind)
+    panel.plot(time, table.before[part], "--", color=BEFORE, label="simulator")
+    if after is not None:
+        panel.plot(time, table.after[part], color=AFTER, label=after)
+    panel.xaxis.set_major_locator(MaxNLocator(TICKS))
+    panel.set_xlabel("time (s)")
+    panel.set_ylabel(f"output ({unit_text(unit)})")
+    lines = panel.get_legend_handles_labels()[0]
+    legend_above(panel.figure, lines)
+
+
+def sizes(
+    axes: Any,
+    rows: Sequence[tuple[str, float | None]],
+    floor: float,
+    unit: str,
+) -> None:
+    """Draw the gap before and after as bars, against the noise floor."""
+    (panel,) = axes
+    places = np.arange(len(rows))
+    # A model that runs away has no size: a word stands where its bar would.
+    widths = [0.0 if size is None else size for _, size in rows]
+    colors = [BEFORE, *[AFTER] * (len(rows) - 1)]
+    panel.barh(places, widths, color=colors, height=0.55)
+    panel.axvline(floor, color=FLOOR, linestyle="--", label=f"noise floor: {floor:.3g}")
+    shown = [
+        "unbounded" if x is None else f"{x:.3g} {unit_text(unit)}" for _, x in rows
+    ]
+    labels = [f"{name}\n{text}" for (name, _), text in zip(rows, shown, strict=True)]
+    panel.set_yticks(places, labels)
+    panel.set_ylim(max(len(rows), 2) - 0.5, -0.5)  # one bar is no thicker than two
+    panel.xaxis.set_major_locator(MaxNLocator(TICKS))
+    panel.set_xlim(0, 1.05 * max(*widths, floor))
+    panel.set_xlabel(f"rms residual, all hold-out records ({unit_text(unit)})")
+    panel.grid(visible=False, axis="y")
+    legend_above(panel.figure, panel.get_legend_handles_labels()[0])
 
 
 def series(axes: Any, tables: Sequence[HoldOut], floor: float, unit: str) -> None:

@@ -142,6 +142,11 @@ def loops(
         panel.set_visible(bool(there))
 
 
+#: A legend between a panel and its title, where it covers no curve.
+OUTSIDE: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0, 1)}
+TITLE_PAD = 16
+
+
 def maps(
     axes: Sequence[Axes], over_input: Any, over_rate: Any, units: dict[str, str]
 ) -> None:
@@ -156,16 +161,16 @@ def maps(
         panel.plot(x, over_input["rms"], ":", color=BLACK, label="rms")
         panel.set_xlabel(f"input ({given})")
         panel.set_ylabel(f"residual ({made})")
-        panel.set_title("by input and branch")
-        panel.legend()
+        panel.set_title("by input and branch", pad=TITLE_PAD)
+        panel.legend(**OUTSIDE, ncols=3)
     if over_rate:
         panel = axes[1]
         panel.plot(over_rate["rate"], over_rate["mean"], color=GREEN, label="mean")
         panel.plot(over_rate["rate"], over_rate["rms"], ":", color=BLACK, label="rms")
         panel.set_xlabel(f"rate of the input ({given}/s)")
         panel.set_ylabel(f"residual ({made})")
-        panel.set_title("by rate")
-        panel.legend()
+        panel.set_title("by rate", pad=TITLE_PAD)
+        panel.legend(**OUTSIDE, ncols=2)
 
 
 def plane(axes: Sequence[Axes], curve: dict[str, Any], units: dict[str, str]) -> None:
@@ -184,11 +189,14 @@ def plane(axes: Sequence[Axes], curve: dict[str, Any], units: dict[str, str]) ->
     )
     panel.grid(visible=False)
     panel.set_facecolor("0.85")  # cells without samples, which white would call right
-    panel.set_yticks(rows, [f"{rate:.3g}" for rate in curve["rate"]])
+    minus = "−"  # noqa: RUF001  (as axes have it, not a hyphen)
+    rates = [f"{rate:.3g}".replace("-", minus) for rate in curve["rate"]]
+    panel.set_yticks(rows, rates)
     panel.set_xlabel(f"input ({given})")
     panel.set_ylabel(f"rate of the input ({given}/s)")
+    panel.set_title("mean residual by the input and its rate")
     bar = panel.figure.colorbar(image, ax=panel, pad=0.02)
-    bar.set_label(f"mean residual ({made})")
+    bar.set_label(f"measured {minus} simulated ({made})")
     bar.outline.set_visible(False)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 from markupsafe import Markup
@@ -48,6 +49,32 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
         sentence += f" It looks like {listed(names)}, but is not that"
         return sentence + (f": {stays}." if stays else ".")
     return sentence + (f" On the fit records {stays}." if stays else "")
+
+
+def advice(gap: dict[str, Any]) -> str:
+    """Say where to go on, where no experiment was computed; by the verdict."""
+    if gap["verdict"] == "no-gap":
+        return (
+            "A smaller gap than this would show only in records with a lower noise "
+            "floor, or where the actuator is driven harder than here."
+        )
+    if gap["verdict"] == "parameters":
+        return (
+            "Take over the values of model.yaml, and measure a record outside the "
+            "range of these to see whether they hold there."
+        )
+    if gap["verdict"] == "named":
+        return (
+            "A record outside the range of these, in amplitude or rate, is what would "
+            "put the names to the test."
+        )
+    first = next(iter(gap["where"]), None)
+    if first is None:
+        return ""
+    return (
+        "What is missing has no name yet; where it shows most is where to measure "
+        f"again: {first['sentence']}"
+    )
 
 
 def _withdrawn_sentence(taken: dict[str, Any]) -> str:
@@ -139,6 +166,14 @@ def p_value(value: float) -> Markup:
 def unit(text: str) -> str:
     """Print a unit; none for a plain number."""
     return "" if text in ("", "-", "1") else unit_text(text)
+
+
+def one_micro(page: str) -> str:
+    """Write micro in the page's sentences as tables and axes do: ``2 um`` as 2 µm.
+
+    Only behind a number and a space, or a bracket: pictures have neither in their text.
+    """
+    return re.sub(r"(?:(?<=\d )|(?<=\())u(?=(?:m|s|g|A|V|N|T|C|rad)\b)", "µ", page)
 
 
 def bound(value: float | str) -> Markup:

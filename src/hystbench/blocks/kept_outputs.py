@@ -1,0 +1,206 @@
+"""Outputs of simulators on disk, so that a second run need not call them again.
+
+An output is looked up by the function's name, the sources that it is made of, the
+input and the sampling interval. It is an archive of NumPy with one array of numbers;
+nothing else is ever read. The folder is a cache: who deletes it loses time alone.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import sysconfig
+import zipfile
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from hashlib import blake2b
+from importlib import metadata
+from pathlib import Path
+from types import BuiltinFunctionType, FunctionType, ModuleType
+
+import numpy as np
+
+from hystbench.files import atomic_path
+from hystbench.record import FloatArray
+
+BOUND = 2**29
+"""Bytes of all outputs together, at most."""
+SUFFIX = ".npz"
+
+
+class KeptOutputs:
+    """A folder of outputs, a folder in it for each function as its source is.
+
+    Outputs that this run neither made nor used make room for new ones, the oldest
+    first; where none is left, no more are kept.
+
+    Parameters
+    ----------
+    folder : Path
+    say : callable
+        Told once of what cannot be read or written.
+    bound : int
+        Bytes of all files together, at most.
+    """
+
+    def __init__(
+        self, folder: Path, say: Callable[[str], None], bound: int = BOUND
+    ) -> None:
+        self.folder, self.say, self.bound = folder, say, bound
+        self._places: dict[str, Path] = {}
+        self._older: dict[Path, int] = {}
+        """Files of earlier runs that this one has not used, oldest first."""
+        self._size = 0
+        self._said: set[str] = set()
+        try:
+            there = sorted((x.stat().st_mtime, x) for x in folder.glob(f"*/*{SUFFIX}"))
+            for _, file in there:
+                self._older[file] = file.stat().st_size
+        except OSError as error:
+            self._say_once(f"{folder}: {error.strerror}; outputs are not kept")
+        self._size = sum(self._older.values())
+
+    def open(self, name: str) -> None:
+        """Find the place of a function, once all that it is made of is imported."""
+        self._places[name] = self.folder / source_digest(name)
+
+    def get(self, name: str, z: FloatArray, dt: float) -> FloatArray | None:
+        """Give the output for an input; None where there is none to be read."""
+        file = self._file(name, z, dt)
+        if file is None or not file.is_file():
+            return None
+        try:
+            with zipfile.ZipFile(file) as archive, archive.open("y.npy") as stream:
+                y = np.lib.format.read_array(stream, allow_pickle=False)
+        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+            self._say_once(f"{file}: not read ({error}); called instead")
+            return None
+        if y.dtype != np.float64 or y.shape != z.shape or not np.isfinite(y).all():
+            self._say_once(f"{file}: not an output of {len(z)} numbers; called instead")
+            return None
+        self._older.pop(file, None)
+        with suppress(OSError):  # a file that only looks older than it is does no harm
+            os.utime(file)
+        return np.ascontiguousarray(y)
+
+    def put(self, name: str, z: FloatArray, dt: float, y: FloatArray) -> None:
+        """Keep an output, if there is room and the folder can be written."""
+        file = self._file(name, z, dt)
+        size = y.nbytes + 512  # with the archive's own parts
+        if file is None or not self._has_room(size):
+            return
+        try:
+            with atomic_path(file) as temporary:
+                np.savez(temporary, y=y)
+        except OSError as error:
+            self._say_once(f"{self.folder}: {error.strerror}; outputs are not kept")
+            self._places.pop(name)
+            return
+        self._size += size - self._older.pop(file, 0)
+
+    def drop(self, name: str) -> None:
+        """Remove what earlier runs kept of a function as its source is."""
+        place = self._places[name]
+        for file in [file for file in self._older if file.parent == place]:
+            self._remove(file)
+        for file in place.glob(f"*{SUFFIX}"):
+            file.unlink(missing_ok=True)
+
+    def _file(self, name: str, z: FloatArray, dt: float) -> Path | None:
+        if name not in self._places:
+            return None
+        about = f"{len(z)} {dt!r} {z.dtype.str}\n".encode()
+        key = blake2b(about + z.tobytes(), digest_size=16).hexdigest()
+        return self._places[name] / f"{key}{SUFFIX}"
+
+    def _has_room(self, size: int) -> bool:
+        while self._size + size > self.bound and self._older:
+            self._remove(next(iter(self._older)))
+        if self._size + size <= self.bound:
+            return True
+        self._say_once(
+            f"{self.folder}: {self.bound >> 20} MiB are full; no more outputs are kept"
+        )
+        return False
+
+    def _remove(self, file: Path) -> None:
+        self._size -= self._older.pop(file)
+        file.unlink(missing_ok=True)
+
+    def _say_once(self, line: str) -> None:
+        """Say one line of each sort: a broken disk would say thousands."""
+        sort = line.rpartition(";")[2]
+        if sort not in self._said:
+            self._said.add(sort)
+            self.say(line)
+
+
+def folder_of_user() -> Path:
+    """Give the user's own place for outputs: below $XDG_CACHE_HOME, or ~/.cache."""
+    named = os.environ.get("XDG_CACHE_HOME", "")
+    # The standard has a relative path ignored.
+    base = Path(named) if Path(named).is_absolute() else Path.home() / ".cache"
+    return base / "hystbench" / "calls"
+
+
+def source_digest(name: str) -> str:
+    """Digest of a function's name and of all that it may be made of.
+
+    That is: each imported module that is the user's own or of the function's own
+    package, its file; each package that these name, its version; and Python's version.
+    A file that the function reads is not seen.
+
+    Parameters
+    ----------
+    name : str
+        ``package.module:function``, imported and best called once before.
+    """
+    own = dict(_own_modules(name.partition(":")[0].partition(".")[0]))
+    whole = blake2b(f"{name}\n{sys.version}\n".encode(), digest_size=16)
+    for label in sorted(own):
+        content = own[label].read_bytes()
+        whole.update(f"{label} {len(content)}\n".encode() + content)
+    for package in sorted(set().union(*map(_named_packages, own), {"numpy"})):
+        whole.update(f"{package} {_version(package)}\n".encode())
+    return whole.hexdigest()
+
+
+def _own_modules(first: str) -> Iterator[tuple[str, Path]]:
+    """Give imported modules that are not installed, or are of a package; with files."""
+    installed = [
+        Path(sysconfig.get_path(kind)).resolve()
+        for kind in ("stdlib", "platstdlib", "purelib", "platlib")
+    ]
+    for label, module in list(sys.modules.items()):
+        place = getattr(module, "__file__", None)
+        package = label.partition(".")[0]
+        if not isinstance(place, str) or package in ("hystbench", "__main__"):
+            continue
+        file = Path(place).resolve()
+        apart = not any(file.is_relative_to(each) for each in installed)
+        if (package == first or apart) and file.is_file():
+            yield label, file
+
+
+def _version(package: str) -> str:
+    """Give the version of a package, empty where it tells none."""
+    # Not by getattr: a module may answer to that with a warning, or by importing more.
+    own = vars(sys.modules[package]) if package in sys.modules else {}
+    try:
+        return str(own.get("__version__") or metadata.version(package))
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+def _named_packages(label: str) -> set[str]:
+    """Give the packages whose modules, classes or functions a module names."""
+    found = set()
+    for value in vars(sys.modules[label]).values():
+        name = None
+        if isinstance(value, ModuleType):
+            name = value.__name__
+        elif isinstance(value, type | FunctionType | BuiltinFunctionType):
+            name = value.__module__
+        if isinstance(name, str):
+            found.add(name.partition(".")[0])
+    return found

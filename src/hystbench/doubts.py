@@ -1,0 +1,204 @@
+"""What in a dataset is hardly meant: copies, a wrong unit of time, a wrong prefix.
+
+A copy that is held out is refused. The rest are warnings, one line each, with what to
+write in dataset.yaml where it is meant after all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from hystbench.copies import Piece, common_piece
+from hystbench.dataset import Dataset
+from hystbench.errors import InputError
+from hystbench.record import Record
+from hystbench.units import named_otherwise, plain, prefixed, seconds
+
+SLOWEST_HZ = 0.005
+"""Fastest content of all records together: a loop in 200 s is as slow as an actuator is
+tested for its creep, and somewhere a test goes faster."""
+LONGEST_S = 5400.0
+"""An hour and a half: actuators are not tested for so long in one record."""
+SHORTEST_STEP_S = 1e-7
+"""A sampling rate of 10 MHz: recorders of displacement end there."""
+THOUSAND = 1000 / 10**0.5
+"""A factor that is nearer to a thousand than to a hundred."""
+IN_BAND = 0.99
+"""Share of the input's power up to its fastest content."""
+TIMES = ("ns", "us", "ms", "s", "min", "h")
+
+
+def doubts(
+    dataset: Dataset, records: Sequence[Record], about: str | None = None
+) -> tuple[str, ...]:
+    """Give warnings on records of one dataset.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    records : sequence of Record
+        Those that were read; more of them tell more.
+    about : str, optional
+        Only what concerns this record, and the dataset as a whole.
+
+    Returns
+    -------
+    tuple of str
+        One line each.
+
+    Raises
+    ------
+    InputError
+        If a record that is held out is also among those to fit, all of it or half of
+        the shorter one, as it is or rounded.
+    """
+    concerned = [item for item in records if about in (None, item.name)]
+    found = [*_other_columns(dataset), *_strange_time(dataset, concerned)]
+    for one, two in combinations(records, 2):
+        if about not in (None, one.name, two.name):
+            continue
+        piece = common_piece(one, two)
+        if piece is None:
+            continue
+        if one.use != two.use:
+            _refuse_copy(dataset, one, two, piece)
+        if not any("copy" in dataset.meant(item.name) for item in (one, two)):
+            found.append(_copy(dataset, one, two, piece))
+    for channel in ("input", "output"):
+        found += _other_size(dataset, records, channel, about)
+    return tuple(found)
+
+
+def _refuse_copy(dataset: Dataset, one: Record, two: Record, piece: Piece) -> None:
+    if one.use == "fit":
+        one, two = two, one
+        piece = piece._replace(first=piece.other_first, other_first=piece.first)
+    raise InputError(
+        f"{_said(dataset, one, two, piece)}, which is to be fitted; expected records "
+        "held out that no fit has seen: measure another, or give both 'use: fit'"
+    )
+
+
+def _copy(dataset: Dataset, one: Record, two: Record, piece: Piece) -> str:
+    return (
+        f"{_said(dataset, one, two, piece)}; it counts twice; leave one out, or where "
+        "both are meant say 'meant: [copy]' of one of them in dataset.yaml"
+    )
+
+
+def _said(dataset: Dataset, one: Record, two: Record, piece: Piece) -> str:
+    files = dataset.record_files
+    where = (
+        f"equals {files[two.name].name}"
+        if piece.samples == len(one) == len(two)
+        else f"{piece.samples} of {len(one)} samples, from row {piece.first + 2} on, "
+        f"equal those of {files[two.name].name} from row {piece.other_first + 2} on"
+    )
+    return f"{files[one.name]}: {where}{'' if piece.exact else ' up to rounding'}"
+
+
+def _other_columns(dataset: Dataset) -> Iterator[str]:
+    """Tell of columns whose names end with another unit than the one that is said."""
+    for key in ("time", "input", "output", "simulated"):
+        about = dataset.about.get(key)
+        if about is None or about.get("meant"):
+            continue
+        named = named_otherwise(about["column"], about["unit"])
+        if named is not None:
+            yield (
+                f"{dataset.path}: {key}: unit: {plain(about['unit'])!r}, but the "
+                f"column is called {about['column']!r}; write 'unit: {named}', or "
+                f"where it is meant 'meant: true' beside it"
+            )
+
+
+def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
+    """Tell of times that no test of an actuator has, and of the unit that is likely."""
+    about = dataset.about["time"]
+    if about.get("meant") or not records:
+        return
+    if named_otherwise(about["column"], about["unit"]) is not None:
+        return  # the column's name has told it
+    told: Callable[[Record, float], str | None] = _absurd
+    # Slow records beside fast ones are what creep is measured with.
+    fastest = max(records, key=_fastest_hz)
+    factor = seconds(f"{dataset.path}: time: unit", about["unit"])
+    for record in (fastest, *(item for item in records if item is not fastest)):
+        why = told(record, 1.0)
+        if record is fastest and why is None and _fastest_hz(record) < SLOWEST_HZ:
+            hz = _fastest_hz(record)
+            why = f"nothing in any record is faster than {hz:.2g} Hz"
+        if why is None:
+            continue
+        likely = [
+            unit
+            for unit in TIMES
+            if told(record, seconds("", unit) / factor) is None
+            and (_fastest_hz(fastest) / (seconds("", unit) / factor) >= SLOWEST_HZ)
+        ]
+        likely.sort(key=lambda unit: abs(np.log(seconds("", unit) / factor)))
+        guess = f"is it {likely[0]!r}? Then write 'unit: {likely[0]}', or " * bool(
+            likely
+        )
+        yield (
+            f"{dataset.path}: time: unit: {about['unit']!r}: {why} "
+            f"({dataset.record_files[record.name].name}); {guess}where it is meant "
+            "write 'meant: true' beside it"
+        )
+        return
+
+
+def _absurd(record: Record, factor: float) -> str | None:
+    """Tell what is strange of a record whose times are multiplied by a factor."""
+    step, length = record.dt * factor, record.dt * factor * len(record)
+    if length > LONGEST_S:
+        return f"a record of {length / 3600:.3g} hours"
+    if step < SHORTEST_STEP_S:
+        return f"a record sampled at {1e-6 / step:.3g} MHz"
+    return None
+
+
+def _fastest_hz(record: Record) -> float:
+    """Frequency up to which nearly all of the input's power lies."""
+    power = np.square(np.abs(np.fft.rfft(record.u - record.u.mean())))
+    total = np.cumsum(power)
+    line = int(np.searchsorted(total, IN_BAND * total[-1]))
+    return max(line, 1) / (len(record) * record.dt)
+
+
+def _other_size(
+    dataset: Dataset, records: Sequence[Record], channel: str, only: str | None
+) -> Iterator[str]:
+    """Tell of records whose range is a thousand times that of the others, or less."""
+    about = dataset.about[channel]
+    signals = {"input": lambda item: item.u, "output": lambda item: item.y}
+    ranges = sorted(
+        (float(np.ptp(signals[channel](item))), item.name) for item in records
+    )
+    steps = [high / low for (low, _), (high, _) in pairwise(ranges)]
+    if not steps or max(steps) < THOUSAND:
+        return
+    cut = steps.index(max(steps)) + 1
+    low, high = ranges[:cut], ranges[cut:]
+    few, many = (low, high) if len(low) < len(high) else (high, low)
+    for size, name in few:
+        if only not in (None, name) or "amplitude" in dataset.meant(name):
+            continue
+        other = min(many, key=lambda item: abs(np.log(item[0] / size)))
+        ratio = size / other[0]
+        # The prefix that would bring both together.
+        power = 3 * round(np.log10(ratio) / 3)
+        unit = plain(about["unit"])
+        likely = prefixed(unit, 10.0**power)
+        guess = f"is it in {likely}? Then multiply it by {10.0**-power:g}, or " * bool(
+            likely
+        )
+        yield (
+            f"{dataset.record_files[name]}: column {about['column']!r}: a range of "
+            f"{size:.3g} {unit} where {dataset.record_files[other[1]].name} has "
+            f"{other[0]:.3g} {unit}; {guess}where it is meant say "
+            "'meant: [amplitude]' of this record in dataset.yaml"
+        )

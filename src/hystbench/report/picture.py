@@ -1,0 +1,94 @@
+"""Pictures that stand inside a page."""
+
+from __future__ import annotations
+
+import base64
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from markupsafe import Markup
+
+from hystbench.errors import InputError
+
+_SIZE = re.compile(r'<svg[^>]*?\swidth="([\d.]+)pt"[^>]*?\sheight="([\d.]+)pt"', re.S)
+_SIZE_TURNED = re.compile(
+    r'<svg[^>]*?\sheight="([\d.]+)pt"[^>]*?\swidth="([\d.]+)pt"', re.S
+)
+
+#: A column of a journal is 3.5 inches wide, a page 7.2 (CSS pixels, 96 an inch).
+WIDE = 500
+
+
+@dataclass(frozen=True)
+class Link:
+    """A file beside the page; its path is relative to the page."""
+
+    label: str
+    href: str
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture with its caption.
+
+    Parameters
+    ----------
+    name : str
+        Name of the element, by which it can be linked.
+    source : str
+        The image itself, as a data URI.
+    alt : str
+        What it shows, for those who do not see it.
+    caption : Markup
+    width, height : int
+        In CSS pixels.
+    files : tuple of Link
+        Where it can be had as a file.
+    """
+
+    name: str
+    source: str
+    alt: str
+    caption: Markup
+    width: int
+    height: int
+    files: tuple[Link, ...] = ()
+
+    @property
+    def wide(self) -> bool:
+        """Whether it is as wide as a page of a journal, not as a column."""
+        return self.width > WIDE
+
+
+def embedded(
+    path: Path, alt: str, caption: Markup, files: tuple[Link, ...] = ()
+) -> Picture:
+    """Take an SVG file of matplotlib into a page.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or tells no size in points.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: not readable ({error.strerror})") from error
+    head = content[:2000].decode("utf-8", "replace")
+    if found := _SIZE.search(head):
+        width, height = found.groups()
+    elif found := _SIZE_TURNED.search(head):
+        height, width = found.groups()
+    else:
+        raise InputError(f"{path}: expected an SVG picture with a size in points")
+    text = base64.b64encode(content).decode("ascii")
+    return Picture(
+        name=path.stem,
+        source=f"data:image/svg+xml;base64,{text}",
+        alt=alt,
+        caption=caption,
+        width=round(float(width) * 4 / 3),
+        height=round(float(height) * 4 / 3),
+        files=files,
+    )

@@ -1,0 +1,326 @@
+"""Errors as tables: ours beside the paper's, held-out signals first."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+
+from hystbench.compare.cells import ComparedCell
+from hystbench.compare.summary import FACTOR, nearness
+from hystbench.compare.tables import LEGEND, MARKS, METRIC_NAMES
+from hystbench.figures.style import LOOKS, signal_title, unit_text
+from hystbench.published import FILTERS, METRICS, MODELS
+from hystbench.report.markup import inline
+from hystbench.report.picture import Link
+from hystbench.report.reproduction.read import Row, Shown
+from hystbench.report.table import Body, Cell, Column, Table, number, words
+
+HALVES = ("held-out", "calibrated")
+#: What a half is called in a table.
+HALF_WORDS = {"held-out": "held out", "calibrated": "fitted"}
+
+
+def filter_cells(cells: Iterable[ComparedCell], half: str) -> list[ComparedCell]:
+    """List the filters' errors (MSE) of one half; RE is the same error again."""
+    return [
+        cell
+        for cell in cells
+        if cell.metric == "mse" and cell.half == half and cell.model in FILTERS
+    ]
+
+
+def within(cells: Iterable[ComparedCell]) -> int:
+    """Count errors that are within a factor of 2 of the paper's."""
+    return sum(cell.ran and cell.distance <= math.log10(FACTOR) for cell in cells)
+
+
+def headline_table(cells: Sequence[ComparedCell], half: str) -> Table:
+    """Set ours beside the paper's: a row a signal of one half that was run."""
+    half_cells = filter_cells(cells, half)
+    by_key = {(cell.signal, cell.model): cell for cell in half_cells}
+    signals = dict.fromkeys(cell.signal for cell in half_cells if cell.ran)
+    models = [m for m in FILTERS if any(c.ran for c in half_cells if c.model == m)]
+    columns = [Column("signal")]
+    for model in models:
+        group = LOOKS[model].label
+        columns += [Column("paper", True, group), Column("ours", True, group)]
+    rows = []
+    for signal in signals:
+        row = [words(signal_title(signal))]
+        for model in models:
+            row += _pair(by_key[signal, model])
+        rows.append(row)
+    about = {
+        "held-out": "Mean square error (µm²) on the held-out signals, those that the "
+        "twin was not fitted to.",
+        "calibrated": "Mean square error (µm²) on signals that the twin was fitted to; "
+        "no held-out signal was run.",
+    }[half]
+    return Table(
+        "beside-the-paper",
+        about,
+        columns,
+        [Body(rows)],
+        dense=True,
+        note="Orange: off by more than a factor of 2. † ‡: the printed pair of MSE and "
+        "RE cannot be true, or may not be.",
+    )
+
+
+def _pair(cell: ComparedCell) -> list[Cell]:
+    printed = cell.published + MARKS[cell.published_consistent]
+    return [number(float(cell.published), printed), _ours(cell)]
+
+
+def _ours(cell: ComparedCell) -> Cell:
+    if not cell.ran:
+        return words("not run", "quiet")
+    if cell.ours is None:
+        return number(math.inf)
+    shown = f"{cell.ours:.4f}" if cell.ours >= 1e-3 else f"{cell.ours:.2g}"
+    return number(cell.ours, shown, "" if within([cell]) else "bad")
+
+
+def nearness_table(cells: Sequence[ComparedCell]) -> Table:
+    """Tell how near ours come, by half and model; halves are never added up."""
+    columns = [
+        Column("model"),
+        Column("errors run", True),
+        Column("within a factor of 2", True),
+        Column("typical factor", True),
+        Column("worst factor", True),
+        Column("diverged", True),
+    ]
+    bodies = []
+    for half in HALVES:
+        chosen = [c for c in cells if c.metric == "mse" and c.half == half]
+        parts = [("all four filters", [c for c in chosen if c.model in FILTERS])]
+        parts += [(LOOKS[m].label, [c for c in chosen if c.model == m]) for m in MODELS]
+        rows = [_near(name, part) for name, part in parts if part]
+        heading = {
+            "held-out": "Held-out signals: the twin was not fitted to them",
+            "calibrated": "Signals that the twin was fitted to",
+        }[half]
+        bodies.append(Body(rows, heading))
+    return Table(
+        "nearness",
+        "How near our errors (MSE) come to the paper's, by model. The filters' errors "
+        "are one-step a priori with running weights, the RDGPI model's free-run.",
+        columns,
+        bodies,
+        note="The typical factor is the median over the errors, in either direction.",
+    )
+
+
+def _near(name: str, part: Sequence[ComparedCell]) -> list[Cell]:
+    found = nearness(part)
+    ran, median = found["cells"], found["median_abs_log10_ratio"]
+    worst = found["worst_finite"]
+    near = within(part)
+    return [
+        words(name),
+        number(ran, f"{ran} of {len(part)}"),
+        number(near, f"{near} of {ran}") if ran else number(None),
+        number(None) if median is None else number(10**median, f"{10**median:.2f}"),
+        number(None)
+        if worst is None
+        else number(
+            10 ** abs(worst["log10_ratio"]), f"{10 ** abs(worst['log10_ratio']):.2f}"
+        ),
+        number(found["diverged"], str(found["diverged"])),
+    ]
+
+
+def paper_table(shown: Shown, halves: Mapping[str, str]) -> Table:
+    """Show a table of the paper with ours beside it; MSE and RE stand apart."""
+    given = [key for key in shown.rows[0] if key not in ("signal", "error", "note")]
+    columns = [Column("signal"), Column("twin")]
+    for key in given:
+        model, _, whose = key.partition(" ")
+        label = LOOKS[model].label if model in LOOKS else model
+        columns.append(Column(whose or key, True, label if whose else ""))
+    bodies = []
+    for metric in METRICS:
+        name = METRIC_NAMES[metric]
+        rows = sorted(
+            (row for row in shown.rows if row["error"] == name),
+            key=lambda row: halves[row["signal"]] != "held-out",
+        )
+        bodies.append(
+            Body(
+                [
+                    [
+                        words(signal_title(row["signal"])),
+                        words(HALF_WORDS[halves[row["signal"]]]),
+                        *(_printed(row[key]) for key in given),
+                    ]
+                    for row in rows
+                ],
+                {"mse": "Mean square error (µm²)", "re": "Relative error"}[metric],
+            )
+        )
+    note = shown.rows[0].get("note", "")
+    caption, _, legend = note.partition("†")
+    stem = shown.file.href.rpartition(".")[0]
+    return Table(
+        shown.name,
+        inline(caption.strip()),
+        columns,
+        bodies,
+        files=(
+            shown.file,
+            Link("Markdown", f"{stem}.md"),
+            Link("LaTeX", f"{stem}.tex"),
+        ),
+        dense=True,
+        note=f"†{legend}" if legend else LEGEND,
+    )
+
+
+def _printed(text: str) -> Cell:
+    """Make a cell of a number with a mark, or of the word that stands instead."""
+    try:
+        return number(float(text.rstrip("†‡")), text)
+    except ValueError:
+        return words(text, "bad" if text == "diverged" else "quiet")
+
+
+def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> Table:
+    """Show every printed error with ours, the spread of equally good twins and all."""
+    columns = [
+        Column("twin"),
+        Column("signal"),
+        Column("model"),
+        Column("error"),
+        Column("paper", True),
+        Column("ours", True),
+        Column("ours / paper", True),
+        Column("least", True, "equally good twins"),
+        Column("most", True, "equally good twins"),
+        Column("printed pair can be true"),
+        Column("status"),
+    ]
+    ordered = sorted(cells, key=lambda cell: cell.half != "held-out")
+    rows = [
+        [
+            words(HALF_WORDS[cell.half]),
+            words(signal_title(cell.signal)),
+            words(LOOKS[cell.model].label),
+            words(cell.metric.upper()),
+            number(float(cell.published), cell.published),
+            number(cell.ours, "" if cell.ours is not None else "none"),
+            number(None if cell.log10_ratio is None else 10**cell.log10_ratio),
+            number(cell.spread_low),
+            number(cell.spread_high),
+            words(cell.published_consistent),
+            words(cell.status),
+        ]
+        for cell in ordered
+    ]
+    return Table(
+        "cells",
+        inline(caption),
+        columns,
+        [Body(rows)],
+        files=(file,),
+        filtered=("twin", "model", "error"),
+        dense=True,
+    )
+
+
+def off_table(off: Sequence[Row], caption: str, file: Link) -> Table:
+    """Show the errors that are off by more than a factor of 2."""
+    columns = [
+        Column("twin"),
+        Column("signal"),
+        Column("model"),
+        Column("paper", True),
+        Column("ours", True),
+        Column("ours / paper", True),
+        Column("what is known"),
+    ]
+    ordered = sorted(off, key=lambda row: row["half"] != "held-out")
+    rows = [
+        [
+            words(HALF_WORDS.get(row["half"], row["half"])),
+            words(signal_title(row["signal"])),
+            words(LOOKS[row["model"]].label),
+            number(float(row["published"]), row["published"]),
+            number(float(row["ours"])) if row["ours"] else number(math.inf),
+            number(float(row["ratio"])) if row["ratio"] else number(math.inf),
+            words(row["known"]),
+        ]
+        for row in ordered
+    ]
+    return Table(
+        "off", inline(caption), columns, [Body(rows)], files=(file,), cards=True
+    )
+
+
+def measured_table(
+    errors: Sequence[Row], caption: str, files: tuple[Link, ...]
+) -> Table:
+    """Show the errors on a measured dataset: a row a record and model."""
+    columns = [
+        Column("record"),
+        Column("model"),
+        Column("error"),
+        Column("RE", True),
+        Column("MSE", True),
+        Column("unit"),
+        Column("RE after the transient", True),
+        Column("status"),
+    ]
+    rows = [
+        [
+            words(row["signal"]),
+            words(LOOKS[row["model"]].label),
+            words(row["error_kind"]),
+            _error(row["re"]),
+            _error(row["mse"]),
+            words(unit_text(row["unit"])),
+            _error(row.get("re_after_transient", "")),
+            words(row["status"]),
+        ]
+        for row in errors
+    ]
+    return Table(
+        "errors",
+        inline(caption),
+        columns,
+        [Body(rows)],
+        files=files,
+        filtered=("record", "model"),
+    )
+
+
+def measured_headline(errors: Sequence[Row]) -> Table:
+    """Set the relative errors of all models side by side, a row a record."""
+    models = [model for model in MODELS if any(r["model"] == model for r in errors)]
+    by_key = {(row["signal"], row["model"]): row for row in errors}
+    signals = dict.fromkeys(row["signal"] for row in errors)
+    rows = [
+        [
+            words(signal),
+            *(
+                _error(by_key[signal, model]["re"])
+                if (signal, model) in by_key
+                else words("not run", "quiet")
+                for model in models
+            ),
+        ]
+        for signal in signals
+    ]
+    columns = [Column("record"), *(Column(LOOKS[m].label, True) for m in models)]
+    return Table(
+        "by-record",
+        "Relative error of every model on every measured record. The filters' errors "
+        "are one-step a priori, the RDGPI model's free-run: not the same task.",
+        columns,
+        [Body(rows)],
+        dense=True,
+    )
+
+
+def _error(text: str) -> Cell:
+    return number(float(text)) if text else number(math.inf)

@@ -1,0 +1,168 @@
+"""Putting the page together."""
+
+from __future__ import annotations
+
+from hystbench.figures.style import LOOKS, signal_title
+from hystbench.report.layout import page_environment
+from hystbench.report.markup import inline, paragraphs
+from hystbench.report.picture import Link, Picture
+from hystbench.report.reproduction import claims, errors, words
+from hystbench.report.reproduction.read import Content, Measured, Reproduction, Shown
+from hystbench.report.table import Body, Cell, Column, Table, number
+from hystbench.report.table import words as text_cell
+
+TEMPLATE = "page.html.j2"
+#: The picture of the first screen.
+HEADLINE = "headline"
+#: Units of the columns of tables that are shown as they are.
+_HEADINGS = {"mse": "MSE", "re": "RE", "error_kind": "error"}
+
+
+def page(content: Content) -> str:
+    """Make the page of what was read."""
+    found = content.found
+    figures = {figure.name: figure for figure in content.figures}
+    headline = figures.pop(HEADLINE, None)
+    parts = (
+        _measured(found, content)
+        if isinstance(found, Measured)
+        else _twin(found, content)
+    )
+    return (
+        page_environment("hystbench.report.reproduction")
+        .get_template(TEMPLATE)
+        .render(
+            title=_title(found),
+            sentences=words.verdict(found),
+            source=words.source(found),
+            missing=words.missing(found, [f.name for f in content.figures]),
+            headline=headline,
+            figures=_in_order(list(figures.values())),
+            more=[_as_it_is(each) for each in content.tables],
+            measured=isinstance(found, Measured),
+            files=_files(content),
+            **parts,
+        )
+    )
+
+
+def _title(found: Reproduction | Measured) -> str:
+    if isinstance(found, Measured):
+        return f"hystbench: five models on the measured records of {found.name}"
+    return "hystbench: a filter of generalized play operators, reproduced on a twin"
+
+
+def _twin(found: Reproduction, content: Content) -> dict[str, object]:
+    halves = {cell.signal: cell.half for cell in found.cells}
+    held = [cell for cell in errors.filter_cells(found.cells, "held-out") if cell.ran]
+
+    def file(name: str) -> Link:
+        return Link("CSV", f"{content.compare}/{name}.csv")
+
+    told = content.captions
+    return {
+        "first": errors.headline_table(
+            found.cells, "held-out" if held else "calibrated"
+        ),
+        "near": errors.nearness_table(found.cells),
+        "full": [inline(text) for text in _prose(found.verdict)],
+        "tables": [errors.paper_table(each, halves) for each in found.tables],
+        "cells": errors.all_cells(found.cells, told["cells"], file("cells")),
+        "off": errors.off_table(found.off, told["off"], file("off")),
+        "counted": claims.counts_table(found.claims),
+        "claims": claims.claims_table(found.claims, told["claims"], file("claims")),
+        "audit": claims.audit_table(found.audit, told["audit"], file("audit")),
+    }
+
+
+def _measured(found: Measured, content: Content) -> dict[str, object]:
+    stem = f"{content.compare}/tables/errors"
+    files = (
+        Link("CSV", f"{content.compare}/errors.csv"),
+        Link("Markdown", f"{stem}.md"),
+        Link("LaTeX", f"{stem}.tex"),
+    )
+    return {
+        "first": errors.measured_headline(found.errors),
+        "errors": errors.measured_table(
+            found.errors, content.captions["errors"], files
+        ),
+    }
+
+
+def _prose(markdown: str) -> list[str]:
+    """Take the sentences of a verdict, without its table and what stands below."""
+    parts = paragraphs(markdown)
+    table = next((n for n, part in enumerate(parts) if part.startswith("|")), None)
+    return parts[:table]
+
+
+def _in_order(figures: list[Picture]) -> list[Picture]:
+    """Put the paper's figures first, by their number."""
+    return sorted(
+        figures, key=lambda each: (not each.name.startswith("figure"), each.name)
+    )
+
+
+def _as_it_is(shown: Shown) -> Table:
+    """Show a CSV file; signals and models by their names, numbers as numbers."""
+    keys = list(shown.rows[0]) if shown.rows else []
+    numeric = {key for key in keys if all(_is_number(row[key]) for row in shown.rows)}
+
+    def cell(key: str, text: str) -> Cell:
+        if key in numeric:
+            return number(float(text)) if text else number(None)
+        if key == "signal":
+            return text_cell(signal_title(text))
+        if key == "model" and text in LOOKS:
+            return text_cell(LOOKS[text].label)
+        return text_cell(text)
+
+    columns = [
+        Column(_HEADINGS.get(key, key.replace("_", " ")), key in numeric)
+        for key in keys
+    ]
+    rows = [[cell(key, row[key]) for key in keys] for row in shown.rows]
+    return Table(
+        shown.name, inline(shown.caption), columns, [Body(rows)], files=(shown.file,)
+    )
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text or "0")
+    except ValueError:
+        return False
+    return True
+
+
+def _files(content: Content) -> list[tuple[Link, str]]:
+    """List the files beside the page, and what each holds."""
+    folder = content.compare
+    if isinstance(content.found, Measured):
+        told = [
+            (f"{folder}/errors.csv", "every error, a row a record and model"),
+            (f"{folder}/tables/errors.csv", "the same, a row a record"),
+        ]
+    else:
+        told = [
+            (f"{folder}/verdict.md", "the verdict in full"),
+            (f"{folder}/cells.csv", "every printed error with ours"),
+            (f"{folder}/off.csv", "errors off by more than a factor of 2"),
+            (f"{folder}/claims.csv", "every claim, verdict and evidence"),
+            (f"{folder}/audit.csv", "the audit of the paper's numbers"),
+            (f"{folder}/summary.json", "how near ours come, in numbers"),
+            *(
+                (each.file.href, "a table of the paper, ours beside it")
+                for each in content.found.tables
+            ),
+        ]
+    told += [
+        (each.file.href, each.caption.partition(".")[0]) for each in content.tables
+    ]
+    told += [
+        (link.href, f"figure, {link.label}")
+        for f in content.figures
+        for link in f.files
+    ]
+    return [(Link(href, href), what) for href, what in told]

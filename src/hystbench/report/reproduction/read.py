@@ -1,0 +1,154 @@
+"""What the page shows, read from the files of results."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hystbench.compare.cells import ComparedCell
+from hystbench.compare.rows import read_rows
+from hystbench.errors import InputError
+from hystbench.report.markup import first_sentence, inline
+from hystbench.report.picture import Link, Picture, embedded
+from hystbench.report.reproduction.captions import caption
+
+Row = dict[str, str]
+
+#: Columns that the page cannot do without; others are shown as they are.
+_CELLS = tuple(ComparedCell.__dataclass_fields__)
+_CLAIMS = ("id", "claim", "where", "kind", "basis", "verdict", "evidence")
+_OFF = ("table", "signal", "model", "half", "published", "ours", "ratio", "known")
+_AUDIT = ("kind", "where", "statement", "evidence")
+_ERRORS = ("signal", "model", "error_kind", "mse", "re", "unit", "status")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A CSV file that is shown as it is."""
+
+    name: str
+    rows: list[Row]
+    caption: str
+    file: Link
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """What a comparison with the paper wrote."""
+
+    cells: list[ComparedCell]
+    claims: list[Row]
+    on_held_out: list[Row]
+    off: list[Row]
+    audit: list[Row]
+    tables: list[Shown]
+    verdict: str
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a comparison on a measured dataset wrote."""
+
+    name: str
+    errors: list[Row]
+
+
+@dataclass(frozen=True)
+class Content:
+    """All that is on the page."""
+
+    found: Reproduction | Measured
+    figures: list[Picture]
+    tables: list[Shown]
+    captions: dict[str, str]
+    compare: str
+
+
+def read_content(
+    base: Path,
+    compare: Path,
+    figures: Sequence[Path],
+    tables: Sequence[Path],
+    captions: Path,
+    settings: Mapping[str, Any],
+) -> Content:
+    """Read what the page shows; see ``write_page``."""
+
+    def told(name: str) -> str:
+        return caption(captions, name, settings)
+
+    def shown(path: Path, text: str) -> Shown:
+        return Shown(path.stem, read_rows(path, ()), text, _link(path, base))
+
+    found: Reproduction | Measured
+    if settings["dataset"] is None:
+        found = Reproduction(
+            cells=[_cell(row) for row in read_rows(compare / "cells.csv", _CELLS)],
+            claims=read_rows(compare / "claims.csv", _CLAIMS),
+            on_held_out=_on_held_out(compare / "summary.json"),
+            off=read_rows(compare / "off.csv", _OFF),
+            audit=read_rows(compare / "audit.csv", _AUDIT),
+            tables=[
+                shown(compare / "tables" / f"table-{number}.csv", "")
+                for number in (1, 2, 3, 4)
+            ],
+            verdict=_text(compare / "verdict.md"),
+        )
+        names = ["cells", "claims", "off", "audit"]
+    else:
+        rows = read_rows(compare / "errors.csv", _ERRORS)
+        found = Measured(settings["dataset"], rows)
+        names = ["errors"]
+    return Content(
+        found=found,
+        figures=[_figure(path, base, told(path.stem)) for path in figures],
+        tables=[shown(path, told(path.stem)) for path in tables],
+        captions={name: told(name) for name in names},
+        compare=os.path.relpath(compare, base),
+    )
+
+
+def _figure(path: Path, base: Path, text: str) -> Picture:
+    files = (
+        Link("SVG", _link(path, base).href),
+        Link("PNG", _link(path.with_suffix(".png"), base).href),
+    )
+    return embedded(path, first_sentence(text), inline(text), files)
+
+
+def _link(path: Path, base: Path) -> Link:
+    """Link a file by its path from the page, as a browser reads it."""
+    from urllib.parse import quote
+
+    return Link(
+        path.suffix[1:].upper(), quote(Path(os.path.relpath(path, base)).as_posix())
+    )
+
+
+def _on_held_out(path: Path) -> list[Row]:
+    """Read the results that are judged on held-out signals alone."""
+    try:
+        found: list[Row] = json.loads(_text(path))["claims_on_held_out"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{path}: expected the summary of a comparison") from error
+    return found
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: not readable ({error.strerror})") from error
+
+
+def _cell(row: Row) -> ComparedCell:
+    """Read a row of cells.csv; what is empty is None."""
+    values: dict[str, Any] = {key: row[key] for key in _CELLS}
+    for key, text in row.items():
+        if key == "ours" or key.endswith(("_low", "_high")):
+            values[key] = float("inf" if text == "diverged" else text) if text else None
+    return ComparedCell(**values | {"table": int(row["table"])})

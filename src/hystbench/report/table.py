@@ -1,0 +1,160 @@
+"""Tables of a page: sorted and filtered in place, read on a phone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from hystbench.report.picture import Link
+
+#: What a cell is sorted by.
+Key = float | str | None
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell.
+
+    Parameters
+    ----------
+    shown : str
+        Text, or HTML where it is ``Markup``.
+    sort : float or str, optional
+        What it is sorted and filtered by; the text where it is None.
+    mark : str
+        CSS class: ``good``, ``bad``, ``quiet`` or none.
+    """
+
+    shown: str
+    sort: Key = None
+    mark: str = ""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column: its title, whether it holds numbers, and what it stands under."""
+
+    title: str
+    numeric: bool = False
+    group: str = ""
+
+    @property
+    def label(self) -> str:
+        """Its whole name, where it stands alone."""
+        return f"{self.group} {self.title}".strip()
+
+
+@dataclass(frozen=True)
+class Body:
+    """Rows that are sorted among themselves, under a heading or none."""
+
+    rows: Sequence[Sequence[Cell]]
+    heading: str = ""
+
+
+@dataclass(frozen=True)
+class Group:
+    """A title over some columns."""
+
+    title: str
+    span: int
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A filter: a column and the values that it takes."""
+
+    title: str
+    column: int
+    options: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with its caption.
+
+    Parameters
+    ----------
+    name : str
+        Name of the element, by which it can be linked.
+    caption : str
+        Text or ``Markup``.
+    columns : sequence of Column
+    bodies : sequence of Body
+    files : tuple of Link
+        Where it can be had as a file.
+    filtered : tuple of str
+        Titles of columns by whose values rows can be chosen.
+    cards : bool
+        Whether its cells hold sentences: a row is a card on a phone.
+    dense : bool
+        Whether it has many narrow columns.
+    note : str
+        What its marks mean.
+    """
+
+    name: str
+    caption: str
+    columns: Sequence[Column]
+    bodies: Sequence[Body]
+    files: tuple[Link, ...] = ()
+    filtered: tuple[str, ...] = ()
+    cards: bool = False
+    dense: bool = False
+    note: str = ""
+
+    @property
+    def count(self) -> int:
+        """Rows, headings aside."""
+        return sum(len(body.rows) for body in self.bodies)
+
+    @property
+    def groups(self) -> list[Group]:
+        """Titles over the columns; none where no column stands under one."""
+        if not any(column.group for column in self.columns):
+            return []
+        parts = groupby(self.columns, key=lambda column: column.group)
+        return [Group(title, len(list(columns))) for title, columns in parts]
+
+    @property
+    def choices(self) -> list[Choice]:
+        """Filters, each with the values that are there, in their order."""
+        found = []
+        for place, column in enumerate(self.columns):
+            if column.title in self.filtered:
+                cells = (row[place] for body in self.bodies for row in body.rows)
+                values = (str(c.shown if c.sort is None else c.sort) for c in cells)
+                options = tuple(dict.fromkeys(value for value in values if value))
+                found.append(Choice(column.title, place, options))
+        return found
+
+
+def words(text: str, mark: str = "") -> Cell:
+    """Make a cell of text."""
+    return Cell(text, None, mark)
+
+
+def number(value: float | None, shown: str = "", mark: str = "") -> Cell:
+    """Make a cell of a number, with four digits where no text is given.
+
+    None makes an empty cell, infinity the word ``diverged``.
+    """
+    if value is None:
+        return Cell(shown, "", mark)
+    if math.isinf(value):
+        return Cell(shown or "diverged", "Infinity", mark or "bad")
+    return Cell(shown or f"{value:.4g}", value, mark)
+
+
+def rows_of(texts: Iterable[Sequence[str]]) -> list[list[Cell]]:
+    """Make rows of a table's text; numbers are sorted as such."""
+    return [[_cell(text) for text in row] for row in texts]
+
+
+def _cell(text: str) -> Cell:
+    try:
+        return number(float(text)) if text else words("")
+    except ValueError:
+        return words(text)

@@ -1,0 +1,388 @@
+"""What hystbench wrote, so that nothing else is ever written over or removed.
+
+Beside each file that is written stands an entry in the hidden folder ``.hystbench``:
+the file's SHA-256, in the form of ``sha256sum``. A file is hystbench's own as long as
+it is an ordinary file that its entry describes. Anything else that stands where
+something is to be written is somebody's, and refused.
+
+An entry of each file, and not one list: jobs that write into one folder at the same
+time, on several machines too, then need no lock. An entry is written before its file
+takes its place, and describes the file that it replaces as well: whenever a run is cut
+off, what is there is known.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hystbench.errors import InputError
+
+ENTRIES = ".hystbench"
+"""Folder of the entries, beside the files that they describe."""
+
+TEMPORARY = ".hystbench-"
+"""Beginning of the names of folders in which files grow; a killed run leaves them."""
+KEPT = 3
+"""Digests of earlier contents that an entry keeps."""
+
+LOGS = "logs"
+"""What stands among the entries of a folder of logs."""
+LOG_SUFFIXES = {".log", ".tsv"}
+NOTED = {".snakemake_timestamp"}
+"""What Snakemake itself leaves in a folder that a job wrote."""
+
+_LINE = re.compile(r"([0-9a-f]{64})  (.+)")
+
+
+def entry_of(path: Path) -> Path:
+    """Give the file that holds the entry of a file."""
+    return path.parent / ENTRIES / f"{path.name}.sha256"
+
+
+def is_ours(path: str | Path) -> bool:
+    """Tell whether hystbench wrote a file and nobody changed it since.
+
+    Raises
+    ------
+    InputError
+        If what stands in the place of its entry is none.
+    """
+    path = Path(path)
+    if not _is_ordinary(path):
+        return False
+    described = _described(path)
+    return bool(described) and _digest(path) in described
+
+
+def will_write(path: Path, content: Path) -> None:
+    """Enter a file that is about to take its place.
+
+    Parameters
+    ----------
+    path : Path
+        Its place.
+    content : Path
+        The file itself, where it stands until then.
+    """
+    kept = _described(path)[-KEPT:]
+    if is_ours(path):
+        kept.append(_digest(path))
+    entry = entry_of(path)
+    entry.parent.mkdir(parents=True, exist_ok=True)
+    lines = dict.fromkeys([*kept, _digest(content)])
+    text = "".join(f"{line}  {path.name}\n" for line in lines)
+    handle, name = tempfile.mkstemp(dir=entry.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        # as readable as the file that it describes
+        Path(name).chmod(stat.S_IMODE(content.stat().st_mode))
+        Path(name).replace(entry)
+    finally:
+        Path(name).unlink(missing_ok=True)
+
+
+def remove(path: str | Path) -> bool:
+    """Remove a file and its entry, if it is hystbench's own.
+
+    Returns
+    -------
+    bool
+        Whether nothing is left there.
+    """
+    path = Path(path)
+    if not os.path.lexists(path):
+        return True
+    if not is_ours(path):
+        return False
+    path.unlink()
+    forget(path)
+    return True
+
+
+def forget(path: Path) -> None:
+    """Remove the entry of a file that is gone, and the folder of the last entry."""
+    entry = entry_of(path)
+    if _described(path):
+        entry.unlink()
+    if entry.parent.is_dir() and not any(entry.parent.iterdir()):
+        entry.parent.rmdir()
+
+
+def remove_below(folder: str | Path) -> list[Path]:
+    """Remove all below a folder that is hystbench's own, and folders left empty.
+
+    Returns
+    -------
+    list of Path
+        Files and links that stay, for hystbench did not write them.
+    """
+    top = Path(folder)
+    left: list[Path] = []
+    logs = [mark.parent.parent for mark in top.rglob(f"{ENTRIES}/{LOGS}")]
+    for place, folders, files in os.walk(top, topdown=False):
+        here = Path(place)
+        if any(part.startswith(ENTRIES) for part in here.relative_to(top).parts):
+            continue  # seen to beside the files that it describes
+        for name in folders:
+            if name.startswith(TEMPORARY):
+                shutil.rmtree(here / name, ignore_errors=True)
+        links = [name for name in folders if (here / name).is_symlink()]
+        left += [here / name for name in sorted(links)]
+        for file in (here / name for name in sorted(files)):
+            is_log = file.suffix in LOG_SUFFIXES and any(
+                file.is_relative_to(known) for known in logs
+            )
+            if file.name in NOTED or (is_log and _is_ordinary(file)):
+                file.unlink()
+            elif not remove(file):
+                left.append(file)
+        if here in logs and not any(item.name != ENTRIES for item in here.iterdir()):
+            (here / ENTRIES / LOGS).unlink()
+            (here / ENTRIES).rmdir()
+        for entry in (here / ENTRIES).glob("*.sha256"):
+            forget(here / entry.stem)  # its file was gone before
+        if not here.is_symlink() and not any(here.iterdir()):
+            here.rmdir()
+    return left
+
+
+def check_replaceable(outputs: Iterable[str], inputs: Iterable[str]) -> None:
+    """Refuse what a workflow would remove or replace, as all that is told is its own.
+
+    Parameters
+    ----------
+    outputs : iterable of str
+        Files and folders. Of a folder all goes, so all in it has to be hystbench's own.
+    inputs : iterable of str
+        Files that are read and that no job makes.
+
+    Raises
+    ------
+    InputError
+        With the first file that hystbench did not write, or that is an input.
+    """
+    with one_run():
+        for source in inputs:
+            reads(source)
+        for path in map(Path, outputs):
+            if path.is_symlink() or not path.is_dir():
+                check_free(path)
+                continue
+            for place, folders, files in os.walk(path):
+                here = Path(place)
+                links = [name for name in folders if (here / name).is_symlink()]
+                hidden = [name for name in folders if name.startswith(ENTRIES)]
+                folders[:] = sorted({*folders} - {*links, *hidden})
+                for name in sorted({*files, *links} - NOTED):
+                    check_free(here / name)
+
+
+def claim_logs(folder: str | Path, logs: Iterable[str]) -> None:
+    """Take a folder for logs, which a shell writes and so no entry describes.
+
+    Parameters
+    ----------
+    folder : str or Path
+        From its first run on it is known to be the workflow's.
+    logs : iterable of str
+        Files below it that are about to be written.
+
+    Raises
+    ------
+    InputError
+        If one of them is there, and is a link or the folder is not the workflow's.
+    """
+    mark = Path(folder, ENTRIES, LOGS)
+    for log in map(Path, logs):
+        if os.path.lexists(log) and not (mark.is_file() and _is_ordinary(log)):
+            raise InputError(
+                f"{log}: no log of this workflow, or of one that kept no list; "
+                "move it away"
+            )
+    if not mark.is_file():
+        mark.parent.mkdir(parents=True, exist_ok=True)
+        mark.write_text("The logs in this folder are replaced and removed.\n")
+
+
+@dataclass
+class Run:
+    """What one command reads and writes.
+
+    Parameters
+    ----------
+    inputs : dict of (int, int) to Path
+        Files that it reads, by device and number of the file.
+    outputs : dict of Path to Path
+        Files that it will write, as they were given, by where they are.
+    """
+
+    inputs: dict[tuple[int, int], Path] = field(default_factory=dict)
+    outputs: dict[Path, Path] = field(default_factory=dict)
+
+
+_run: ContextVar[Run | None] = ContextVar("run", default=None)
+
+
+@contextmanager
+def one_run() -> Iterator[None]:
+    """Begin a command: what it reads must not be what it writes."""
+    before = _run.set(Run())
+    try:
+        yield
+    finally:
+        _run.reset(before)
+
+
+def reads(path: str | Path) -> None:
+    """Tell that a file is an input of this command; outside of one nothing is done.
+
+    Raises
+    ------
+    InputError
+        If it is an output as well.
+    """
+    run, path = _run.get(), Path(path)
+    if run is None:
+        return
+    try:
+        found = path.stat()
+    except OSError:
+        return  # whoever reads it says so
+    run.inputs[found.st_dev, found.st_ino] = path
+    for output in run.outputs.values():
+        _refuse_input(output, run)
+
+
+def writes(*paths: str | Path) -> None:
+    """Tell which files a command will write, before its work is paid.
+
+    Parameters
+    ----------
+    *paths : str or Path
+        Files; a folder's one by one.
+
+    Raises
+    ------
+    InputError
+        If something stands in the way of one, or two are the same.
+    """
+    run = _run.get()
+    for path in map(Path, paths):
+        check_free(path)
+        if run is None:
+            continue
+        place = path.parent.resolve() / path.name
+        if place in run.outputs:
+            raise InputError(f"{path}: two outputs in one place; expected one each")
+        run.outputs[place] = path
+
+
+def check_free(path: str | Path) -> None:
+    """Refuse a place where hystbench may not write a file.
+
+    Raises
+    ------
+    InputError
+        If an input of the command stands there, or something that hystbench did not
+        write; if a folder is missing above it and cannot be made.
+    """
+    path = Path(path)
+    check_writable(path.parent)
+    described = _described(path)
+    if not os.path.lexists(path):
+        return
+    if _run.get() is not None:
+        _refuse_input(path, _run.get() or Run())
+    if path.is_dir() and not path.is_symlink():
+        raise InputError(f"{path}: a folder; expected a file or nothing")
+    if is_ours(path):
+        return
+    if not _is_ordinary(path):
+        what = "a link" if path.is_symlink() else "no ordinary file"
+    elif described:
+        what = "changed since hystbench wrote it"
+    else:
+        what = "not written by hystbench, or by one that kept no list"
+    raise InputError(f"{path}: {what}; move it away, or name another place to write to")
+
+
+def check_writable(folder: str | Path) -> None:
+    """Refuse a folder that could not be made or written into, before work is paid.
+
+    Raises
+    ------
+    InputError
+        If a file stands where it or a folder above it has to be, or writing is not
+        allowed.
+    """
+    place = Path(folder).absolute()
+    while not os.path.lexists(place):
+        place = place.parent
+    if not place.is_dir():
+        what = "a link to nothing" if not place.exists() else "a file"
+        raise InputError(f"{place}: {what}; expected a folder to write into")
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise InputError(f"{place}: not writable; expected a folder to write into")
+
+
+def _refuse_input(output: Path, run: Run) -> None:
+    """Refuse an output that is an input by another name, or by the same."""
+    try:
+        found = output.stat()
+    except OSError:
+        return
+    source = run.inputs.get((found.st_dev, found.st_ino))
+    if source is not None:
+        also = "" if source == output else f" (it is {source})"
+        raise InputError(
+            f"{output}: an input of this command{also}; name another place to write to"
+        )
+
+
+def _is_ordinary(path: Path) -> bool:
+    try:
+        return stat.S_ISREG(path.lstat().st_mode)
+    except OSError:
+        return False
+
+
+def _described(path: Path) -> list[str]:
+    """Give the digests in a file's entry; none where there is no entry."""
+    entry = entry_of(path)
+    if not os.path.lexists(entry):
+        if os.path.lexists(entry.parent) and not entry.parent.is_dir():
+            raise InputError(
+                f"{entry.parent}: a file; expected hystbench's list of what it wrote"
+            )
+        return []
+    found = []
+    lines = (
+        entry.read_text(encoding="utf-8", errors="replace").splitlines()
+        if _is_ordinary(entry)
+        else [""]
+    )
+    for line in lines:
+        match = _LINE.fullmatch(line)
+        if match is None:
+            raise InputError(
+                f"{entry}: no entry of hystbench's list of what it wrote; "
+                "move it away, or name another place to write to"
+            )
+        found.append(match[1])
+    return found
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

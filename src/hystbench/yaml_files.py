@@ -1,0 +1,181 @@
+"""Reading YAML: plain data alone, each key once, bounded in depth and size."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hystbench.errors import InputError
+from hystbench.text_files import read_text
+from hystbench.written import reads
+
+if TYPE_CHECKING:
+    from yaml import Node
+
+DEEPEST = 50
+"""Levels of lists and mappings; no file of the program has more than eight."""
+LARGEST = 10_000_000
+"""Bytes of a file. A file of data that is named by mistake is larger."""
+MOST_REPEATED = 100_000
+"""Items that aliases (``*name``) may add to what is written."""
+
+_QUOTES = "a tab or a sign that begins no text; expected spaces, or text in quotes"
+_HINTS = {
+    "found character '\\t' that cannot start any token": _QUOTES,
+    "found character that cannot start any token": _QUOTES,
+    "mapping values are not allowed in this context": (
+        "a second ':' in one line; expected one key a line, or text in quotes"
+    ),
+    "could not determine a constructor for the tag": (
+        "a tag; expected plain text, numbers, lists and mappings"
+    ),
+}
+
+
+def load_yaml(path: str | Path, expected: str = "a YAML file") -> Any:
+    """Read a YAML file as plain data; nothing in it is executed.
+
+    Parameters
+    ----------
+    path : str or Path
+    expected : str
+        What the file should be, for messages.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is not YAML, a key stands twice, it is nested
+        deeper than ``DEEPEST``, or it is larger than ``LARGEST`` bytes or, by aliases,
+        ``MOST_REPEATED`` items more than written.
+    """
+    path = Path(path)
+    reads(path)
+    if path.is_file() and path.stat().st_size > LARGEST:
+        raise InputError(
+            f"{path}: {path.stat().st_size / 1e6:.3g} MB; expected a YAML file of at "
+            f"most {LARGEST / 1e6:g} MB"
+        )
+    return parse_yaml(read_text(path, expected), str(path))
+
+
+def parse_yaml(text: str, place: str) -> Any:
+    """Read YAML from a text, as :func:`load_yaml` reads it from a file.
+
+    Parameters
+    ----------
+    text : str
+    place : str
+        Name of the file, for messages.
+    """
+    import yaml  # late: kept out of jobs that read no YAML
+
+    # The same in C, where PyYAML was built with it, takes a tenth of the time.
+    kind: Any = yaml.CSafeLoader if yaml.__with_libyaml__ else yaml.SafeLoader
+    try:
+        _check_bounds(yaml.parse(text, kind), place)
+        loader = kind(text)
+        try:
+            node = loader.get_single_node()
+            if node is None:
+                return None
+            _check_keys(loader, node, place)
+            return _constructed(loader, node, place)
+        finally:
+            loader.dispose()
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        where = f"line {mark.line + 1}: " if mark else ""
+        problem = getattr(error, "problem", None) or "not YAML"
+        for known, hint in _HINTS.items():
+            if problem.startswith(known):
+                problem = hint
+        raise InputError(f"{place}: {where}{problem}") from error
+
+
+def _constructed(loader: Any, node: Node, place: str) -> Any:
+    try:
+        return loader.construct_document(node)
+    except ValueError as error:  # a date such as 2024-13-45, or too many digits
+        raise InputError(
+            f"{place}: a date or number that is none ({error}); expected text in quotes"
+        ) from error
+
+
+def _check_bounds(events: Any, place: str) -> None:
+    """Refuse what is too deep, or grows too much where aliases are followed."""
+    import yaml
+
+    written = whole = 0
+    sizes: dict[str, int | None] = {}  # None while the anchor's own content is read
+    opened: list[tuple[str | None, int]] = []
+    for event in events:
+        line = event.start_mark.line + 1
+        if isinstance(event, yaml.AliasEvent):
+            size = sizes.get(str(event.anchor), 1)
+            if size is None:
+                raise InputError(
+                    f"{place}: line {line}: '*{event.anchor}' inside of what it names; "
+                    "expected no circle"
+                )
+            written += 1
+            whole += size
+        elif isinstance(event, yaml.ScalarEvent):
+            written += 1
+            whole += 1
+            if event.anchor:
+                sizes[event.anchor] = 1
+        elif isinstance(event, yaml.CollectionStartEvent):
+            opened.append((event.anchor, whole))
+            written += 1
+            whole += 1
+            if event.anchor:
+                sizes[event.anchor] = None
+            if len(opened) > DEEPEST:
+                raise InputError(
+                    f"{place}: line {line}: more than {DEEPEST} levels of lists and "
+                    f"mappings; expected at most {DEEPEST}"
+                )
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, before = opened.pop()
+            if anchor:
+                sizes[anchor] = whole - before
+        if whole > written + MOST_REPEATED:
+            raise InputError(
+                f"{place}: line {line}: aliases (*name) repeat more than "
+                f"{MOST_REPEATED:,} items; expected the content written out"
+            )
+
+
+def _check_keys(loader: Any, root: Node, place: str) -> None:
+    """Refuse a key that stands twice in a mapping: the later one would win unseen."""
+    import yaml
+
+    waiting, seen = [root], set()
+    while waiting:
+        node = waiting.pop()
+        if id(node) in seen or isinstance(node, yaml.ScalarNode):
+            continue
+        seen.add(id(node))
+        if isinstance(node, yaml.SequenceNode):
+            waiting += node.value
+            continue
+        lines: dict[Hashable, int] = {}
+        for key, value in node.value:
+            line = key.start_mark.line + 1
+            if not isinstance(key, yaml.ScalarNode):
+                raise InputError(
+                    f"{place}: line {line}: a list or mapping as a key; expected a word"
+                )
+            merge = key.tag == "tag:yaml.org,2002:merge"
+            name = "<<" if merge else loader.construct_object(key)
+            if name in lines:
+                raise InputError(
+                    f"{place}: line {line}: the key {name!r} stands in line "
+                    f"{lines[name]} already; expected it once"
+                )
+            lines[name] = line
+            waiting.append(value)
+
+
+__all__ = ["load_yaml", "parse_yaml"]

@@ -1,0 +1,20 @@
+import shutil
+
+import pytest
+
+from tests.report.made import make_page, make_results
+
+
+@pytest.fixture(scope="session")
+def results(tmp_path_factory):
+    """A folder of results with its page; tests copy it before they write."""
+    folder = tmp_path_factory.mktemp("results")
+    make_page(folder, make_results(folder))
+    return folder
+
+
+@pytest.fixture
+def copied(results, tmp_path):
+    folder = tmp_path / "results"
+    shutil.copytree(results, folder)
+    return folder

@@ -1,0 +1,220 @@
+"""Ctrl-C: one line, and what was there before is there still."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from hystbench.files import write_text
+from hystbench.written import ENTRIES, is_ours
+from tests.conftest import run_hystbench
+from tests.test_layouts import Layout, content, lay
+
+#: Longer than any step here takes, on a machine that has much else to do.
+PATIENCE_S = 60
+
+
+def started(code: str, cwd: Path, *arguments: object) -> subprocess.Popen[str]:
+    """Begin a program that calls the command line, with SIGINT as in a terminal."""
+
+    def as_in_a_terminal():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    return subprocess.Popen(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=cwd,
+        preexec_fn=as_in_a_terminal,
+    )
+
+
+def wait_for(path: Path) -> None:
+    end = time.monotonic() + PATIENCE_S
+    while not path.exists():
+        assert time.monotonic() < end, path
+        time.sleep(0.002)
+
+
+def ended(process: subprocess.Popen[str], *signals: int) -> str:
+    """Send signals; give what was said, when the process ended as it has to."""
+    for number in signals:
+        process.send_signal(number)
+    _, said = process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 128 + signals[0], said
+    return said
+
+
+#: The command line, in which ``at`` says that it is at the moment in question.
+BEGIN = """
+import sys, time
+from pathlib import Path
+import hystbench.cli as cli
+at = lambda: Path("at").touch()
+wait = lambda: (at(), time.sleep(60))
+"""
+#: Each moment, as a change of the program that comes there and stays.
+MOMENTS = {
+    # A module of ours, whose import waits half a second: the signal waits as well.
+    "import": """
+import importlib.abc
+class Slow(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == "click":
+            at(); end = time.monotonic() + 0.5
+            while time.monotonic() < end: pass
+sys.meta_path.insert(0, Slow())
+""",
+    # A module that never ends its import, as one of the user's may.
+    "endless import": """
+import importlib.abc
+class Slow(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == "numpy": wait()
+sys.meta_path.insert(0, Slow())
+""",
+    "reading": """
+import hystbench.dataset as dataset
+dataset._read_columns = lambda *given: wait()
+""",
+    "compiled kernel": """
+import hystbench.dataset as dataset
+import ctypes
+libc = ctypes.CDLL(None)
+def kernel(*given):
+    at(); libc.usleep(500_000); time.sleep(60)
+dataset._read_columns = kernel
+""",
+    "dropped": """
+import hystbench.dataset as dataset
+class Dropping:
+    def __del__(self): wait()
+def drop(*given):
+    Dropping(); time.sleep(60)
+dataset._read_columns = drop
+""",
+    "writing": """
+import numpy
+numpy.savez = lambda *given, **more: wait()
+""",
+    "entry written": """
+import hystbench.files as files
+real = files.will_write
+def will_write(*given):
+    real(*given); wait()
+files.will_write = will_write
+""",
+    "exit handlers": """
+import atexit
+atexit.register(wait)
+""",
+    "last threads": """
+import threading
+threading.Thread(target=time.sleep, args=(60,)).start()
+import atexit, threading
+threading._register_atexit(at)
+""",
+}
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    """A dataset, and a record of it that an earlier command wrote."""
+    root = tmp_path_factory.mktemp("bench")
+    lay(root, Layout(model="model.yaml"))
+    assert run_hystbench("load", "data", "a", "--out", "a.npz", cwd=root).stderr == ""
+    return root
+
+
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_ctrl_c_is_one_line_at_whatever_moment(bench, tmp_path, moment):
+    before = files(bench)
+    process = started(
+        f"{BEGIN}{MOMENTS[moment]}\ncli.main()",
+        bench,
+        *("load", "data", "a", "--out", "a.npz"),
+    )
+    wait_for(bench / "at")
+    said = ended(process, signal.SIGINT)
+    (bench / "at").unlink()
+    assert said == "hystbench: interrupted\n"
+    assert files(bench) == before
+    assert is_ours(bench / "a.npz")
+    if "writ" in moment:
+        again = run_hystbench("load", "data", "a", "--out", "a.npz", cwd=bench)
+        assert again.returncode == 0, again.stderr
+
+
+def files(root: Path) -> dict[str, str]:
+    """All that is there, but the list of what was written."""
+    found = content(root)
+    return {name: text for name, text in found.items() if ENTRIES not in name}
+
+
+PLACES = """
+from hystbench.files import whole_folder, write_text
+rename = Path.rename
+def slowly(self, to):
+    done = rename(self, to); at(); time.sleep(0.1)
+    return done
+Path.rename = slowly
+def run():
+    with whole_folder("out", ("*.txt",)) as fresh:
+        for name in ("b.txt", "c.txt", "d.txt"):
+            write_text(fresh / name, "new")
+    time.sleep(60)
+cli.run = run
+cli.main()
+"""
+
+
+def test_files_that_take_their_places_do_so_together(tmp_path):
+    """Two signals come on the way; they are heard when all files are there."""
+    for name in ("a.txt", "b.txt"):
+        write_text(tmp_path / "out" / name, "old")
+    process = started(BEGIN + PLACES, tmp_path)
+    wait_for(tmp_path / "at")
+    assert ended(process, signal.SIGINT, signal.SIGINT) == "hystbench: interrupted\n"
+    (tmp_path / "at").unlink()
+    new = {f"out/{name}.txt": b"new".hex() for name in "bcd"}
+    assert files(tmp_path) == new
+
+
+NEVER = """
+def run():
+    try: wait()
+    finally: Path("tidied").touch(); time.sleep(60)
+cli.run = run
+cli.main()
+"""
+
+
+def test_who_asks_twice_waits_for_nothing(tmp_path):
+    process = started(BEGIN + NEVER, tmp_path)
+    wait_for(tmp_path / "at")
+    process.send_signal(signal.SIGINT)
+    wait_for(tmp_path / "tidied")
+    assert ended(process, signal.SIGINT) == "hystbench: interrupted\n"
+
+
+def test_a_request_to_end_is_one_line_too(tmp_path):
+    process = started(BEGIN + "cli.run = wait\ncli.main()", tmp_path)
+    wait_for(tmp_path / "at")
+    assert ended(process, signal.SIGTERM) == "hystbench: interrupted\n"
+
+
+def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
+    """As that of a job in the background of a shell script."""
+    code = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
+    code += BEGIN + "cli.run = lambda: (at(), time.sleep(0.5), 0)[-1]\ncli.main()"
+    process = started(code, tmp_path)
+    wait_for(tmp_path / "at")
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, said) == (0, "")

@@ -1,0 +1,65 @@
+"""YAML as it is read: plain data, each key once, bounded."""
+
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hystbench.yaml_files import DEEPEST, load_yaml, parse_yaml
+from tests.messages import message
+
+PLAIN = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.text() | st.floats(allow_nan=False),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(), inner),
+    max_leaves=8,
+)
+
+
+@settings(max_examples=25)
+@given(content=PLAIN)
+def test_what_pyyaml_writes_comes_back(content):
+    assert parse_yaml(yaml.safe_dump(content), "x.yaml") == content
+
+
+def test_aliases_and_merged_keys_are_plain_yaml():
+    text = "base: &b {unit: A, name: i}\ninput: {<<: *b, name: u}\nother: [*b, *b]\n"
+    base = {"unit": "A", "name": "i"}
+    wanted = {"base": base, "input": {"unit": "A", "name": "u"}, "other": [base, base]}
+    assert parse_yaml(text, "x.yaml") == wanted
+
+
+def test_depth_is_bounded_where_it_is_said():
+    assert parse_yaml("[" * DEEPEST + "]" * DEEPEST, "x.yaml")
+    deeper = "[" * (DEEPEST + 1) + "]" * (DEEPEST + 1)
+    assert f"{DEEPEST} levels" in message(lambda: parse_yaml(deeper, "x.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "key"),
+    [
+        ("a: 1\nb: 2\na: 3\n", 3, "'a'"),
+        ("top:\n  inner: {x: 1, y: 2, x: 3}\n", 2, "'x'"),
+        ("- {a: 1}\n- {a: 1, a: 1}\n", 2, "'a'"),
+        ("a: 1\n'a': 2\n", 2, "'a'"),
+        ("1: a\n0x1: b\n", 2, "1"),
+    ],
+)
+def test_a_key_that_stands_twice(text, line, key):
+    said = message(lambda: parse_yaml(text, "x.yaml"))
+    assert said.startswith(f"x.yaml: line {line}: the key {key} stands in line")
+
+
+def test_a_file_of_data_is_not_read_to_its_end(tmp_path):
+    file = tmp_path / "data.yaml"
+    with file.open("wb") as stream:
+        stream.truncate(20_000_000)
+    assert "20 MB; expected a YAML file of at most 10 MB" in message(
+        lambda: load_yaml(file)
+    )
+
+
+def test_a_tag_is_not_followed(tmp_path):
+    mark = tmp_path / "mark"
+    text = f"!!python/object/apply:pathlib.Path.touch [!!python/name:x {mark}]"
+    message(lambda: parse_yaml(text, "x.yaml"))
+    assert not mark.exists()
