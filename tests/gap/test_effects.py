@@ -118,10 +118,10 @@ def test_a_variant_builds_a_model_that_runs(chain, variant):
                 assert np.isfinite(shapes).all()
             continue
         own = [built[k] for k in variant.positions]
-        # A field bias is made of two plain gains; all else has a block of its name,
-        # behind what is left where it was taken out of another.
+        # A field bias is made of two plain gains; all else has a block of its name or
+        # of another law of it, behind what is left where it was taken out of another.
         names = {item.name for item in own}
-        assert variant.effect in names or names == {"gain"}
+        assert names & {variant.effect, *effect.laws} or names == {"gain"}
         rest = [item for k, item in enumerate(built) if k not in variant.positions]
         assert rest == list(before[variant.start + variant.replaces :])
         model = Model(

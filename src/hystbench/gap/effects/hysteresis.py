@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,17 +14,20 @@ from hystbench.gap.scene import Scene
 OPERATORS = 8
 BEND = 0.5
 """Argument of the hyperbolic tangent at the largest input, where the search starts."""
+PLAYS = "prandtl-ishlinskii"
 
 
 class Hysteresis(Effect):
-    """Generalized play operators before everything else.
+    """Play operators before everything else, plain ones or generalized ones.
 
-    The search starts from envelopes that are nearly straight and alike; the refit
-    bends them.
+    Plain plays lie beside a linear path: the chain has its gain already. Their weights
+    may have any sign. Generalized ones have envelopes, from nearly straight and alike
+    ones on; the refit bends them.
     """
 
     name = "hysteresis"
     place = "material"
+    laws: ClassVar = (PLAYS,)
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer operators over the range of the input."""
@@ -32,6 +35,36 @@ class Hysteresis(Effect):
             raise Declined("the chain has a hysteresis already")
         if scene.loop is not None and scene.chain[scene.loop].reruns:
             raise Declined("the simulator has a hysteresis already")
+        yield self._generalized(scene)
+        yield self._plays(scene, cubes=False)
+        yield self._plays(scene, cubes=True)
+
+    def _plays(self, scene: Scene, cubes: bool) -> Variant:
+        """Plays beside a linear path, with cubes of them or without."""
+        amplitude = scene.largest(0)
+        thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
+        weights = [f"weight {k}" for k in range(OPERATORS)]
+        bent = [f"cube {k}" for k in range(OPERATORS)] if cubes else []
+
+        def values(given: Values) -> dict[str, Any]:
+            return {
+                "thresholds": thresholds,
+                "weights": [given[name] for name in weights],
+                "cube_weights": [given[name] for name in bent],
+            }
+
+        unit = dict.fromkeys(weights, 1e-3) | dict.fromkeys(bent, 1e-3 / amplitude**2)
+        return self.inserted(
+            scene,
+            0,
+            values,
+            law=PLAYS,
+            form="plays and their cubes" if cubes else "plays",
+            unit=unit,
+            free=("weights", "cube_weights") if cubes else ("weights",),
+        )
+
+    def _generalized(self, scene: Scene) -> Variant:
         amplitude = scene.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
         slope = BEND / amplitude
@@ -48,10 +81,11 @@ class Hysteresis(Effect):
                 "weights": [max(1.0 - sum(weights), 0.0), *weights],
             }
 
-        yield self.inserted(
+        return self.inserted(
             scene,
             0,
             values,
+            form="generalized plays",
             unit=dict.fromkeys(names, 1e-3),
             positive=tuple(names),
             free=("weights", "envelope"),
