@@ -49,6 +49,7 @@ EXAMPLES = {
     "prandtl-ishlinskii": {
         "thresholds": [0.0, 0.1, 0.3],
         "weights": [-0.1, 0.3, -0.05],
+        "square_weights": [0.1, -0.02, 0.03],
         "cube_weights": [0.0, 0.02, 0.1],
     },
     "preisach": {

@@ -33,7 +33,10 @@ GROWING = RateDependentHysteresis(coefficient=0.05, exponent=0.7)
 EXCESS = RateDependentHysteresis(coefficient=0.01, exponent=0.5, form="excess-field")
 BUTTERFLY = Butterfly(coefficient=-0.3, threshold=0.2)
 PLAYS = PrandtlIshlinskii(
-    thresholds=[0.0, 0.1, 0.4], weights=[-0.2, 0.5, -0.1], cube_weights=[0.3, -0.2, 0.1]
+    thresholds=[0.0, 0.1, 0.4],
+    weights=[-0.2, 0.5, -0.1],
+    square_weights=[0.2, -0.4, 0.1],
+    cube_weights=[0.3, -0.2, 0.1],
 )
 inputs = st.lists(st.floats(-2, 2), min_size=2, max_size=60).map(np.array)
 
@@ -136,15 +139,13 @@ def test_plays_beside_a_linear_path(v):
         (plain_growth(GROWING, v), (PLAYS, GROWING)),
     ):
         expected = v.copy()
-        for r, w, c in zip(
-            PLAYS.thresholds, PLAYS.weights, PLAYS.cube_weights, strict=True
-        ):
+        for r, w, s, c in zip(*vars(PLAYS).values(), strict=True):
             p = plain_play(v, r, growth)
-            expected += w * p + c * p**3
+            expected += w * p + s * p**2 + c * p**3
         close(chain(*blocks).simulate(v, DT), expected)
 
 
-@pytest.mark.parametrize("key", ["weights", "cube_weights"])
+@pytest.mark.parametrize("key", ["weights", "square_weights", "cube_weights"])
 def test_plays_need_one_weight_a_threshold(key):
     with pytest.raises(InputError, match=f"{key}: expected 2 numbers.* got 1"):
         PrandtlIshlinskii.from_mapping(

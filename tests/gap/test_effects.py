@@ -135,6 +135,19 @@ def test_a_variant_builds_a_model_that_runs(chain, variant):
         assert again == model
 
 
+@pytest.mark.parametrize(
+    ("chain", "variant"), [x for x in ALL if not x.values[1].beside]
+)
+def test_a_form_pays_for_every_number_that_it_leaves_free(chain, variant):
+    """Otherwise a law of many numbers would stand before one of few."""
+    built = variant.build(next(values_of(variant)))
+    own = [(built[k], key) for k in variant.positions for key in variant.free]
+    free = sum(
+        np.size(getattr(one, key)) for one, key in own if key in one.parameters()
+    )
+    assert variant.freedom >= free
+
+
 @pytest.mark.parametrize(("chain", "variant"), SOLVED)
 def test_a_neutral_variant_changes_nothing_where_all_is_zero(chain, variant):
     scene = Scene(chains()[chain], records())

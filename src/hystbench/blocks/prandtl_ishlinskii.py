@@ -21,8 +21,9 @@ class PrandtlIshlinskii(HystereticBlock):
 
     ``P_i`` is the play operator of threshold r_i (paper, Eqs. 1 and 2, w(0) = 0). The
     weights may have any sign: negative ones make a loop that runs the other way, and
-    only their sum is the loop's mean slope. With ``cube_weights`` the branches bend:
-    ``+ sum_i c_i P_i[z]^3``, odd as the plays are.
+    only their sum is the loop's mean slope. ``square_weights`` s and ``cube_weights`` c
+    bend the branches, ``+ sum_i (s_i P_i[z]^2 + c_i P_i[z]^3)``: the squares of both
+    halves differ, the cubes are odd as the plays are.
 
     References
     ----------
@@ -41,13 +42,16 @@ class PrandtlIshlinskii(HystereticBlock):
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
     weights: tuple[float, ...] = numbers("-", "w_i, one a threshold", -HUGE, HUGE)
+    square_weights: tuple[float, ...] = numbers(
+        "1/U", "s_i, one a threshold or none", -HUGE, HUGE, optional=True
+    )
     cube_weights: tuple[float, ...] = numbers(
         "1/U^2", "c_i, one a threshold or none", -HUGE, HUGE, optional=True
     )
 
     def check(self) -> None:
         """Refuse as many weights as there are no thresholds for."""
-        for key in ("weights", "cube_weights"):
+        for key in ("weights", "square_weights", "cube_weights"):
             given = len(getattr(self, key))
             if given != len(self.thresholds) and (given or key == "weights"):
                 raise InputError(
@@ -68,6 +72,8 @@ class PrandtlIshlinskii(HystereticBlock):
         else:
             plays = growing_play(v, self.thresholds, growth)
         y: FloatArray = v + plays @ np.array(self.weights)
+        if self.square_weights:
+            y += plays**2 @ np.array(self.square_weights)
         if self.cube_weights:
             y += plays**3 @ np.array(self.cube_weights)
         return y

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,6 +16,12 @@ OPERATORS = 8
 BEND = 0.5
 """Argument of the hyperbolic tangent at the largest input, where the search starts."""
 PLAYS = "prandtl-ishlinskii"
+POWERS: dict[str, tuple[str, ...]] = {
+    "plays": ("weights",),
+    "plays, odd": ("weights", "cube_weights"),
+    "plays, free": ("weights", "square_weights", "cube_weights"),
+}
+"""Numbers by form: of plays alone, of bent branches, of halves that are not alike."""
 
 
 class Hysteresis(Effect):
@@ -36,32 +43,33 @@ class Hysteresis(Effect):
         if scene.loop is not None and scene.chain[scene.loop].reruns:
             raise Declined("the simulator has a hysteresis already")
         yield self._generalized(scene)
-        yield self._plays(scene, cubes=False)
-        yield self._plays(scene, cubes=True)
+        for form, powers in POWERS.items():
+            yield self._plays(scene, form, powers)
 
-    def _plays(self, scene: Scene, cubes: bool) -> Variant:
-        """Plays beside a linear path, with cubes of them or without."""
+    def _plays(self, scene: Scene, form: str, powers: tuple[str, ...]) -> Variant:
+        """Plays beside a linear path, and powers of them."""
         amplitude = scene.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
-        weights = [f"weight {k}" for k in range(OPERATORS)]
-        bent = [f"cube {k}" for k in range(OPERATORS)] if cubes else []
+        names = {key: [f"{key} {k}" for k in range(OPERATORS)] for key in powers}
+        size = {
+            "weights": 1e-3,
+            "square_weights": 1e-3 / amplitude,
+            "cube_weights": 1e-3 / amplitude**2,
+        }
 
         def values(given: Values) -> dict[str, Any]:
-            return {
-                "thresholds": thresholds,
-                "weights": [given[name] for name in weights],
-                "cube_weights": [given[name] for name in bent],
-            }
+            own = {key: [given[name] for name in names[key]] for key in powers}
+            return {"thresholds": thresholds, **own}
 
-        unit = dict.fromkeys(weights, 1e-3) | dict.fromkeys(bent, 1e-3 / amplitude**2)
+        unit = {name: size[key] for key in powers for name in names[key]}
         return self.inserted(
             scene,
             0,
             values,
             law=PLAYS,
-            form="plays and their cubes" if cubes else "plays",
+            form=form,
             unit=unit,
-            free=("weights", "cube_weights") if cubes else ("weights",),
+            free=powers,
         )
 
     def _generalized(self, scene: Scene) -> Variant:
@@ -81,7 +89,7 @@ class Hysteresis(Effect):
                 "weights": [max(1.0 - sum(weights), 0.0), *weights],
             }
 
-        return self.inserted(
+        found = self.inserted(
             scene,
             0,
             values,
@@ -91,3 +99,4 @@ class Hysteresis(Effect):
             free=("weights", "envelope"),
             neutral=False,
         )
+        return replace(found, charge=float(OPERATORS + len(envelope)))
