@@ -19,9 +19,8 @@ PLAYS = "prandtl-ishlinskii"
 POWERS: dict[str, tuple[str, ...]] = {
     "plays": ("weights",),
     "plays, odd": ("weights", "cube_weights"),
-    "plays, free": ("weights", "square_weights", "cube_weights"),
 }
-"""Numbers by form: of plays alone, of bent branches, of halves that are not alike."""
+"""Numbers by form: of plays alone, and of plays whose branches bend."""
 
 
 class Hysteresis(Effect):
