@@ -157,7 +157,7 @@ def _parameters(
         return found
     for place in item.blocks:
         block = state.chain[place]
-        if block.name != item.effect:
+        if block.name not in (item.effect, *effects()[item.effect].laws):
             continue  # what the effect left of a block that it was taken out of
         for key, about in block.parameters().items():
             value = getattr(block, key)
