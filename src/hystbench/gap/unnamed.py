@@ -159,7 +159,9 @@ def what_is_unnamed(base: State, state: State, floor_rms: float) -> Unnamed:
     if any(item.blocks for item in state.added):
         changing = {"changing": halves(state, _numbers(state, increment))}
     if any(beside.effect == PATH for beside, _ in state.beside):
+        # A path owns all that is slow, the input's slow power too.
         own["path"] = generic.pop("path")
+        del generic["slow power"]
     groups = own | generic | changing
     ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
     at = {k: range(*ends[n : n + 2]) for n, k in enumerate(groups)}
