@@ -34,7 +34,7 @@ HIDDEN = {
     "field, algebraic": (
         "saturation",
         (LOOP,),
-        (block("saturation", level=1.2, sharpness=6.0), LOOP),
+        (block("saturation", level=1.0, sharpness=6.0), LOOP),
     ),
     "plays": ("hysteresis", (GAIN,), (PLAYS, GAIN)),
     "acting-field, 0.5": (
