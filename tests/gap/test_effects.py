@@ -380,6 +380,7 @@ def test_an_effect_is_offered_wherever_it_does_another_thing(names, added, expec
 SLOWER, LARGER = 2.5, 40.0
 SCALES = {
     "time_constant_s": SLOWER,
+    "second_time_constant_s": SLOWER,
     "delay_s": SLOWER,
     "frequency_hz": 1 / SLOWER,
     "damping_ratio": 1.0,
