@@ -169,6 +169,14 @@ def warn(lines: Iterable[str]) -> None:
         click.echo(f"hystbench: warning: {line}", err=True)
 
 
+unnamed_share = click.option(
+    "--unnamed-share",
+    type=click.FloatRange(0.0, 1.0, min_open=True),
+    default=0.01,
+    show_default=True,
+    help="Share of the gap's power that may stay unnamed beside a name.",
+)
+
 write_experiment = click.option(
     "--write-experiment",
     type=OutputFile(path_type=Path),

@@ -6,6 +6,7 @@ A new block needs a line here; the contract test says so.
 EXAMPLES = {
     "asymmetry": {"coefficient": 0.02},
     "backlash": {"half_width": 0.1},
+    "butterfly": {"coefficient": 0.4, "threshold": 0.1},
     "calibration-error": {"gain": 1.05, "offset": 0.1},
     "creep": {"magnitudes": [0.05, 0.03], "time_constants_s": [0.2, 2.0]},
     "dead-zone": {"half_width": 0.05},
@@ -44,6 +45,12 @@ EXAMPLES = {
         "frequency_hz": 50.0,
         "amplitudes": [0.1, 0.02],
         "phases": [0.5, -1.0],
+    },
+    "prandtl-ishlinskii": {
+        "thresholds": [0.0, 0.1, 0.3],
+        "weights": [-0.1, 0.3, -0.05],
+        "square_weights": [0.1, -0.02, 0.03],
+        "cube_weights": [0.0, 0.02, 0.1],
     },
     "preisach": {
         "limit": 0.8,

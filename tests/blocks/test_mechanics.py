@@ -151,3 +151,17 @@ def test_thermal_drift_warms_up_by_its_time_constant():
     )
     expected = t + 0.3 * 4.0 * (1 - np.exp(-t / 0.7))
     np.testing.assert_allclose(y, expected, rtol=0, atol=1e-12)
+
+
+def test_of_two_bodies_the_second_is_warmed_by_the_first():
+    t = np.arange(3000) * DT
+    first, second = 0.7, 0.2
+    block = ThermalDrift(
+        coefficient=0.3, time_constant_s=first, second_time_constant_s=second
+    )
+    y = block.simulate(t, np.full(len(t), -2.0), DT)
+    # 1 / ((1 + s first) (1 + s second)) answers a step by partial fractions.
+    decays = first * np.exp(-t / first) - second * np.exp(-t / second)
+    expected = t + 0.3 * 4.0 * (1 - decays / (first - second))
+    # Straight lines between the samples of the first body's warmth: (dt / tau)^2.
+    np.testing.assert_allclose(y, expected, rtol=0, atol=1e-5)

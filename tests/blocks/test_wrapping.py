@@ -6,9 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
+from hystbench.blocks.butterfly import Butterfly
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.hysteresis import MaterialHysteresis
 from hystbench.blocks.hysteresis_shape import HysteresisShape
+from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
 from hystbench.blocks.wrapping import Wrapped
 from hystbench.envelope import Envelope
@@ -29,6 +31,13 @@ SHAPE = HysteresisShape(
 )
 GROWING = RateDependentHysteresis(coefficient=0.05, exponent=0.7)
 EXCESS = RateDependentHysteresis(coefficient=0.01, exponent=0.5, form="excess-field")
+BUTTERFLY = Butterfly(coefficient=-0.3, threshold=0.2)
+PLAYS = PrandtlIshlinskii(
+    thresholds=[0.0, 0.1, 0.4],
+    weights=[-0.2, 0.5, -0.1],
+    square_weights=[0.2, -0.4, 0.1],
+    cube_weights=[0.3, -0.2, 0.1],
+)
 inputs = st.lists(st.floats(-2, 2), min_size=2, max_size=60).map(np.array)
 
 
@@ -112,6 +121,84 @@ def test_shape(v):
     still = np.ones(len(v))
     expected = plain_gpi(GPI, v, still) + plain_shape(SHAPE, v, still)
     close(chain(GPI, SHAPE).simulate(v, DT), expected)
+
+
+@given(inputs)
+def test_butterfly(v):
+    still, growth = np.ones(len(v)), plain_growth(GROWING, v)
+    expected = plain_gpi(GPI, v, still) - 0.3 * plain_play(v, 0.2, still) ** 2
+    close(chain(GPI, BUTTERFLY).simulate(v, DT), expected)
+    grown = plain_gpi(GPI, v, growth) - 0.3 * plain_play(v, 0.2, growth) ** 2
+    close(chain(GPI, BUTTERFLY, GROWING).simulate(v, DT), grown)
+
+
+@given(inputs)
+def test_plays_beside_a_linear_path(v):
+    for growth, blocks in (
+        (np.ones(len(v)), (PLAYS,)),
+        (plain_growth(GROWING, v), (PLAYS, GROWING)),
+    ):
+        expected = v.copy()
+        for r, w, s, c in zip(*vars(PLAYS).values(), strict=True):
+            p = plain_play(v, r, growth)
+            expected += w * p + s * p**2 + c * p**3
+        close(chain(*blocks).simulate(v, DT), expected)
+
+
+@pytest.mark.parametrize("key", ["weights", "square_weights", "cube_weights"])
+def test_plays_need_one_weight_a_threshold(key):
+    with pytest.raises(InputError, match=f"{key}: expected 2 numbers.* got 1"):
+        PrandtlIshlinskii.from_mapping(
+            {"thresholds": [0.1, 0.2], "weights": [1.0, 1.0], key: [1.0]}
+        )
+
+
+def acting(v, coefficient, exponent, dt):
+    """Give the field that acts: what drives a hysteresis that is none."""
+    straight = PrandtlIshlinskii(thresholds=[0.0], weights=[0.0])
+    block = RateDependentHysteresis(
+        coefficient=coefficient, exponent=exponent, form="acting-field", hold="linear"
+    )
+    return block.wrap(straight, v, v, dt)
+
+
+@pytest.mark.parametrize("exponent", [0.4, 0.5, 0.7, 1.0, 1.6])
+def test_behind_a_steady_rise_the_acting_field_lags_by_a_power_of_the_rate(exponent):
+    t = np.arange(12_000) * 1e-4
+    field = acting(-3.0 * t, 0.02, exponent, 1e-4)
+    assert 3.0 * t[-1] > 5 * 0.02 * 3.0**exponent  # time enough to get there
+    assert field[-1] == pytest.approx(-3.0 * t[-1] + 0.02 * 3.0**exponent, rel=1e-6)
+
+
+@pytest.mark.parametrize("exponent", [0.4, 0.5, 0.7, 1.6])
+def test_behind_a_step_the_acting_field_comes_as_in_closed_form(exponent):
+    """``x' = -(x / c)^p``, p = 1 / a, gives ``x^(1-p) = x0^(1-p) + (p-1) c^-p t``."""
+    dt, c, p = 1e-5, 0.02, 1 / exponent
+    t = np.arange(2000) * dt
+    field = acting(np.append(0.0, np.ones(2000)), c, exponent, dt)[1:]
+    rest = np.maximum(1.0 + (p - 1) * c**-p * (t + dt), 0.0) ** (1 / (1 - p))
+    late = t > 100 * dt  # implicit Euler is of first order, and rough at the jump
+    np.testing.assert_allclose((1 - field)[late], rest[late], rtol=0.02)
+
+
+def test_with_an_exponent_of_one_the_acting_field_is_a_first_order_lag():
+    dt, tau = 1e-5, 2e-3
+    t = np.arange(4000) * dt
+    w = 2 * np.pi * 50
+    field = acting(np.sin(w * t), tau, 1.0, dt)
+    steady = np.sin(w * t - np.arctan(w * tau)) / np.hypot(1, w * tau)
+    expected = steady + np.exp(-t / tau) * w * tau / (1 + (w * tau) ** 2)
+    np.testing.assert_allclose(field, expected, rtol=0, atol=w * dt)
+
+
+def test_a_coefficient_of_zero_takes_nothing_of_the_field():
+    v = np.sin(np.arange(50) / 5)
+    np.testing.assert_array_equal(acting(v, 0.0, 0.5, DT), v)
+
+
+def test_an_acting_field_hides_no_number_that_is_none():
+    v = np.array([0.0, 0.1, np.nan, 0.2, 0.3])
+    assert np.isnan(acting(v, 0.02, 0.5, DT)[2:]).any()
 
 
 @given(inputs)

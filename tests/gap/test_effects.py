@@ -118,10 +118,10 @@ def test_a_variant_builds_a_model_that_runs(chain, variant):
                 assert np.isfinite(shapes).all()
             continue
         own = [built[k] for k in variant.positions]
-        # A field bias is made of two plain gains; all else has a block of its name,
-        # behind what is left where it was taken out of another.
+        # A field bias is made of two plain gains; all else has a block of its name or
+        # of another law of it, behind what is left where it was taken out of another.
         names = {item.name for item in own}
-        assert variant.effect in names or names == {"gain"}
+        assert names & {variant.effect, *effect.laws} or names == {"gain"}
         rest = [item for k, item in enumerate(built) if k not in variant.positions]
         assert rest == list(before[variant.start + variant.replaces :])
         model = Model(
@@ -133,6 +133,19 @@ def test_a_variant_builds_a_model_that_runs(chain, variant):
             assert np.isfinite(model.simulate(one.u, one.dt)).all() or not held
         again = Model.from_mapping(model.to_mapping(), "again")
         assert again == model
+
+
+@pytest.mark.parametrize(
+    ("chain", "variant"), [x for x in ALL if not x.values[1].beside]
+)
+def test_a_form_pays_for_every_number_that_it_leaves_free(chain, variant):
+    """Otherwise a law of many numbers would stand before one of few."""
+    built = variant.build(next(values_of(variant)))
+    own = [(built[k], key) for k in variant.positions for key in variant.free]
+    free = sum(
+        np.size(getattr(one, key)) for one, key in own if key in one.parameters()
+    )
+    assert variant.freedom >= free
 
 
 @pytest.mark.parametrize(("chain", "variant"), SOLVED)
@@ -367,6 +380,7 @@ def test_an_effect_is_offered_wherever_it_does_another_thing(names, added, expec
 SLOWER, LARGER = 2.5, 40.0
 SCALES = {
     "time_constant_s": SLOWER,
+    "second_time_constant_s": SLOWER,
     "delay_s": SLOWER,
     "frequency_hz": 1 / SLOWER,
     "damping_ratio": 1.0,

@@ -22,6 +22,7 @@ from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS, SHAPE, TIE
+from hystbench.gap.unnamed import what_is_unnamed
 from hystbench.gap.verdict import LONE, judge, what_is_left
 from tests.gap.halved import first_halves
 
@@ -79,7 +80,8 @@ def test_a_hidden_effect_is_named_first(name, family):
     assert first.effect == name, told(case.ranking)
     assert first.gain > PAYS
     left = what_is_left(case.state, first.state, case.floor.rms)
-    word, _ = judge(left, True, None)
+    unnamed = what_is_unnamed(case.state, first.state, case.floor.rms)
+    word, _ = judge(left, True, unnamed=unnamed)
     assert word == "named"
 
 
@@ -105,7 +107,8 @@ def verdict(names, family):
     state = naming.name(start, floor.rms).state
     left = what_is_left(start, state, floor.rms)
     bound = floor.method == "upper-bound"
-    word, _ = judge(left, bool(state.added), None, bound=bound)
+    unnamed = what_is_unnamed(start, state, floor.rms)
+    word, _ = judge(left, bool(state.added), bound=bound, unnamed=unnamed)
     return word, {item.effect for item in state.added}
 
 

@@ -19,6 +19,9 @@ import numpy as np  # noqa: E402
 from hystbench import kernels, operators  # noqa: E402
 from hystbench.blocks.jiles_atherton import JilesAtherton  # noqa: E402
 from hystbench.blocks.preisach import Preisach  # noqa: E402
+from hystbench.blocks.rate_dependent_hysteresis import (  # noqa: E402
+    RateDependentHysteresis,
+)
 from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
 from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E402
 from hystbench.envelope import Envelope  # noqa: E402
@@ -119,6 +122,10 @@ def blocks(x):
     )  # fmt: skip
     for block in each:
         yield block.name, (block.simulate(x, x, DT),)
+    wrapped = RateDependentHysteresis(
+        coefficient=0.01, exponent=0.5, form="acting-field"
+    ).wrap(each[-1], x, x, DT)
+    yield "acting field", (wrapped,)
 
 
 def main():

@@ -218,6 +218,7 @@ rule gap_decide:
             f"--named {shlex.quote(input.named)}" if input.named else ""
         ),
         limits=limits_of_case,
+        unnamed_share=config["gap"]["unnamed_share"],
         experiment=lambda wildcards, output: (
             options("--write-experiment", [Path(output.experiment[0], "signal.csv")])
             if GAP_EXPERIMENT
@@ -228,7 +229,8 @@ rule gap_decide:
         "verdict on {wildcards.case}"
     shell:
         "hystbench gap-decide {input.dataset:q} --base {input.base:q} {params.named}"
-        " {params.limits} {params.experiment} --out {params.folder:q} 2> {log:q}"
+        " {params.limits} --unnamed-share {params.unnamed_share} {params.experiment}"
+        " --out {params.folder:q} 2> {log:q}"
 
 
 # The one job that shows hold-out records: all is chosen. It may take names back, so

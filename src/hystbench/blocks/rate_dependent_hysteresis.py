@@ -7,13 +7,14 @@ from typing import ClassVar
 
 import numpy as np
 
+from hystbench import kernels
 from hystbench.blocks.band_limited import finer
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
-FORMS = ("growing-thresholds", "excess-field")
+FORMS = ("growing-thresholds", "excess-field", "acting-field")
 OVERSAMPLING = 8
 
 
@@ -24,11 +25,14 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
     With ``e = coefficient |dv/dt|^exponent``:
 
     - ``growing-thresholds`` [1]_: each threshold is ``r_i (1 + e)`` at each sample;
-    - ``excess-field`` [2]_: the hysteresis is driven by ``v - e sign(dv/dt)``.
+    - ``excess-field``: the hysteresis is driven by ``v - e sign(dv/dt)``;
+    - ``acting-field`` [2]_: it is driven by g with ``v - g = coefficient
+      |dg/dt|^exponent sign(dg/dt)``, g = v at the first sample. Where g hardly moves it
+      is ``excess-field``, which takes the rate of v for that of g.
 
     The rate is a central difference, one-sided at the ends. Where v turns it is zero
     for an instant only, and the thresholds are narrow for as long: with a band-limited
-    hold both are computed on a grid that is ``OVERSAMPLING`` times finer.
+    hold all are computed on a grid that is ``OVERSAMPLING`` times finer.
 
     References
     ----------
@@ -50,7 +54,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
 
     coefficient: float = number(
         "(s/U)^exponent",
-        "growth at a rate of one; in U (s/U)^exponent for excess-field",
+        "growth at a rate of one; in U (s/U)^exponent for both fields",
         0.0,
         HUGE,
     )
@@ -77,10 +81,22 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
             v, u = finer(v, fine), np.interp(place, np.arange(len(u)), u)
             if growth is not None:
                 growth = np.interp(place, np.arange(len(growth)), growth)
-        rate = np.gradient(v, dt / fine)
-        effect = self.coefficient * np.abs(rate) ** self.exponent
-        if self.form == "excess-field":
-            v = v - np.copysign(effect, rate)
+        if self.form == "acting-field":
+            v = self._acting(v, dt / fine)
         else:
-            growth = 1.0 + effect if growth is None else (1.0 + effect) * growth
+            rate = np.gradient(v, dt / fine)
+            effect = self.coefficient * np.abs(rate) ** self.exponent
+            if self.form == "excess-field":
+                v = v - np.copysign(effect, rate)
+            else:
+                growth = 1.0 + effect if growth is None else (1.0 + effect) * growth
         return inner.grow(v, u, dt / fine, growth)[::fine].copy()
+
+    def _acting(self, v: FloatArray, dt: float) -> FloatArray:
+        """Give the field that acts behind the one that is applied."""
+        if self.coefficient == 0.0:
+            return v
+        field = np.empty(len(v))
+        given = (self.coefficient, self.exponent, dt, np.ascontiguousarray(v))
+        kernels.call("hb_acting_field", len(v), *given, field)
+        return field

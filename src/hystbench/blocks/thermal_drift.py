@@ -15,8 +15,9 @@ from hystbench.record import FloatArray
 class ThermalDrift(Block):
     """Expansion by the heat of the input: ``y = z + coefficient LP[u^2]``.
 
-    LP is a first-order low-pass that starts cold. ``u^2`` moves straight between
-    samples.
+    LP is a first-order low-pass that starts cold: what the heat is made in and what
+    expands are one body. With ``second_time_constant_s`` two low-passes follow each
+    other: the coil warms and then the rod. ``u^2`` moves straight between samples.
 
     References
     ----------
@@ -30,8 +31,13 @@ class ThermalDrift(Block):
 
     coefficient: float = number("Y/U^2", "expansion at a steady input", -HUGE, HUGE)
     time_constant_s: float = number("s", "tau of the warming", 1e-6, 1e6)
+    second_time_constant_s: float = number(
+        "s", "tau of what is warmed in turn; 0 for none", 0.0, 1e6, default=0.0
+    )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Add the expansion."""
         heat = respond(lag(self.time_constant_s), u * u, dt, "linear")
+        if self.second_time_constant_s > 0:
+            heat = respond(lag(self.second_time_constant_s), heat, dt, "linear")
         return z + self.coefficient * heat

@@ -25,6 +25,7 @@ from hystbench.gap.wanted import write_wanted
 @options.out_folder
 @options.write_experiment
 @options.limits
+@options.unnamed_share
 @options.calls
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
 def gap(
@@ -35,6 +36,7 @@ def gap(
     limit_low: float | None,
     limit_high: float | None,
     limit_rate: float | None,
+    unnamed_share: float,
     calls: int | None,
     keep_calls: bool,
     report: bool,
@@ -62,6 +64,7 @@ def gap(
             out,
             place=model,
             limits=asked,
+            unnamed_share=unnamed_share,
             report=report,
             say=say,
         )

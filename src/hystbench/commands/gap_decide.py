@@ -23,6 +23,7 @@ from hystbench.gap.wanted import write_wanted
 )
 @options.write_experiment
 @options.limits
+@options.unnamed_share
 @options.out_folder
 @options.kept_calls
 def gap_decide(
@@ -33,6 +34,7 @@ def gap_decide(
     limit_low: float | None,
     limit_high: float | None,
     limit_rate: float | None,
+    unnamed_share: float,
     out: Path,
 ) -> None:
     """Decide what BASE lacks beside the fit records of DATASET; opens no other.
@@ -46,6 +48,7 @@ def gap_decide(
         evidence,
         model,
         named,
+        unnamed_share=unnamed_share,
         limits=options.asked_limits(limit_low, limit_high, limit_rate),
         say=lambda line: click.echo(line, err=True),
     )

@@ -40,9 +40,9 @@ from hystbench.gap.told import (
     simulator_mapping,
 )
 from hystbench.gap.uncertainty import on_more_samples, size_error, standard_errors
+from hystbench.gap.unnamed import SHARE, what_is_unnamed
 from hystbench.gap.verdict import (
     Left,
-    box_matters,
     judge,
     what_is_left,
 )
@@ -99,6 +99,7 @@ def find(
     declared: float | None = None,
     asked: Mapping[str, float] | None = None,
     say: Say = silent,
+    unnamed_share: float = SHARE,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
 
@@ -117,6 +118,8 @@ def find(
         Limits of the next experiment; the others are those of the records.
     say : callable
         Told a line of progress at a time.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
 
     Raises
     ------
@@ -127,7 +130,7 @@ def find(
     start, floor = start_state(records, base, hold, declared)
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
-    return decide(dataset, base, start, floor, named, say, limits, own)
+    return decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
 
 
 def decide(
@@ -139,6 +142,7 @@ def decide(
     say: Say = silent,
     limits: Limits | None = None,
     own: OwnValues = NONE,
+    unnamed_share: float = SHARE,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
 
@@ -157,6 +161,8 @@ def decide(
         Of the next experiment; those of the records where none are given.
     own : OwnValues
         What was taken off the records of ``start``, as it is their own.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
     """
     left = what_is_left(start, named.state, floor.rms)
     if named.state.added and left.little_named:
@@ -168,26 +174,21 @@ def decide(
     views = locate(compared, floor)
     if views:
         say(views[0].sentence)
-    folds = make_folds(records, whole=False)
     box = black_box(start, floor)
     after = compared if state is start else _compared(state.chain, state)
     lone = lone_share([item.residual for item in after])
     differs = unrepeated(after, floor.rms)
-    explained = None
-    if box_matters(left, bool(state.added)):
-        rest = box
-        if state is not start:
-            rest = BlackBox.fit(after, folds, floor.rms)
-        explained = rest.explained_on_folds
+    unnamed = what_is_unnamed(start, state, floor.rms)
     verdict, reason = judge(
         left,
         bool(state.added),
-        explained,
+        box.explained_on_folds,
         bool(start.free),
         floor.method == "upper-bound",
         lone,
         differs,
-        box.explained_on_folds,
+        unnamed,
+        unnamed_share,
     )
     untried = not_tried(named)
     reason += _untried(untried) if state.added else ""
@@ -221,11 +222,13 @@ def decide(
                 by_effect.get(item.effect, ()),
                 left,
                 size_error(finer, floor.rms, number),
+                unnamed.trust(unnamed_share),
             )
             for number, item in enumerate(state.added)
         ],
         "fit": _fit(start, state, floor)
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
+        "unnamed": unnamed.mapping(unnamed_share),
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
         "findings": findings,

@@ -19,6 +19,7 @@ from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
+from hystbench.gap.unnamed import SHARE
 from hystbench.model import Model
 from hystbench.written import writes
 
@@ -35,6 +36,7 @@ def decide_in(
     progress: Path | None,
     limits: Mapping[str, float] | None = None,
     say: Say = silent,
+    unnamed_share: float = SHARE,
 ) -> Finding:
     """Decide on the fit records; write the decision and the curves to a folder.
 
@@ -50,6 +52,8 @@ def decide_in(
         Of the next experiment; what is not given is taken from the fit records.
     say : callable
         Told a line of progress at a time.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
     """
     writes(*(folder / name for name in DECIDED))
     asked = Limits.within(evidence.fit, limits) if limits else None
@@ -59,7 +63,9 @@ def decide_in(
     else:
         named, floor = named_by(evidence, base, read_json(progress), start, say)
     start, named, own = named_apart(start, floor.rms, named, say)
-    finding = decide(evidence.name, base, start, floor, named, say, asked, own)
+    finding = decide(
+        evidence.name, base, start, floor, named, say, asked, own, unnamed_share
+    )
     kept = {
         "floor": floor_mapping(floor),
         "state": state_mapping(finding.state),

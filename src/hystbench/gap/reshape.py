@@ -11,9 +11,12 @@ else may lie in it, behind its hysteresis, is in there.
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
@@ -25,6 +28,8 @@ from hystbench.record import FloatArray
 POWERS = 5
 OPERATORS = 10
 OPERATOR_POWERS = 3
+MIXED = 6
+"""Play operators, the input among them, of which products are taken."""
 SLOPES = (1, 5)
 """Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input."""
 SMALL = 1e-3
@@ -48,9 +53,40 @@ def reshapings(scene: Scene, sample: Sample) -> FloatArray:
     """
     if scene.loop is None:
         return np.zeros((len(sample), 0))
+    return _behind(scene, sample, _ways)
+
+
+def products(scene: Scene, sample: Sample) -> FloatArray:
+    """Give what a hysteresis could add that is no sum of curves of play operators.
+
+    Products of the input and of play operators of it, two of them or the square of one
+    with another: they tell a hysteresis whose loops depend on where they lie, as of
+    most materials, from one of play operators. Sent on as the reshapings are.
+
+    Parameters
+    ----------
+    scene : Scene
+    sample : Sample
+
+    Returns
+    -------
+    ndarray, shape (scored samples, k)
+        Without anything in the chain that holds a hysteresis, no column.
+    """
+    if scene.loop is None:
+        return np.zeros((len(sample), 0))
+    return _behind(scene, sample, _mixed)
+
+
+def _behind(
+    scene: Scene,
+    sample: Sample,
+    make: Callable[[Scene, Sample | None], list[Signals]],
+) -> FloatArray:
+    """Make signals of the hysteresis and send them through what follows it."""
     behind = scene.chain[scene.behind_hysteresis :]
     at = None if behind else sample  # what nothing follows is wanted there alone
-    ways = _ways(scene, at)
+    ways = make(scene, at)
     if behind:
         return np.column_stack([sample.take(_sent(scene, behind, way)) for way in ways])
     return np.column_stack([np.concatenate(way) for way in ways])
@@ -88,6 +124,30 @@ def _ways(scene: Scene, sample: Sample | None) -> list[Signals]:
     if isinstance(block, GeneralizedPrandtlIshlinskii):
         own = [_at(x, sample) for x in _own(scene, block, v)]
     return ways + own
+
+
+def _mixed(scene: Scene, sample: Sample | None) -> list[Signals]:
+    """Give products of what enters the hysteresis and of play operators of it."""
+    place = scene.loop
+    assert place is not None  # noqa: S101  (the caller has looked)
+    signals = scene.before[place]
+    amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
+    thresholds = np.arange(MIXED) / (MIXED + 1)  # the first is the input itself
+    plays = [
+        play(z / amplitude, thresholds)[0].T[:, _rows(k, sample)]
+        for k, z in enumerate(signals)
+    ]
+    each = range(MIXED)
+    ways: list[Signals] = []
+    for i, j in itertools.combinations(each, 2):
+        ways.append(tuple(p[i] * p[j] for p in plays))
+        ways.append(tuple(p[i] ** 2 * p[j] for p in plays))
+        ways.append(tuple(p[i] * p[j] ** 2 for p in plays))
+    return ways
+
+
+def _rows(record: int, sample: Sample | None) -> slice | NDArray[np.intp]:
+    return slice(None) if sample is None else sample.positions[record]
 
 
 def _at(signals: Signals, sample: Sample | None) -> Signals:

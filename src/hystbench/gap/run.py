@@ -35,6 +35,7 @@ from hystbench.gap.shrink import (
 )
 from hystbench.gap.start import run_base
 from hystbench.gap.state import State
+from hystbench.gap.unnamed import SHARE
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -57,6 +58,7 @@ def close_gap(
     place: str = "model",
     limits: Mapping[str, float] | None = None,
     report: bool = True,
+    unnamed_share: float = SHARE,
     say: Say = silent,
 ) -> Finding:
     """Find what the base lacks, show on hold-out records how the gap shrinks, write it.
@@ -76,6 +78,8 @@ def close_gap(
         What is not given is taken from the fit records.
     report : bool
         Whether to write the page.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
     say : callable
         Told a line of progress at a time.
 
@@ -99,6 +103,7 @@ def close_gap(
         evidence.noise_rms,
         limits,
         say,
+        unnamed_share,
     )
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.

@@ -123,6 +123,26 @@ FIT = _object(
     }
 )
 
+# What the named effects cannot own of what they leave on the fit records, as shares of
+# the power of the gap.
+UNNAMED = _object(
+    {
+        # As the user allows it: more of `structured`, or a fifth of it of `changing`,
+        # withdraws the names.
+        "allowed": NUMBER,
+        # What follows known signals; what goes if the effects may change in time (null
+        # where none acts on the input); what follows no known signal.
+        "structured": NUMBER,
+        "changing": OPTIONAL,
+        "unrelated": NUMBER,
+        # Of what sort it is, and in words; null where no more stays than may.
+        "sort": {"enum": ["strength", "history", "memory", "curve", "unrelated", None]},
+        "sentence": {"type": ["string", "null"]},
+        # The effects' strength in each fit record, as a multiple of what it is in all.
+        "factors": {"type": "array", "items": NUMBER},
+    }
+)
+
 # Where the hold-out records show far less than the fit records promised: both shares
 # of the power above the floor that are gone, and what the reader is told.
 SHORTFALL = _object(
@@ -273,6 +293,7 @@ SCHEMA = _object(
     # The base, the base re-tuned within what it leaves free, then effect by effect.
     ladder={"type": "array", "items": RUNG},
     fit=FIT,
+    unnamed=UNNAMED,
     runs_away={"type": "array", "items": AWAY},
     findings={"type": "array", "items": FOUND},
     record_values={"oneOf": [RECORD_VALUES, {"type": "null"}]},

@@ -88,6 +88,7 @@ def effect_mapping(
     ranking: Sequence[Candidate],
     left: Left,
     size_error: float | None = None,
+    trust: float = 1.0,
 ) -> dict[str, Any]:
     """Give an added effect with its numbers and how sure the name is.
 
@@ -103,6 +104,8 @@ def effect_mapping(
     left : Left
     size_error : float, optional
         Standard error of what it adds to the output, in times of it.
+    trust : float
+        Factor on the confidence, less than one where more stays unnamed than may.
     """
     own = next((x for x in ranking if x.effect == item.effect), None)
     parameters = _parameters(item, state, errors, of_beside)
@@ -111,12 +114,13 @@ def effect_mapping(
     shape = any(state.chain[k].hysteretic for k in item.blocks)
     path = any(x.effect == item.effect and not given for x, given in state.beside)
     error = error_of(size_error, {} if shape or path else parameters)
+    sure = 0.0 if own is None else confidence(own, ranking, left, error)
     return {
         "name": item.effect,
         "place": item.place,
         "parameters": parameters,
         "size_error": size_error,
-        "confidence": 0.0 if own is None else confidence(own, ranking, left, error),
+        "confidence": trust * sure,
         "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
     }
 
@@ -153,7 +157,7 @@ def _parameters(
         return found
     for place in item.blocks:
         block = state.chain[place]
-        if block.name != item.effect:
+        if block.name not in (item.effect, *effects()[item.effect].laws):
             continue  # what the effect left of a block that it was taken out of
         for key, about in block.parameters().items():
             value = getattr(block, key)

@@ -13,11 +13,12 @@ from hystbench.gap.rank import make_score
 from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
+from hystbench.gap.unnamed import LOOSE, NOTHING, SHARE, Unnamed
 
 Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
-LOOSE = 0.27
-"""Share of the gap, beyond what reshaping could leave, that no effect takes away."""
+OFF = 1 / 9
+"""Share of the gap that stays and may be the base's own error: a third of its rms."""
 ABOVE = 0.5
 """Power above the floor, in floors, that makes what is left worth a word."""
 SLIGHT = 0.015
@@ -34,10 +35,6 @@ UNREPEATED = 0.5
 """Power above the floor, in floors, that differs between periods and is not noise."""
 SOME = 0.03
 """Share of what is left that has to differ so, to be told from settling."""
-REST = 0.15
-"""Share of the gap that stays, from which on what it is can undo a name."""
-BOX = 0.15
-"""Share of the gap that a black box takes away beyond them, to be clearly more."""
 SCALE = 4.0
 """Difference in score that makes one name e times likelier than another."""
 SURE = 100.0
@@ -147,20 +144,16 @@ def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     )
 
 
-def box_matters(left: Left, named: bool) -> bool:
-    """Tell whether what a black box explains could change the verdict or its reason."""
-    return not named or left.loose > BOX
-
-
 def judge(
     left: Left,
     named: bool,
-    explained_by_box: float | None,
+    explained_by_box: float | None = None,
     retuned: bool = False,
     bound: bool = False,
     lone: float = 0.0,
     unrepeated: float | None = None,
-    gap_explained_by_box: float | None = None,
+    unnamed: Unnamed = NOTHING,
+    unnamed_share: float = SHARE,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -170,8 +163,8 @@ def judge(
     named : bool
         Whether an effect was added.
     explained_by_box : float or None
-        Share of what is left, above the floor, that a black box takes away on folds of
-        the fit records.
+        Share of what the base leaves, above the floor, that a black box takes away on
+        folds of the fit records; said where nothing is named.
     retuned : bool
         Whether the base had numbers of its own to re-tune.
     bound : bool
@@ -182,12 +175,13 @@ def judge(
     unrepeated : float or None
         Power of what is left that differs between periods of the same input, above the
         floor and in floors; none where no record repeats.
-    gap_explained_by_box : float or None
-        Share of what the base leaves, above the floor, that a black box takes away
-        alone, on the same folds.
+    unnamed : Unnamed
+        What stays that the named effects cannot own.
+    unnamed_share : float
+        Share of the power of the gap that may stay so.
     """
-    foreign = _foreign(left, lone, unrepeated)
     if not named:
+        foreign = _foreign(left, lone, unrepeated)
         if left.slight and foreign:
             return "unnamed", foreign
         if retuned and left.all_before > ABOVE and left.loose < LOOSE:
@@ -213,29 +207,24 @@ def judge(
             "there and no effect of the vocabulary pays; "
             f"{_box_words(explained_by_box, 'it')}"
         )
-    more = (explained_by_box or 0.0) * left.loose
-    alone = gap_explained_by_box or 0.0
-    # What reshaping could do as well is none of the lead.
-    ahead = min(left.loose, alone - (1.0 - left.whole))
-    much = left.loose > LOOSE or max(more, ahead) > BOX
-    if left.loose > HALF or (much and not left.slight):
-        lead = f"; alone it takes {100 * alone:.0f} % of the gap's power away there"
+    if unnamed.too_much(unnamed_share):
+        why = unnamed.reason(unnamed_share)
+        if left.whole - unnamed.structured > OFF:
+            why += (
+                "; this is less sure, as a third of the gap's rms or more may be the "
+                "base's own error, which can look like that"
+            )
+        return "unnamed", why
+    if unnamed.stays > LOOSE:
         return "unnamed", (
-            f"too much stays for a name: {left.stays}; "
-            f"{_box_words(explained_by_box, 'what stays')}"
-            f"{lead if ahead > BOX else ''}"
+            f"too much stays for a name: {left.stays}, and most of it follows no known "
+            "signal"
         )
-    if foreign:
-        return "unnamed", foreign
     return "named", left.stays
 
 
 def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
-    """Say what is left that no effect and no wrong hysteresis does, if any is.
-
-    Where names leave little of the gap, it is no more than noise of another colour, or
-    the last bends of a drift's path.
-    """
+    """Say what is left that no effect and no wrong hysteresis does, if any is."""
     gap = max(left.all_before, 1.0)
     far = lone * (1.0 + left.all_after)
     if far > LONE * gap:
@@ -247,7 +236,7 @@ def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
     differs = unrepeated is not None and unrepeated > max(
         UNREPEATED, SOME * left.all_after
     )
-    if differs and left.all_after > REST * gap:
+    if differs:
         return (
             f"on the fit records {unrepeated:.2g} times the noise power is left that "
             "differs from one period of the same input to the next, which neither a "

@@ -43,6 +43,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_state_space": (None, "iiiaaafaaa"),
     "hb_modes": (_SIZE, "iiaaafaaa"),
     "hb_slew_limit": (None, "ifaa"),
+    "hb_acting_field": (None, "ifffaa"),
     "hb_hardening": (_SIZE, "iffffaa"),
     "hb_preisach": (None, "iifaaaaa"),
     "hb_jiles_atherton": (None, "iffffffaaa"),

@@ -1,4 +1,4 @@
-/* A drive of limited slew rate. */
+/* A drive of limited slew rate; a field that lags by a power of its own rate. */
 #include "lanes.h"
 
 /* The output moves towards the input, which is straight between samples, by no more
@@ -23,6 +23,44 @@ EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
             else
                 now = z[k] - (1 - at) * (slope - copysign(rate, slope));
         }
+        out[k] = now;
+    }
+}
+
+/* s > 0 with s + scale (s / unit)^power = all, power at least 1.  The left side is
+ * convex and rises at least as steeply as s: the steps of Newton, from the left at most
+ * once, come down on the solution from above. */
+static double split(double all, double scale, double unit, double power, double s)
+{
+    for (int step = 0; step < 60 && s > 0; step++) {
+        const double rest = scale * pow(s / unit, power);
+        const double change = (s + rest - all) / (1 + power * rest / s);
+        s -= change;
+        if (fabs(change) <= 1e-13 * all) break;
+    }
+    return s;
+}
+
+/* The field g that acts, where v - g = c |dg/dt|^a sign(dg/dt): implicit Euler, which
+ * takes the rate as even within a step.  It starts at v.  Of the two parts of a step,
+ * what g lags by after it and what g moves by in it, that one is solved for of which the
+ * other is a power of at least one. */
+EXPORT void hb_acting_field(index_t n, double c, double a, double dt, const double *v,
+                            double *out)
+{
+    double now = n > 0 ? v[0] : 0, guess = 0;
+    const int lags = a <= 1;
+    const double scale = lags ? dt : c, unit = lags ? c : dt, power = lags ? 1 / a : a;
+    for (index_t k = 0; k < n; k++) {
+        const double apart = v[k] - now, all = fabs(apart);
+        if (all > 0) {
+            /* neither part is larger than the whole, nor than the whole alone asks for */
+            if (!(guess > 0 && guess < all))
+                guess = fmin(all, unit * pow(all / scale, 1 / power));
+            guess = fmin(split(all, scale, unit, power, guess), all);
+            now = lags ? v[k] - copysign(guess, apart) : now + copysign(guess, apart);
+        } else
+            now = v[k]; /* level, or not a number */
         out[k] = now;
     }
 }

@@ -294,6 +294,14 @@ def test_lists_are_compared_number_by_number():
     assert (row.parameters, row.intervals, row.covered) == (1, 1, 1)
 
 
+@pytest.mark.parametrize(("unit", "compared"), [("um", 1), ("A", 0)])
+def test_a_law_of_the_field_has_no_number_of_one_behind_the_loop(unit, compared):
+    hidden = effect("saturation", "tanh", {"level": 40.0}) | {"units": {"level": "um"}}
+    said = {"level": value(40.0, 1.0, unit)}
+    row = judged(truth(hidden), gap(named("saturation", parameters=said)))
+    assert row.parameters == compared
+
+
 def test_another_form_has_no_true_parameters():
     about = truth(effect("saturation", "algebraic", {"level": 40.0, "sharpness": 2.0}))
     said = {"level": value(40.0, 1.0, "um")}

@@ -114,6 +114,9 @@ def _pairs(
     if name not in answer["parameters"] or name not in effect["parameters"]:
         return []
     said = answer["parameters"][name]
+    units = effect.get("units", {}).get(name), said.get("unit")
+    if None not in units and units[0] != units[1]:
+        return []  # a law of the field and one behind the loop
     true = _list(effect["parameters"][name])
     values = _list(said["value"])
     errors = _list(said["standard_error"])

@@ -136,6 +136,8 @@ class Effect(ABC):
     offsets: ClassVar[Mapping[str, tuple[tuple[str, str], ...]]] = {}
     """By form, where its blocks are plain gains: the name and the unit that the offset
     of each has as a number of the effect."""
+    laws: ClassVar[tuple[str, ...]] = ()
+    """Blocks of other laws of the effect, beside the one that has its name."""
 
     @abstractmethod
     def variants(self, scene: Scene) -> Iterator[Variant]:
@@ -153,6 +155,7 @@ class Effect(ABC):
         place: int,
         values: Callable[[Values], dict[str, Any]] = dict,
         *,
+        law: str = "",
         form: str = "",
         grids: dict[str, FloatArray] | None = None,
         unit: dict[str, float] | None = None,
@@ -165,9 +168,10 @@ class Effect(ABC):
     ) -> Variant:
         """Give the variant that puts the effect's block before the block at a place.
 
-        A block that wraps the hysteresis changes the chain from the hysteresis on.
+        A block that wraps the hysteresis changes the chain from the hysteresis on. The
+        block has the effect's name, or that of another law of it.
         """
-        block = registry()[self.name]
+        block = registry()[law or self.name]
         start = place
         if issubclass(block, WrappingBlock) and scene.hysteresis is not None:
             start = scene.hysteresis

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -40,7 +41,7 @@ class Creep(Effect):
                     ],
                 }
 
-            yield self.inserted(
+            found = self.inserted(
                 scene,
                 scene.behind_material,
                 values,
@@ -52,6 +53,7 @@ class Creep(Effect):
                 positive=tuple(unit),
                 free=("magnitudes", "time_constants_s"),
             )
+            yield replace(found, charge=2.0 * count)
 
 
 SPREAD = 5.0

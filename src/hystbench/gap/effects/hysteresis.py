@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import replace
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -14,17 +15,22 @@ from hystbench.gap.scene import Scene
 OPERATORS = 8
 BEND = 0.5
 """Argument of the hyperbolic tangent at the largest input, where the search starts."""
+PLAYS = "prandtl-ishlinskii"
+FORM = "plays"
+"""Of plain plays beside a linear path; the other form is of generalized ones."""
 
 
 class Hysteresis(Effect):
-    """Generalized play operators before everything else.
+    """Play operators before everything else, plain ones or generalized ones.
 
-    The search starts from envelopes that are nearly straight and alike; the refit
-    bends them.
+    Plain plays lie beside a linear path: the chain has its gain already. Their weights
+    may have any sign. Generalized ones have envelopes, from nearly straight and alike
+    ones on; the refit bends them.
     """
 
     name = "hysteresis"
     place = "material"
+    laws: ClassVar = (PLAYS,)
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer operators over the range of the input."""
@@ -32,6 +38,33 @@ class Hysteresis(Effect):
             raise Declined("the chain has a hysteresis already")
         if scene.loop is not None and scene.chain[scene.loop].reruns:
             raise Declined("the simulator has a hysteresis already")
+        yield self._generalized(scene)
+        yield self._plays(scene)
+
+    def _plays(self, scene: Scene) -> Variant:
+        """Plays beside a linear path.
+
+        The law's cubes stay zero: with them a search takes five times as long.
+        """
+        amplitude = scene.largest(0)
+        thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
+        names = [f"weight {k}" for k in range(OPERATORS)]
+
+        def values(given: Values) -> dict[str, Any]:
+            weights = [given[name] for name in names]
+            return {"thresholds": thresholds, "weights": weights}
+
+        return self.inserted(
+            scene,
+            0,
+            values,
+            law=PLAYS,
+            form=FORM,
+            unit=dict.fromkeys(names, 1e-3),
+            free=("weights",),
+        )
+
+    def _generalized(self, scene: Scene) -> Variant:
         amplitude = scene.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
         slope = BEND / amplitude
@@ -48,12 +81,14 @@ class Hysteresis(Effect):
                 "weights": [max(1.0 - sum(weights), 0.0), *weights],
             }
 
-        yield self.inserted(
+        found = self.inserted(
             scene,
             0,
             values,
+            form="generalized plays",
             unit=dict.fromkeys(names, 1e-3),
             positive=tuple(names),
             free=("weights", "envelope"),
             neutral=False,
         )
+        return replace(found, charge=float(OPERATORS + len(envelope)))

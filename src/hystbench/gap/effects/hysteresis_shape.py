@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.base import Declined, Effect, Variant
+from hystbench.gap.effects.hysteresis import PLAYS
 from hystbench.gap.scene import Scene
 
 
@@ -21,7 +22,7 @@ class HysteresisShape(Effect):
         """Offer the correction of the chain's hysteresis."""
         if scene.hysteresis is None:
             raise Declined("the chain has no hysteresis whose shape could be wrong")
-        if scene.chain[scene.hysteresis].name == "hysteresis":
+        if scene.chain[scene.hysteresis].name in ("hysteresis", PLAYS):
             raise Declined("the shape of an added hysteresis is fitted with it")
         amplitude = scene.largest(scene.hysteresis)
         thresholds = [amplitude * k / OPERATORS for k in range(1, OPERATORS)]

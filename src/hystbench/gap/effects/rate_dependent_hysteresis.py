@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -20,22 +21,25 @@ class RateDependentHysteresis(Effect):
     place = "material"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer both forms around the hysteresis.
+        """Offer three laws around the hysteresis.
 
-        The coefficient is searched by what it does at the fastest rate of the records.
+        The coefficient is searched by what it does at the fastest rate of the records,
+        from one exponent or another, which the refit moves.
         """
         if scene.hysteresis is None:
             raise Declined("the chain has no hysteresis that could widen")
         amplitude = scene.largest(scene.hysteresis)
+        field = np.geomspace(2e-3, 0.5, 5) * amplitude
         sizes = {
             "growing-thresholds": np.geomspace(0.03, 20, 5),
-            "excess-field": np.geomspace(2e-3, 0.5, 5) * amplitude,
+            "excess-field": field,
+            "acting-field": field,
         }
         if not can_grow(scene):
             del sizes["growing-thresholds"]
         for form, at_fastest in sizes.items():
-            for exponent in (0.5, 1.0):
-                yield self.inserted(
+            for exponent in EXPONENTS[form]:
+                found = self.inserted(
                     scene,
                     scene.hysteresis + 1,
                     partial(_values, form, exponent),
@@ -44,6 +48,16 @@ class RateDependentHysteresis(Effect):
                     free=("coefficient", "exponent"),
                     zero={"coefficient": 0.0},
                 )
+                yield replace(found, charge=2.0)
+
+
+EXPONENTS = {
+    "growing-thresholds": (0.5, 1.0),
+    "excess-field": (0.5, 1.0),
+    # With an exponent of one the field that acts is a plain lag of the drive.
+    "acting-field": (0.5,),
+}
+"""Where the search for each law starts; the refit moves the exponent."""
 
 
 def _values(form: str, exponent: float, given: Values) -> dict[str, Any]:

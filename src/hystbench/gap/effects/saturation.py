@@ -14,24 +14,29 @@ SHARPEST = 50.0
 
 
 class Saturation(Effect):
-    """An odd, soft limit behind the hysteresis, of one sharpness or another."""
+    """An odd, soft limit behind the hysteresis or of the field, of any sharpness."""
 
     name = "saturation"
     place = "material"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer levels from half to thirty times the largest signal there."""
+        """Offer levels from half to thirty times the largest signal there.
+
+        Of the output, or of the field that drives the hysteresis.
+        """
         for place in (scene.behind_hysteresis, *places_inside(scene)):
             yield from self._at(scene, place)
+        if scene.hysteresis is not None:
+            yield from self._at(scene, scene.hysteresis, "field")
 
-    def _at(self, scene: Scene, place: int) -> Iterator[Variant]:
+    def _at(self, scene: Scene, place: int, of: str = "") -> Iterator[Variant]:
         largest = scene.largest(place)
         levels = logarithmic(0.5 * largest, 30 * largest, 5)
-        yield self.inserted(scene, place, grids={"level": levels})
+        yield self.inserted(scene, place, form=of, grids={"level": levels})
         yield self.inserted(
             scene,
             place,
-            form="algebraic",
+            form=f"{of}, algebraic" if of else "algebraic",
             grids={"level": levels, "sharpness": np.array([2.0, 3.0, 4.5, 8.0])},
             limits={"sharpness": (2.0, SHARPEST)},
         )

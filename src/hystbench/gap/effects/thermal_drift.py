@@ -15,14 +15,28 @@ class ThermalDrift(Effect):
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer it behind the mechanics, by its time constant."""
+        """Offer it behind the mechanics, of one body that warms and of two.
+
+        Two bodies in a row may change places: the second one is the quicker.
+        """
         end = scene.behind_mechanics
         small = 1e-3 * scene.largest(end) / scene.largest(0) ** 2
+        low, high = scene.span / 200, 3 * scene.span
         yield self.inserted(
             scene,
             end,
+            form="one body",
+            grids={"time_constant_s": logarithmic(low, high, 2.5)},
+            unit={"coefficient": small},
+        )
+        slower = logarithmic(scene.span / 20, high, 2.5)
+        yield self.inserted(
+            scene,
+            end,
+            form="two bodies",
             grids={
-                "time_constant_s": logarithmic(scene.span / 200, 3 * scene.span, 2.5)
+                "time_constant_s": slower,
+                "second_time_constant_s": logarithmic(low, high / 10, 2.5),
             },
             unit={"coefficient": small},
         )

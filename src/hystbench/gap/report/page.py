@@ -32,6 +32,7 @@ OPTIONAL: dict[str, Any] = {
     "runs_away": [],
     "warnings": [],
     "fit": None,
+    "unnamed": None,
     "simulator": None,
     "calls_used_up": None,
 }

@@ -41,9 +41,13 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
             f"The simulator lacks no effect that the records show; {listed(found)} "
             "of each record's own accounts for what differs."
         )
-    if gap["verdict"] == "unnamed" and names:
-        sentence += f" A part of the gap looks like {listed(names)}."
-    return sentence
+    if gap["verdict"] != "unnamed":
+        return sentence
+    stays = (gap["unnamed"] or {"sentence": None})["sentence"]
+    if names:
+        sentence += f" It looks like {listed(names)}, but is not that"
+        return sentence + (f": {stays}." if stays else ".")
+    return sentence + (f" On the fit records {stays}." if stays else "")
 
 
 def advice(gap: dict[str, Any]) -> str:

@@ -1,0 +1,51 @@
+"""Block ``butterfly``: strain that follows the square of a hysteretic field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
+from hystbench.operators import growing_play, play
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class Butterfly(WrappingBlock):
+    """Even-order part of the strain beside the hysteresis that it wraps.
+
+    ``y = inner[v] + coefficient P[v]^2`` with v what enters the hysteresis and P the
+    play operator of one threshold on v (paper, Eqs. 1 and 2, w(0) = 0). An even map of
+    a simple loop makes a butterfly [1]_; strain follows the square of the
+    magnetisation, which lags behind the field [2]_.
+
+    References
+    ----------
+    .. [1] B. Drincic, X. Tan, D. S. Bernstein, "Why are some hysteresis loops shaped
+       like a butterfly?", Automatica 47 (2011) 2658-2664.
+    .. [2] G. Engdahl (ed.), Handbook of Giant Magnetostrictive Materials, Academic
+       Press, 2000.
+    """
+
+    name: ClassVar = "butterfly"
+    place: ClassVar = "material"
+    reference: ClassVar = "Drincic, Tan, Bernstein, Automatica 47 (2011) 2658-2664"
+
+    coefficient: float = number("Y/U^2", "weight of the square", -HUGE, HUGE)
+    threshold: float = number("U", "half the width of the play", 0.0, HUGE)
+
+    def wrap(
+        self,
+        inner: Hysteresis,
+        v: FloatArray,
+        u: FloatArray,
+        dt: float,
+        growth: FloatArray | None = None,
+    ) -> FloatArray:
+        """Add the square, whose threshold grows with those inside."""
+        if growth is None:
+            moved, _ = play(v, [self.threshold])
+        else:
+            moved = growing_play(v, [self.threshold], growth)
+        return inner.grow(v, u, dt, growth) + self.coefficient * moved[:, 0] ** 2

@@ -1,0 +1,82 @@
+"""Block ``prandtl-ishlinskii``: play operators beside a linear path."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.base import Place
+from hystbench.blocks.parameter import HUGE, numbers
+from hystbench.blocks.wrapping import HystereticBlock
+from hystbench.errors import InputError
+from hystbench.operators import growing_play, play
+from hystbench.record import FloatArray
+
+
+@dataclass(frozen=True)
+class PrandtlIshlinskii(HystereticBlock):
+    """Play operators beside the signal itself: ``y = z + sum_i w_i P_i[z]``.
+
+    ``P_i`` is the play operator of threshold r_i (paper, Eqs. 1 and 2, w(0) = 0). The
+    weights may have any sign: negative ones make a loop that runs the other way, and
+    only their sum is the loop's mean slope. ``square_weights`` s and ``cube_weights`` c
+    bend the branches, ``+ sum_i (s_i P_i[z]^2 + c_i P_i[z]^3)``: the squares of both
+    halves differ, the cubes are odd as the plays are.
+
+    References
+    ----------
+    .. [1] M. Brokate, J. Sprekels, Hysteresis and Phase Transitions, Springer, 1996,
+       Section 2.4.
+    .. [2] K. Kuhnen, "Modeling, identification and compensation of complex hysteretic
+       nonlinearities: a modified Prandtl-Ishlinskii approach", European Journal of
+       Control 9 (2003) 407-418.
+    """
+
+    name: ClassVar = "prandtl-ishlinskii"
+    place: ClassVar[Place] = "material"
+    reference: ClassVar = (
+        "Brokate, Sprekels, Hysteresis and Phase Transitions, 1996, Section 2.4"
+    )
+
+    thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
+    weights: tuple[float, ...] = numbers("-", "w_i, one a threshold", -HUGE, HUGE)
+    square_weights: tuple[float, ...] = numbers(
+        "1/U", "s_i, one a threshold or none", -HUGE, HUGE, optional=True
+    )
+    cube_weights: tuple[float, ...] = numbers(
+        "1/U^2", "c_i, one a threshold or none", -HUGE, HUGE, optional=True
+    )
+
+    def check(self) -> None:
+        """Refuse as many weights as there are no thresholds for."""
+        for key in ("weights", "square_weights", "cube_weights"):
+            given = len(getattr(self, key))
+            if given != len(self.thresholds) and (given or key == "weights"):
+                raise InputError(
+                    f"{key}: expected {len(self.thresholds)} numbers, one a "
+                    f"threshold, got {given}"
+                )
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Add the weighted plays."""
+        return self.grow(z, u, dt, None)
+
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Add the weighted plays with all thresholds times ``growth``."""
+        if growth is None:
+            plays, _ = play(v, self.thresholds)
+        else:
+            plays = growing_play(v, self.thresholds, growth)
+        y: FloatArray = v + plays @ np.array(self.weights)
+        if self.square_weights:
+            y += plays**2 @ np.array(self.square_weights)
+        if self.cube_weights:
+            y += plays**3 @ np.array(self.cube_weights)
+        return y
+
+    def check_growth(self) -> None:
+        """Accept: the thresholds of play operators can grow."""

@@ -1,0 +1,135 @@
+"""Least squares with a prior variance for each group of columns, found by evidence.
+
+A signal is a sum of columns and white noise. The amplitudes of a group of columns are
+normal about zero with a variance that the group has of its own. These variances and the
+noise's are those that make the signal likeliest when the amplitudes are integrated out
+(type-II maximum likelihood). A group that explains nothing gets no variance, so that it
+costs nothing to offer it; one that explains something is charged for its freedom.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dtrtri
+
+from hystbench.record import FloatArray
+
+STEPS = 25
+"""Of the fixed-point iteration."""
+NOTHING = 1e-12
+"""Share of the signal's power below which a variance is taken as zero."""
+
+
+@dataclass(frozen=True)
+class Grouped:
+    """A signal explained by groups of columns.
+
+    Parameters
+    ----------
+    noise : float
+        Variance of what no group explains, freedom charged.
+    variances : ndarray, shape (groups,)
+        Of the amplitudes of each group's columns.
+    evidence : float
+        Logarithm of the probability density of the signal.
+    """
+
+    noise: float
+    variances: FloatArray
+    evidence: float
+
+
+@dataclass(frozen=True, eq=False)
+class Products:
+    """Products of all columns with each other and with a signal.
+
+    Parameters
+    ----------
+    gram : ndarray, shape (k, k)
+        Of columns of unit mean square; those that are zero stay zero.
+    across : ndarray, shape (k,)
+        Of the columns with the signal.
+    power : float
+        Sum of squares of the signal.
+    rows : int
+        Samples of the signal.
+    """
+
+    gram: FloatArray
+    across: FloatArray
+    power: float
+    rows: int
+
+    @classmethod
+    def of(cls, columns: FloatArray, signal: FloatArray) -> Products:
+        """Multiply columns, shape (n, k), and a signal, shape (n,)."""
+        size = np.sqrt(np.mean(columns**2, axis=0))
+        columns = columns / np.where(size > 0, size, 1.0)
+        return cls(
+            columns.T @ columns,
+            columns.T @ signal,
+            float(signal @ signal),
+            len(signal),
+        )
+
+    def explained(self, groups: Sequence[Sequence[int]]) -> Grouped:
+        """Find the variances of groups and of the noise, by evidence.
+
+        MacKay's fixed-point steps [1]_: with ``g`` the amplitudes of a group that the
+        signal determines, its variance becomes the sum of their squares over ``g``, and
+        the noise's the squares that are left over the samples less all ``g``.
+
+        Parameters
+        ----------
+        groups : sequence of sequence of int
+            Columns of each group; the columns of none are left out.
+
+        Returns
+        -------
+        Grouped
+            Of the groups that have a column.
+
+        References
+        ----------
+        .. [1] D. J. C. MacKay, "Bayesian interpolation", Neural Computation 4 (1992)
+           415-447.
+        """
+        groups = [group for group in groups if len(group)]
+        noise = max(self.power / self.rows, np.finfo(float).tiny)
+        if not groups:
+            return Grouped(noise, np.zeros(0), self._evidence(noise, 0.0, self.power))
+        used = np.concatenate([np.asarray(group, dtype=np.intp) for group in groups])
+        member = np.repeat(np.arange(len(groups)), [len(group) for group in groups])
+        counts = np.bincount(member)
+        gram, across = self.gram[np.ix_(used, used)], self.across[used]
+        variances = noise / counts
+        least = NOTHING * noise
+        for step in range(STEPS + 1):
+            root = np.sqrt(variances)[member]
+            scaled = gram * (root[:, None] * root) / noise
+            scaled.flat[:: len(used) + 1] += 1.0
+            lower = np.linalg.cholesky(scaled)
+            inverse, _ = dtrtri(lower, lower=1)
+            white = inverse.T @ (inverse @ (root * across)) / noise
+            amplitudes = root * white
+            left = self.power - amplitudes @ (2 * across - gram @ amplitudes)
+            left = max(float(left), least * self.rows)
+            if step == STEPS:
+                break
+            known = 1.0 - np.einsum("ij,ij->j", inverse, inverse)
+            each = np.maximum(np.bincount(member, known), NOTHING)
+            squares = variances * np.bincount(member, white**2)
+            variances = np.maximum(squares / each, least * NOTHING)
+            noise = left / max(self.rows - float(each.sum()), 1.0)
+        determinant = 2.0 * float(np.sum(np.log(np.diag(lower))))
+        power = left + noise * float(white @ white)
+        evidence = self._evidence(noise, determinant, power)
+        return Grouped(noise, variances, evidence)
+
+    def _evidence(self, noise: float, determinant: float, power: float) -> float:
+        """Give the log density: ``power`` over the noise is the exponent's double."""
+        spread = self.rows * float(np.log(2 * np.pi * noise))
+        return -0.5 * (spread + determinant + power / noise)
