@@ -173,6 +173,9 @@ def content(root: Path) -> dict[str, str]:
     return found
 
 
+CONTENT = {"verdict": "no-gap", "reason": "none is there", "effects": []}
+
+
 @dataclass(frozen=True)
 class Found:
     """What a search would give, as far as it is written."""
@@ -198,7 +201,7 @@ def searched():
         return Found(
             model=base,
             curves={"run": len(calls)},
-            content={"verdict": "no-gap", "effects": [], "run": len(calls)},
+            content=CONTENT | {"run": len(calls)},
         )
 
     def outcome(base, decided, state, floor, box, records, *others):

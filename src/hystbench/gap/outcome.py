@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 WORSE = 1.0 + 1e-9
-"""RMS on hold-out records over that of the base that is worse: but for rounding, any."""
+"""RMS over the base's on hold-out records that is worse: any, but for rounding."""
 LEAST = 5e-4
 """Share that is told as none: it would read 0.0 %."""
 
