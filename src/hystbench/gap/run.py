@@ -118,7 +118,6 @@ def close_gap(
         finding.own,
         evidence.warnings,
     )
-    say(f"{shown.content['verdict']}: {shown.content['reason']}")
     with whole_folder(folder, RESULT) as fresh:
         write_json(fresh / "curves.json", finding.curves)
         write_shown(fresh, evidence.hold_out, shown)
@@ -126,6 +125,7 @@ def close_gap(
             from hystbench.gap.report import write_report  # late: it draws
 
             write_report(fresh)
+    say(f"{shown.content['verdict']}: {shown.content['reason']}")
     return replace(finding, model=shown.model, content=shown.content)
 
 
