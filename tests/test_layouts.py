@@ -14,7 +14,7 @@ import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from hystbench import options
@@ -225,7 +225,6 @@ def invoke(words) -> str | None:
     return told
 
 
-@settings(max_examples=60)
 @given(layout=layouts)
 @example(layout=Layout(strangers=("holdout/notes.csv",)))
 @example(layout=Layout(out=".", model="model.yaml", hold_out="c.csv"))

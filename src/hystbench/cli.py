@@ -112,6 +112,7 @@ def run() -> int:
             _tell(f"hystbench: {error.filename}: {error.strerror}")
         elif error.errno in FULL:
             # Files of results are named; what is left is what was printed, mostly.
+            _drop_what_was_printed()
             _tell(f"hystbench: standard output or a temporary file: {error.strerror}")
         else:
             raise
@@ -129,12 +130,16 @@ def _called(command: Callable[..., object]) -> int:
     try:
         sys.stdout.flush()
     except OSError as error:
-        # What is left of the text goes nowhere, or Python tries again at its end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        _drop_what_was_printed()
         if isinstance(error, BrokenPipeError):
             return status or 1
         raise OSError(error.errno, error.strerror, "standard output") from None
     return status
+
+
+def _drop_what_was_printed() -> None:
+    """Let the rest of the text go nowhere, or Python would try again at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def _tell(line: str) -> None:
