@@ -17,7 +17,6 @@ from hystbench.gap.rank import make_score, on_folds, rank
 from hystbench.gap.rounds import Candidate
 from hystbench.gap.state import Free
 from hystbench.gap.thresholds import PAYS
-from hystbench.gap.work import Work
 from tests.gap.made import multisine, record, steady
 from tests.gap.small import block, plain_score, state_of
 
@@ -119,17 +118,19 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     plain, finished = rank(before, score), []
     last = [item for item in plain if item.held_back is not None][-1]
 
-    class Noted(Work):
-        def finished(self, state, score):
-            finished.append(state.added[-1].effect)
-            return super().finished(state, score)
+    exactly = ranked.finished
+
+    def noted(state, score):
+        finished.append(state.added[-1].effect)
+        return exactly(state, score)
 
     def told(before, after, score):
         return 1e3 if after.added[-1].effect == last.effect else -1e3
 
     monkeypatch.setattr(ranked, "gain_held_back", told)
+    monkeypatch.setattr(ranked, "finished", noted)
     monkeypatch.setattr(ranked, "EXACT", 1)
-    ranking = rank(before, score, work=Noted())
+    ranking = rank(before, score)
     assert last.effect != plain[0].effect
     assert ranking[0].effect == last.effect
     assert finished == [plain[0].effect, last.effect]

@@ -35,7 +35,7 @@ def decided(tmp_path_factory):
     with pytest.raises(InputError, match="unseen"):
         load_evidence(data)
     out = folder / "out"
-    decide_in(out, load_evidence(data, "fit"), load_model(base), None)
+    decide_in(out, load_evidence(data, "fit"), load_model(base))
     (data / "unseen.csv").write_bytes(kept)
     return folder, data, base, out
 

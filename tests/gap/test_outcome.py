@@ -112,7 +112,7 @@ def test_the_page_says_so_first(misled):
 def test_jobs_take_back_what_one_process_does(misled, tmp_path):
     """The job that decides knows no hold-out record: it wrote the name."""
     folder, data, base, _ = misled
-    decide_in(tmp_path, load_evidence(data, "fit"), load_model(base), None)
+    decide_in(tmp_path, load_evidence(data, "fit"), load_model(base))
     decided = json.loads((tmp_path / DECISION).read_text())
     assert (decided["verdict"], len(decided["effects"])) == ("named", 1)
     assert not (tmp_path / "model.yaml").exists()

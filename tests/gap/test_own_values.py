@@ -154,7 +154,7 @@ def test_late_triggers_alone_are_no_gap_and_hold_out_records_have_theirs(tmp_pat
     assert np.sqrt(np.mean(raw**2)) > 1.0
     assert content["gap"]["before"] == pytest.approx(NOISE, rel=0.2)
     # The jobs do the same: what was decided is read back.
-    decide_in(two, load_evidence(data, "fit"), rig(), None)
+    decide_in(two, load_evidence(data, "fit"), rig())
     show_in(two, evidence, rig())
     for file in ("gap.json", "model.yaml", "holdout/hr0.csv"):
         assert (one / file).read_bytes() == (two / file).read_bytes()

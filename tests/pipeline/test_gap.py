@@ -1,4 +1,4 @@
-"""The gap through Snakemake: in one job and in a job an effect, and what runs again."""
+"""The gap through Snakemake, and what runs again."""
 
 from __future__ import annotations
 
@@ -20,8 +20,6 @@ from .conftest import Workflow, small_config
 PAGE = "results/gap/tiny/report.html"
 GAP = "results/gap/tiny/gap.json"
 CHECKED = "results/gap/tiny/stages/checked"
-#: Rounds of the small case: the lag is added, then nothing pays.
-ROUNDS = 2
 
 
 @dataclass
@@ -31,11 +29,10 @@ class Finished(Workflow):
     done: dict[str, int] = field(default_factory=dict)
 
 
-def configured(folder, config, jobs: str) -> Workflow:
+def configured(folder, config) -> Workflow:
     workflow = Workflow(folder)
     write_tiny(folder / "tiny")
     config["gap"] |= {
-        "jobs": jobs,
         "datasets": [
             {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
         ],
@@ -46,13 +43,7 @@ def configured(folder, config, jobs: str) -> Workflow:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    workflow = configured(tmp_path_factory.mktemp("whole"), small_config(), "whole")
-    return Finished(workflow.folder, workflow.environment, workflow.run(PAGE))
-
-
-@pytest.fixture(scope="module")
-def effects(tmp_path_factory):
-    workflow = configured(tmp_path_factory.mktemp("effects"), small_config(), "effects")
+    workflow = configured(tmp_path_factory.mktemp("whole"), small_config())
     return Finished(workflow.folder, workflow.environment, workflow.run(PAGE))
 
 
@@ -63,7 +54,6 @@ def load(workflow):
 def test_one_job_names_the_lag_and_closes_the_gap(whole):
     assert whole.done == {
         "gap_check": 1,
-        "gap_start": 1,
         "gap_decide": 1,
         "gap_show": 1,
         "gap_report": 1,
@@ -90,22 +80,6 @@ def test_gap_json_holds_the_rms_of_the_hold_out_record(whole):
     for key, simulated in (("before", before), ("after", after)):
         rms = np.sqrt(np.mean((measured - simulated) ** 2))
         assert gap[key] == pytest.approx(rms, rel=1e-6)
-
-
-def test_a_job_an_effect_gives_the_same(whole, effects):
-    stages = effects.folder / "results/gap/tiny/stages"
-    rounds = [stages / f"round-{number}" for number in range(1, ROUNDS + 1)]
-    assert sorted(path for path in stages.glob("round-*") if path.is_dir()) == rounds
-    assert {path.stem for path in rounds[0].glob("*.json")} == {
-        item["name"] for item in load(whole)["ranking"]
-    }
-    written, as_written = whole.files(), effects.files()
-    assert {"gap/tiny/report.html", "gap/tiny/stages/decision.json"} <= set(written)
-    for name, content in written.items():
-        assert as_written.get(name) == content, name
-    more = set(as_written) - set(written)
-    assert all("/stages/round-" in name for name in more)
-    assert effects.would_run(PAGE) == {}
 
 
 def test_the_next_experiment_is_written_within_the_limits_of_its_dataset(
@@ -141,7 +115,7 @@ def test_limits_between_which_nothing_lies_are_one_line(workflow, config):
 
 READ_HOLD_OUT = {"gap_check", "gap_show"}
 """Rules that may have hold-out files for inputs."""
-DECIDE = {"gap_start", "gap_candidate", "gap_choose", "gap_decide"}
+DECIDE = "gap_decide"
 
 
 HELD_OUT = "tiny/dataset/unseen.csv"
@@ -180,13 +154,11 @@ def upstream(files: list[Made], one: Made) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("mode", ["whole", "effects"])
-def test_hold_out_files_are_never_upstream_of_what_decides(mode, request):
-    files = made(request.getfixturevalue(mode), PAGE)
+def test_hold_out_files_are_never_upstream_of_what_decides(whole):
+    files = made(whole, PAGE)
     assert {item.rule for item in files if HELD_OUT in item.input} == READ_HOLD_OUT
-    decided = [item for item in files if item.rule in DECIDE]
-    rules = DECIDE if mode == "effects" else {"gap_start", "gap_decide"}
-    assert {item.rule for item in decided} == rules
+    decided = [item for item in files if item.rule == DECIDE]
+    assert decided
     for item in decided:
         behind = upstream(files, item)
         assert "tiny/dataset/slow.csv" in behind
@@ -195,9 +167,8 @@ def test_hold_out_files_are_never_upstream_of_what_decides(mode, request):
     assert {HELD_OUT, CHECKED} <= gap.input
 
 
-@pytest.mark.parametrize("mode", ["whole", "effects"])
-def test_an_edited_hold_out_record_is_checked_and_shown_again(mode, request):
-    workflow = request.getfixturevalue(mode)
+def test_an_edited_hold_out_record_is_checked_and_shown_again(whole):
+    workflow = whole
     data = workflow.folder / "tiny" / "dataset"
     kept = (data / "unseen.csv").stat()
     edit(data / "unseen.csv")
@@ -206,7 +177,7 @@ def test_an_edited_hold_out_record_is_checked_and_shown_again(mode, request):
     os.utime(data / "unseen.csv", ns=(kept.st_atime_ns, kept.st_mtime_ns))
     kept = (data / "slow.csv").stat()
     edit(data / "slow.csv")
-    assert DECIDE & set(workflow.would_run(PAGE)) >= {"gap_start"}
+    assert DECIDE in workflow.would_run(PAGE)
     os.utime(data / "slow.csv", ns=(kept.st_atime_ns, kept.st_mtime_ns))
 
 
@@ -214,9 +185,8 @@ def test_a_check_leaves_nothing_of_the_hold_out_records(whole):
     assert (whole.folder / CHECKED).read_bytes() == b""
 
 
-@pytest.mark.parametrize("mode", ["whole", "effects"])
-def test_a_bad_hold_out_file_stops_the_run_before_the_search(tmp_path, config, mode):
-    workflow = configured(tmp_path, config, mode)
+def test_a_bad_hold_out_file_stops_the_run_before_the_search(tmp_path, config):
+    workflow = configured(tmp_path, config)
     file = tmp_path / "tiny" / "dataset" / "unseen.csv"
     lines = file.read_text().splitlines()
     lines[8] = "0.0014,nan,1"
@@ -231,16 +201,16 @@ def test_a_bad_hold_out_file_stops_the_run_before_the_search(tmp_path, config, m
 
 
 def test_an_edited_simulator_is_tried_again(tmp_path, config):
-    workflow = configured(tmp_path, config, "whole")
+    workflow = configured(tmp_path, config)
     (tmp_path / "rig.py").write_text("def run(u, dt):\n    return 2 * u\n")
     (about,) = config["gap"]["datasets"]
     about["model"] = "rig:run"
     workflow.configure(config)
-    start = "results/gap/tiny/stages/round-0.json"
-    assert workflow.run(start) == {"gap_start": 1}
-    assert workflow.would_run(start) == {}
+    base = "results/gap/tiny/stages/base.yaml"
+    assert workflow.run(base) == {"gap_decide": 1}
+    assert workflow.would_run(base) == {}
     edit(tmp_path / "rig.py")
-    assert workflow.would_run(start) == {"gap_start": 1}
+    assert workflow.would_run(base) == {"gap_decide": 1}
 
 
 def edit(file):

@@ -12,11 +12,7 @@ GAP_EXPERIMENT = (
     f"{GAP_CASE}/next-experiment" if config["gap"].get("write_experiment") else ""
 )
 # Effects are found by name, so that no import tells of them.
-EFFECTS = {
-    name.rpartition(".")[2].replace("_", "-"): name
-    for name in sorted(GRAPH.find_children("hystbench.gap.effects"))
-    if name != "hystbench.gap.effects.base"
-}
+EFFECTS = sorted(GRAPH.find_children("hystbench.gap.effects"))
 # What each case is made of. Fit records are inputs of all jobs, hold-out records of
 # `gap_check` and `gap_show` alone (and of the job that writes the twin's dataset).
 GAP_CASES = {}
@@ -89,8 +85,6 @@ for GIVEN in config["gap"]["datasets"]:
 
 wildcard_constraints:
     case="|".join(map(re.escape, GAP_CASES)) or "none",
-    effect="|".join(EFFECTS),
-    round="[1-9]",
 
 
 # Whether all files can be used, before a search is paid: it goes first, and where it
@@ -119,92 +113,15 @@ rule gap_check:
         " 2> {log:q}"
 
 
-# The base, read or identified, and the floor.
-rule gap_start:
-    input:
-        dataset=of_case("dataset"),
-        fit=of_case("fit"),
-        model=model_of_case,
-        code=code("hystbench.commands.gap_start"),
-    output:
-        base=f"{STAGES}/base.yaml",
-        start=f"{STAGES}/round-0.json",
-    log:
-        f"{RESULTS}/logs/gap/{{case}}/start.log",
-    benchmark:
-        f"{RESULTS}/logs/benchmarks/gap/{{case}}/start.tsv"
-    params:
-        model=of_case("model"),
-    message:
-        "base of {wildcards.case}"
-    shell:
-        "hystbench gap-start {input.dataset:q} --model {params.model:q}"
-        " --base {output.base:q} --out {output.start:q} 2> {log:q}"
-
-
-if config["gap"]["jobs"] == "effects":
-
-    # One job an effect and round. It needs no other effect's file: an edited effect
-    # is tried again alone.
-    rule gap_candidate:
-        input:
-            dataset=of_case("dataset"),
-            fit=of_case("fit"),
-            base=rules.gap_start.output.base,
-            before=lambda wildcards: (
-                f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
-            ),
-            code=lambda wildcards: code(
-                "hystbench.commands.gap_candidate", EFFECTS[wildcards.effect]
-            ),
-        output:
-            f"{STAGES}/round-{{round}}/{{effect}}.json",
-        log:
-            f"{RESULTS}/logs/gap/{{case}}/round-{{round}}/{{effect}}.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/gap/{{case}}/round-{{round}}/{{effect}}.tsv"
-        message:
-            "{wildcards.effect} on {wildcards.case}, round {wildcards.round}"
-        shell:
-            "hystbench gap-candidate {wildcards.effect:q} --dataset {input.dataset:q}"
-            " --base {input.base:q} --before {input.before:q} --out {output:q} 2> {log:q}"
-
-    # How many rounds there are is known when the last is done.
-    checkpoint gap_choose:
-        input:
-            dataset=of_case("dataset"),
-            fit=of_case("fit"),
-            base=rules.gap_start.output.base,
-            before=lambda wildcards: (
-                f"{GAP}/{wildcards.case}/stages/round-{int(wildcards.round) - 1}.json"
-            ),
-            candidates=expand(
-                f"{STAGES}/round-{{{{round}}}}/{{effect}}.json",
-                effect=EFFECTS,
-                allow_missing=True,
-            ),
-            code=code("hystbench.commands.gap_choose", *EFFECTS.values()),
-        output:
-            f"{STAGES}/round-{{round}}.json",
-        log:
-            f"{RESULTS}/logs/gap/{{case}}/round-{{round}}.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/gap/{{case}}/round-{{round}}.tsv"
-        message:
-            "choice on {wildcards.case}, round {wildcards.round}"
-        shell:
-            "hystbench gap-choose {input.candidates:q} --dataset {input.dataset:q}"
-            " --base {input.base:q} --before {input.before:q} --out {output:q} 2> {log:q}"
-
-
+# What is named, from the fit records alone.
 rule gap_decide:
     input:
         dataset=of_case("dataset"),
         fit=of_case("fit"),
-        base=rules.gap_start.output.base,
-        named=last_round,
-        code=code("hystbench.commands.gap_decide", *EFFECTS.values()),
+        model=model_of_case,
+        code=code("hystbench.commands.gap_decide", *EFFECTS),
     output:
+        base=f"{STAGES}/base.yaml",
         curves=f"{GAP_CASE}/curves.json",
         named=f"{STAGES}/named.json",
         decision=f"{STAGES}/decision.json",
@@ -214,9 +131,7 @@ rule gap_decide:
     benchmark:
         f"{RESULTS}/logs/benchmarks/gap/{{case}}/decide.tsv"
     params:
-        named=lambda wildcards, input: (
-            f"--named {shlex.quote(input.named)}" if input.named else ""
-        ),
+        model=of_case("model"),
         limits=limits_of_case,
         unnamed_share=config["gap"]["unnamed_share"],
         experiment=lambda wildcards, output: (
@@ -228,7 +143,7 @@ rule gap_decide:
     message:
         "verdict on {wildcards.case}"
     shell:
-        "hystbench gap-decide {input.dataset:q} --base {input.base:q} {params.named}"
+        "hystbench gap-decide {input.dataset:q} --model {params.model:q}"
         " {params.limits} --unnamed-share {params.unnamed_share} {params.experiment}"
         " --out {params.folder:q} 2> {log:q}"
 
@@ -241,10 +156,10 @@ rule gap_show:
         dataset=of_case("dataset"),
         fit=of_case("fit"),
         hold_out=of_case("hold_out"),
-        base=rules.gap_start.output.base,
+        base=rules.gap_decide.output.base,
         named=rules.gap_decide.output.named,
         decision=rules.gap_decide.output.decision,
-        code=code("hystbench.commands.gap_show", *EFFECTS.values()),
+        code=code("hystbench.commands.gap_show", *EFFECTS),
     output:
         gap=f"{GAP_CASE}/gap.json",
         model=f"{GAP_CASE}/model.yaml",

@@ -30,14 +30,3 @@ def limits_of_case(wildcards):
     return " ".join(
         f"--limit-{name}={value}" for name, value in limits.items() if value is not None
     )
-
-
-def last_round(wildcards):
-    """The progress after the last round; nothing where one job names all effects."""
-    if config["gap"]["jobs"] == "whole":
-        return []
-    for number in range(1, 10):
-        done = checkpoints.gap_choose.get(case=wildcards.case, round=number).output[0]
-        if json.loads(Path(done).read_text())["done"]:
-            return done
-    raise ValueError(f"{wildcards.case}: more rounds than there may be effects")

@@ -7,20 +7,15 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases import written_base
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.bases import load_base
+from hystbench.gap.evidence import check_units, load_evidence
 from hystbench.gap.jobs import decide_in
 from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
 @click.argument("dataset", type=options.DATASET)
-@click.option("--base", type=options.FILE, required=True, help="Model file.")
-@click.option(
-    "--named",
-    type=options.FILE,
-    help="Progress after the last round; without it effects are named here.",
-)
+@click.option("--model", required=True, help="As for hystbench gap.")
 @options.write_experiment
 @options.limits
 @options.unnamed_share
@@ -28,8 +23,7 @@ from hystbench.gap.wanted import write_wanted
 @options.kept_calls
 def gap_decide(
     dataset: Path,
-    base: Path,
-    named: Path | None,
+    model: str,
     write_experiment: Path | None,
     limit_low: float | None,
     limit_high: float | None,
@@ -37,17 +31,19 @@ def gap_decide(
     unnamed_share: float,
     out: Path,
 ) -> None:
-    """Decide what BASE lacks beside the fit records of DATASET; opens no other.
+    """Decide what MODEL lacks beside the fit records of DATASET; opens no other.
 
-    Writes curves.json, stages/decision.json and stages/named.json to OUT.
+    Writes curves.json, and the base, what was named and the decision to OUT/stages.
     """
     evidence = load_evidence(dataset, "fit")
-    model = written_base(base, evidence)
+    base, note = load_base(model, evidence)
+    if note:
+        click.echo(note, err=True)
+    check_units(evidence, base, model)
     finding = decide_in(
         out,
         evidence,
-        model,
-        named,
+        base,
         unnamed_share=unnamed_share,
         limits=options.asked_limits(limit_low, limit_high, limit_rate),
         say=lambda line: click.echo(line, err=True),

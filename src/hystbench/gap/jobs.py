@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
@@ -17,15 +18,15 @@ from hystbench.gap.own_values import OwnValues
 from hystbench.gap.run import DECISIVE, SHOWN, outcome, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
-from hystbench.gap.stages import floor_mapping, named_by
 from hystbench.gap.start import start_state
 from hystbench.gap.unnamed import SHARE
 from hystbench.model import Model
 from hystbench.written import writes
 
+BASE = "stages/base.yaml"
 DECISION = "stages/decision.json"
 NAMED = "stages/named.json"
-DECIDED = ("curves.json", NAMED, DECISION)
+DECIDED = ("curves.json", BASE, NAMED, DECISION)
 """What the first of the two writes."""
 
 
@@ -33,7 +34,6 @@ def decide_in(
     folder: Path,
     evidence: Evidence,
     base: Model,
-    progress: Path | None,
     limits: Mapping[str, float] | None = None,
     say: Say = silent,
     unnamed_share: float = SHARE,
@@ -46,8 +46,6 @@ def decide_in(
     evidence : Evidence
         Only its fit records are read.
     base : Model
-    progress : Path or None
-        After the last round; None names the effects here.
     limits : mapping of str to float, optional
         Of the next experiment; what is not given is taken from the fit records.
     say : callable
@@ -58,16 +56,13 @@ def decide_in(
     writes(*(folder / name for name in DECIDED))
     asked = Limits.within(evidence.fit, limits) if limits else None
     start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
-    if progress is None:
-        named = name(start, floor.rms, say)
-    else:
-        named, floor = named_by(evidence, base, read_json(progress), start, say)
+    named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
     finding = decide(
         evidence.name, base, start, floor, named, say, asked, own, unnamed_share
     )
     kept = {
-        "floor": floor_mapping(floor),
+        "floor": asdict(floor),
         "state": state_mapping(finding.state),
         "rungs": [
             {"name": item.name, "state": state_mapping(item.state)}
@@ -76,6 +71,7 @@ def decide_in(
     }
     with whole_folder(folder, DECIDED) as fresh:
         write_json(fresh / "curves.json", finding.curves)
+        base.save(fresh / BASE)
         write_json(fresh / NAMED, kept)
         write_json(fresh / DECISION, finding.content)
     return finding

@@ -1,4 +1,4 @@
-"""How far naming has come, as JSON: so that one job goes on where another stopped.
+"""A model with its effects, as JSON: one job names them, another shows what they do.
 
 Arrays are not kept. They follow from the chain and the records, and are computed anew;
 effects give back the shapes of what lies beside a chain.
@@ -15,8 +15,6 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
-from hystbench.gap.name import Progress
-from hystbench.gap.rounds import Candidate, Look, Round, Tested
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Added, Free, State
@@ -27,13 +25,13 @@ Mapped = dict[str, Any]
 
 
 def state_mapping(state: State) -> Mapped:
-    """Give a model as far as it has come, as JSON holds it."""
+    """Give a model as JSON holds it."""
     at = state.corrected_at
     return {
         "hold": state.hold,
         "chain": _chain_mapping(state.chain),
         "free": [
-            item._asdict() | {"low": number(item.low), "high": number(item.high)}
+            item._asdict() | {"low": _number(item.low), "high": _number(item.high)}
             for item in state.free
         ],
         "added": [
@@ -77,7 +75,7 @@ class Restorer:
             tuple(
                 Free(
                     **item
-                    | {"low": limit(item["low"], -1), "high": limit(item["high"])}
+                    | {"low": _limit(item["low"], -1), "high": _limit(item["high"])}
                 )
                 for item in content["free"]
             ),
@@ -96,16 +94,6 @@ class Restorer:
             settled = State(chain, self.records, self.sample, hold=hold).settled()
             self._corrections[chain] = settled.correction
         return _replaced(state, beside, self._corrections[chain], chain)
-
-    def progress(self, content: Mapped) -> Progress:
-        """Give the progress that :func:`progress_mapping` wrote."""
-        return Progress(
-            self.state(content["state"]),
-            content["gap"],
-            tuple(self._round(item) for item in content["rounds"]),
-            content["deferred"],
-            content["closed"],
-        )
 
     def _block(self, content: Mapping[str, Any]) -> Block:
         ((name, values),) = content.items()
@@ -127,91 +115,15 @@ class Restorer:
             }
         )
 
-    def _round(self, content: Mapped) -> Round:
-        return Round(
-            self.state(content["before"]),
-            content["score"],
-            self._ranking(content),
-            content["taken"],
-            tuple(self._look(item) for item in content["looks"]),
-        )
 
-    def _look(self, content: Mapped) -> Look:
-        return Look(
-            content["instead_of"],
-            tuple(content["beside"]),
-            self._ranking(content),
-            content["taken"],
-        )
-
-    def _ranking(self, content: Mapped) -> tuple[Candidate, ...]:
-        return tuple(self._candidate(item) for item in content["ranking"])
-
-    def _candidate(self, content: Mapped) -> Candidate:
-        state = content["state"]
-        own: Mapped = {
-            "score": limit(content["score"]),
-            "state": None if state is None else self.state(state),
-            "variants": tuple(
-                Tested(place, form, position, limit(score))
-                for place, form, position, score in content["variants"]
-            ),
-        }
-        return Candidate(**content | own)
-
-
-def progress_mapping(progress: Progress) -> Mapped:
-    """Give how far naming has come, as JSON holds it."""
-    return {
-        "done": progress.done,
-        "gap": progress.gap,
-        "deferred": progress.deferred,
-        "closed": progress.closed,
-        "state": state_mapping(progress.state),
-        "rounds": [
-            {
-                "before": state_mapping(one.before),
-                "score": one.score,
-                "ranking": [_candidate_mapping(item) for item in one.ranking],
-                "taken": one.taken,
-                "looks": [_look_mapping(item) for item in one.looks],
-            }
-            for one in progress.rounds
-        ],
-    }
-
-
-def number(value: float) -> float | None:
+def _number(value: float) -> float | None:
     """Give a number, or None for an infinite one: JSON has none."""
     return float(value) if np.isfinite(value) else None
 
 
-def limit(value: float | None, sign: int = 1) -> float:
+def _limit(value: float | None, sign: int = 1) -> float:
     """Give a number back, and infinity for None."""
     return sign * float("inf") if value is None else value
-
-
-def _look_mapping(look: Look) -> Mapped:
-    return {
-        "instead_of": look.instead_of,
-        "beside": list(look.beside),
-        "ranking": [_candidate_mapping(item) for item in look.ranking],
-        "taken": look.taken,
-    }
-
-
-def _candidate_mapping(item: Candidate) -> Mapped:
-    return {
-        "effect": item.effect,
-        "place": item.place,
-        "form": item.form,
-        "score": number(item.score),
-        "gain": item.gain,
-        "state": None if item.state is None else state_mapping(item.state),
-        "declined": item.declined,
-        "held_back": item.held_back,
-        "variants": [[*x[:3], number(x.score)] for x in item.variants],
-    }
 
 
 def _block_mapping(block: Block) -> Mapped:

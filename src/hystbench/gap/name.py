@@ -25,7 +25,6 @@ from hystbench.gap.thresholds import (
     PAYS,
     SHAPE,
 )
-from hystbench.gap.work import IN_PROCESS, Work
 
 LITTLE = "what the effects leave of a slightly wrong shape is most of it"
 
@@ -165,7 +164,6 @@ def advance(
     floor_rms: float,
     say: Say,
     shape_first: bool = False,
-    work: Work = IN_PROCESS,
 ) -> Progress:
     """Try every effect beside the model and add the one that pays, if any does."""
     floor, state = floor_rms**2, progress.state
@@ -177,7 +175,7 @@ def advance(
     if closed:
         say("nothing is left that an effect could gain")
         return replace(progress, closed=True)
-    ranking = rank(state, score, work=work)
+    ranking = rank(state, score)
     deferred = progress.deferred
     if _shape_takes_more(ranking, state, floor):
         deferred = True

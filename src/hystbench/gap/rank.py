@@ -13,12 +13,12 @@ from hystbench.errors import InputError
 from hystbench.gap.change import at_end
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
-from hystbench.gap.fit import score_of
+from hystbench.gap.fit import added, finished, score_of
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.reshape import orthonormal
 from hystbench.gap.rounds import Candidate, Tested, in_order
 from hystbench.gap.score import Score
-from hystbench.gap.search import Trial
+from hystbench.gap.search import Trial, Tried, fine, tried
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import (
     EXACT,
@@ -29,7 +29,6 @@ from hystbench.gap.thresholds import (
     STILL,
     WORSE,
 )
-from hystbench.gap.work import IN_PROCESS, Tried, Work
 
 
 def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
@@ -51,7 +50,6 @@ def rank(
     state: State,
     score: Score,
     known: Sequence[Effect] | None = None,
-    work: Work = IN_PROCESS,
     folds: bool = True,
 ) -> tuple[Candidate, ...]:
     """Try every effect beside a model, the likely ones to the end.
@@ -62,7 +60,6 @@ def rank(
     score : Score
     known : sequence of Effect, optional
         All by default.
-    work : Work
     folds : bool
         Whether finalists that pay are judged anew on records held back.
 
@@ -82,7 +79,7 @@ def rank(
     others = [effect for effect in known if effect.name not in have]
     found: list[Tried] = []
     for effect in others:
-        trials, why = work.tried(effect, state, score)
+        trials, why = tried(effect, state, score)
         found += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
@@ -91,7 +88,7 @@ def rank(
     best = min(trial.score for _, trial in found)
     reach = max(NEAR, (now - best) * STILL)
     refined = [
-        work.fine(attempt, trial) if trial.score < best + reach else trial
+        fine(attempt, trial) if trial.score < best + reach else trial
         for attempt, trial in found
     ]
     refined.sort(key=lambda trial: trial.score)
@@ -106,7 +103,7 @@ def rank(
         if number < FINALISTS
         or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
     ]
-    judged = [_judged(trial, state, score, now, work) for trial in likely]
+    judged = [_judged(trial, state, score, now) for trial in likely]
     judged += [
         _candidate(trial, now)
         for trial in of_effect.values()
@@ -122,7 +119,7 @@ def rank(
         if item.score < candidates[0].score + NEAR
     ]
     candidates = in_order(
-        exactly(item, score, now, work) if item.effect in exact else item
+        exactly(item, score, now) if item.effect in exact else item
         for item in candidates
     )
     if not folds:
@@ -135,7 +132,7 @@ def rank(
     while candidates and candidates[0].effect not in exact and candidates[0].held_back:
         first = candidates.pop(0)
         exact.append(first.effect)
-        again = on_folds(exactly(first, score, now, work), state, score)
+        again = on_folds(exactly(first, score, now), state, score)
         candidates = in_order([again, *candidates])
     return (*candidates, *declined)
 
@@ -152,9 +149,7 @@ def _candidate(trial: Trial, now: float) -> Candidate:
     return Candidate(variant.effect, variant.place, variant.form, trial.score, gain)
 
 
-def _judged(
-    trial: Trial, state: State, score: Score, now: float, work: Work
-) -> Candidate:
+def _judged(trial: Trial, state: State, score: Score, now: float) -> Candidate:
     """Add an effect that gains anything, refit all together, and say what is wrong."""
     variant = trial.variant
     item = _candidate(trial, now)
@@ -165,7 +160,7 @@ def _judged(
         return Candidate(variant.effect, variant.place, declined=why)
 
     try:
-        after, value = work.added(state, trial, score)
+        after, value = added(state, trial, score)
     except InputError as error:
         return declined(f"fits best where {error}")
     end = at_end(after, variant)
@@ -192,12 +187,12 @@ def _not_cut_short(item: Candidate, state: State) -> Candidate:
     return Candidate(item.effect, item.place, declined=USED_UP)
 
 
-def exactly(item: Candidate, score: Score, now: float, work: Work) -> Candidate:
+def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     """Simulate a candidate exactly: what steps of time miss may look like an effect."""
     if item.state is None:
         return item
     try:
-        after, value = work.finished(item.state, score)
+        after, value = finished(item.state, score)
     except CallsUsedUp as error:
         return Candidate(item.effect, item.place, declined=str(error))
     return replace(item, state=after, score=value, gain=now - value)
