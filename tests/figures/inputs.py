@@ -16,6 +16,8 @@ from hystbench.record import Channel, FloatArray, Record
 from hystbench.results import run_result, save_run
 
 SIGNALS = ("sine-010hz", "sine-020hz", "sine-040hz")
+#: Of a hold-out record in the folder of a gap.
+TABLE = f"{SIGNALS[0]}.csv"
 HALVES = ("calibrated", "held-out", "calibrated")
 MODELS = ("gpo", "backlash", "volterra", "delayed", "rdgpi")
 #: The run that diverged, after this many samples.
@@ -160,6 +162,14 @@ def write_blind(folder: Path) -> None:
     _write(folder / "reliability.csv", ["from", "to", "stated", *interval], bins)
 
 
+def write_gap(folder: Path, record: Record) -> None:
+    """Write a hold-out table and what was named: the simulator is 1 um too high."""
+    columns = ["time_s", "measured", "before", "after"]
+    rows = [[t, y, y + 1.0, y] for t, y in zip(record.time, record.y, strict=True)]
+    _write(folder / "holdout" / TABLE, columns, rows)
+    write_json(folder / "gap.json", {"effects": [{"name": "sensor-lag"}]})
+
+
 def write_identified(path: Path, record: Record) -> None:
     """Run a short Algorithm 1 on a record."""
     found = identify(
@@ -195,6 +205,7 @@ class Inputs:
         write_step_edges(folder / "edges.csv")
         write_contest(folder / "contest.csv")
         write_blind(folder / "blind")
+        write_gap(folder / "gap", self.records[SIGNALS[0]])
         write_identified(folder / "identified.json", self.records[SIGNALS[0]])
 
     def record(self, *names: str) -> list[Path]:
@@ -230,6 +241,7 @@ class Inputs:
             "errors-heat-map": {"table": self.folder / "cells.csv"},
             "contest": {"table": self.folder / "contest.csv"},
             "step-edges": {"table": self.folder / "edges.csv"},
+            "gap-loop": one | {"table": self.folder / "gap/holdout" / TABLE},
             "blind-confusion": {"table": self.folder / "blind" / "confusion.csv"},
             "blind-effects": {"table": self.folder / "blind" / "effects.csv"},
             "blind-power": {"table": self.folder / "blind" / "power.csv"},

@@ -313,3 +313,15 @@ def test_contest_has_a_panel_for_each_twin_and_algorithm(inputs):
         assert len(hollow) == len(SIGNALS) * 4
         assert len(marks) == 2 * len(hollow)
     assert "diverged" in legend(figure)
+
+
+def test_a_gap_is_drawn_before_and_after_with_the_name(inputs):
+    """The table's simulator lies 1 um above the record; nothing is left after."""
+    before, after = draw("gap-loop", **inputs.of("gap-loop")).axes
+    offs = [
+        np.unique(np.round(axes.lines[1].get_ydata() - axes.lines[0].get_ydata(), 9))
+        for axes in (before, after)
+    ]
+    assert [off.tolist() for off in offs] == [[1.0], [0.0]]
+    assert "1 µm rms off" in before.get_title(loc="left") + before.get_title()
+    assert "sensor-lag" in after.get_title(loc="left") + after.get_title()

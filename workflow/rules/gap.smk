@@ -198,6 +198,35 @@ rule gap_report:
         "hystbench gap-report {params.folder:q} 2> {log:q}"
 
 
+if TWIN:
+    # The last sine that is held out, before and after.
+    SHOWN = [
+        *config["gap"]["twin"]["hold_out"][:1],
+        *(name for name in config["gap"]["twin"]["hold_out"] if "sine-" in name[:5]),
+    ][-1]
+
+    rule draw_gap_loop:
+        input:
+            record=record(SHOWN),
+            gap=f"{GAP}/twin/gap.json",
+            hold_out=f"{GAP}/twin/holdout",
+            code=code("hystbench.commands.figure", "hystbench.figures.gap_loop"),
+            style=PACKAGE / "figures" / "hystbench.mplstyle",
+        output:
+            png=f"{GAP}/gap-loop.png",
+            svg=f"{GAP}/gap-loop.svg",
+        log:
+            f"{RESULTS}/logs/gap/gap-loop.log",
+        params:
+            table=f"{GAP}/twin/holdout/{SHOWN}.csv",
+        message:
+            f"{SHOWN} before and after"
+        shell:
+            "hystbench figure gap-loop --record {input.record:q}"
+            " --table {params.table:q} --out {output.png:q} --out {output.svg:q}"
+            " 2> {log:q}"
+
+
 # Verdicts side by side, and what the twin's model file adds to its hysteresis: no
 # other job reads that file.
 rule gap_summary:
@@ -232,5 +261,6 @@ rule gap:
     input:
         rules.gap_summary.output,
         expand(rules.gap_report.output, case=GAP_CASES),
+        rules.draw_gap_loop.output if TWIN else [],
     message:
         f"{GAP} is up to date"

@@ -32,6 +32,7 @@ NAMES = (
     "step-edges",
     "loops",
     "errors-by-record",
+    "gap-loop",
     "blind-confusion",
     "blind-effects",
     "blind-power",

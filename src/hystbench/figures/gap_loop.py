@@ -1,0 +1,72 @@
+"""A loop of a hold-out record: the simulator, and the same with what it lacked."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hystbench.errors import InputError
+from hystbench.figures import style
+from hystbench.figures.data import last_cycles
+from hystbench.record import load_record
+
+_CYCLES = 1
+
+
+def draw(*, records: Sequence[Path], table: Path) -> Figure:
+    """Draw the last cycle of a record, before on the left and after on the right.
+
+    Parameters
+    ----------
+    records : sequence of Path
+        The archive of the record that was held out.
+    table : Path
+        Its table in the folder ``holdout`` of a gap, beside the gap's ``gap.json``.
+
+    Raises
+    ------
+    InputError
+        If there is not one record, or its samples are not those of the table.
+    """
+    if len(records) != 1:
+        raise InputError(f"{len(records)} records; expected one --record")
+    record = load_record(records[0])
+    before, after = np.loadtxt(
+        table, delimiter=",", skiprows=1, usecols=(2, 3), unpack=True, ndmin=2
+    )
+    if len(before) != len(record):
+        raise InputError(
+            f"{table}: {len(before)} rows; expected the {len(record)} samples of "
+            f"record {record.name}"
+        )
+    gap = json.loads((table.parents[1] / "gap.json").read_text(encoding="utf-8"))
+    names = " and ".join(item["name"] for item in gap["effects"]) or "nothing added"
+    part = last_cycles(record, _CYCLES)
+    figure = Figure(figsize=(style.PAGE, 3.0))
+    panels = figure.subplots(1, 2, sharex=True, sharey=True)
+    lines = {"the simulator": before, f"with {names}": after}
+    looks: list[dict[str, Any]] = [{"color": style.VERMILION}, {"color": style.BLUE}]
+    for axes, (title, output), look in zip(panels, lines.items(), looks, strict=True):
+        axes.plot(record.u[part], record.y[part], **style.BEHIND)
+        axes.plot(record.u[part], output[part], **look)
+        left = np.sqrt(np.mean((record.y - output) ** 2))
+        unit = style.unit_text(record.output.unit)
+        axes.set_title(f"{title}: {left:.2g} {unit} rms off")
+        axes.set_xlabel(style.axis_label(record.input))
+    panels[0].set_ylabel(style.axis_label(record.output))
+    title = f"{style.signal_title(record.name)}, {record.origin}"
+    style.legend_above(
+        figure,
+        [
+            Line2D([], [], label=title, **style.BEHIND),
+            Line2D([], [], label="simulator", **looks[0]),
+            Line2D([], [], label=f"simulator with {names}", **looks[1]),
+        ],
+    )
+    return figure
