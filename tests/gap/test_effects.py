@@ -557,3 +557,19 @@ def test_a_tone_beyond_half_the_sampling_rate_stands_for_nothing():
     }
     assert np.abs(beside.columns(fast, {"frequency_hz": 50.0}, 1)).max() > 0.9
     assert not beside.columns(slow, {"frequency_hz": 50.0}, 1).any()
+
+
+def test_a_light_mode_between_the_points_of_the_grid_is_looked_for():
+    """A mode as wide as a fiftieth of its frequency, beside a base that lags wrongly."""
+    noise = np.random.default_rng(0).normal(size=2000)
+    wide = (record(noise, name="wide", dt=1e-3),)
+    grid = logarithmic(1.0, 450.0, 6)
+    hertz = float(np.sqrt(grid[10] * grid[11]))
+    light = block(
+        "resonance", frequency_hz=hertz, damping_ratio=0.01, participation=0.1
+    )
+    lag, gain = block("drive-lag", time_constant_s=1e-4), block("gain", value=12.0)
+    state = state_of((gain,), measured((lag, gain, light), 0.01, given=wide))
+    (variant,) = effects()["resonance"].variants(state.scene)
+    near = np.abs(np.log(variant.grids["frequency_hz"] / hertz))
+    assert near.min() < 0.02
