@@ -106,7 +106,7 @@ def smoothed_squared_error(e: ArrayLike, window: int) -> FloatArray:
     ends = blocks[:, ::-1].cumsum(axis=1)[:, ::-1].ravel()[:count]
     starts = blocks.cumsum(axis=1).ravel()[window - 1 : window - 1 + count]
     starts[::window] = 0.0  # where the end is the whole block
-    return (ends + starts) / window
+    return np.asarray((ends + starts) / window)
 
 
 def _some(name: str, values: ArrayLike) -> FloatArray:
