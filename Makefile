@@ -24,6 +24,9 @@ help:
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
 	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm and what was written to results"
 
+# Each of hundreds of jobs would compile the package anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 # Look first, so that what is missing is said in one line and not by a compiler.
 $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
 	@command -v $(PYTHON) >/dev/null || { echo "hystbench needs Python 3.11 ('$(PYTHON)' was not found; name another with PYTHON=...)" >&2; exit 1; }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -19,20 +20,37 @@ from tests.test_layouts import Layout, content, lay
 PATIENCE_S = 60
 
 
-def started(code: str, cwd: Path, *arguments: object) -> subprocess.Popen[str]:
-    """Begin a program that calls the command line, with SIGINT as in a terminal."""
+@pytest.fixture
+def at(tmp_path_factory):
+    """A file that a started program makes when it is at the moment in question."""
+    return tmp_path_factory.mktemp("moment") / "at"
+
+
+@pytest.fixture
+def start(at):
+    """Begin programs that call the command line; none outlives its test."""
+    begun = []
 
     def as_in_a_terminal():
         signal.signal(signal.SIGINT, signal.SIG_DFL)
 
-    return subprocess.Popen(
-        [sys.executable, "-c", code, *map(str, arguments)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=cwd,
-        preexec_fn=as_in_a_terminal,
-    )
+    def start(code: str, cwd: Path, *arguments: object) -> subprocess.Popen[str]:
+        process = subprocess.Popen(
+            [sys.executable, "-c", code, *map(str, arguments)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=cwd,
+            env=os.environ | {"AT": str(at)},
+            preexec_fn=as_in_a_terminal,
+        )
+        begun.append(process)
+        return process
+
+    yield start
+    for process in begun:
+        process.kill()
+        process.communicate()
 
 
 def wait_for(path: Path) -> None:
@@ -51,13 +69,17 @@ def ended(process: subprocess.Popen[str], *signals: int) -> str:
     return said
 
 
-#: The command line, in which ``at`` says that it is at the moment in question.
+#: The command line, in which ``at`` says that it is at the moment in question. To
+#: sleep is to sleep in slices: Python sees a signal that comes between its last look
+#: and the system's call only when the call ends.
 BEGIN = """
-import sys, time
+import os, sys, time
 from pathlib import Path
 import hystbench.cli as cli
-at = lambda: Path("at").touch()
-wait = lambda: (at(), time.sleep(60))
+at = Path(os.environ["AT"]).touch
+def sleep():
+    for _ in range(6000): time.sleep(0.01)
+wait = lambda: (at(), sleep())
 """
 #: Each moment, as a change of the program that comes there and stays.
 MOMENTS = {
@@ -88,7 +110,7 @@ import hystbench.dataset as dataset
 import ctypes
 libc = ctypes.CDLL(None)
 def kernel(*given):
-    at(); libc.usleep(500_000); time.sleep(60)
+    at(); libc.usleep(500_000); sleep()
 dataset._read_columns = kernel
 """,
     "dropped": """
@@ -116,8 +138,9 @@ atexit.register(wait)
 """,
     "last threads": """
 import threading
-threading.Thread(target=time.sleep, args=(60,)).start()
-import atexit, threading
+def live():
+    time.sleep(0.01); threading.Thread(target=live).start()
+live()
 threading._register_atexit(at)
 """,
 }
@@ -133,16 +156,15 @@ def bench(tmp_path_factory):
 
 
 @pytest.mark.parametrize("moment", MOMENTS)
-def test_ctrl_c_is_one_line_at_whatever_moment(bench, tmp_path, moment):
+def test_ctrl_c_is_one_line_at_whatever_moment(bench, start, at, moment):
     before = files(bench)
-    process = started(
+    process = start(
         f"{BEGIN}{MOMENTS[moment]}\ncli.main()",
         bench,
         *("load", "data", "a", "--out", "a.npz"),
     )
-    wait_for(bench / "at")
+    wait_for(at)
     said = ended(process, signal.SIGINT)
-    (bench / "at").unlink()
     assert said == "hystbench: interrupted\n"
     assert files(bench) == before
     assert is_ours(bench / "a.npz")
@@ -174,14 +196,13 @@ cli.main()
 """
 
 
-def test_files_that_take_their_places_do_so_together(tmp_path):
+def test_files_that_take_their_places_do_so_together(tmp_path, start, at):
     """Two signals come on the way; they are heard when all files are there."""
     for name in ("a.txt", "b.txt"):
         write_text(tmp_path / "out" / name, "old")
-    process = started(BEGIN + PLACES, tmp_path)
-    wait_for(tmp_path / "at")
+    process = start(BEGIN + PLACES, tmp_path)
+    wait_for(at)
     assert ended(process, signal.SIGINT, signal.SIGINT) == "hystbench: interrupted\n"
-    (tmp_path / "at").unlink()
     new = {f"out/{name}.txt": b"new".hex() for name in "bcd"}
     assert files(tmp_path) == new
 
@@ -189,32 +210,32 @@ def test_files_that_take_their_places_do_so_together(tmp_path):
 NEVER = """
 def run():
     try: wait()
-    finally: Path("tidied").touch(); time.sleep(60)
+    finally: Path("tidied").touch(); sleep()
 cli.run = run
 cli.main()
 """
 
 
-def test_who_asks_twice_waits_for_nothing(tmp_path):
-    process = started(BEGIN + NEVER, tmp_path)
-    wait_for(tmp_path / "at")
+def test_who_asks_twice_waits_for_nothing(tmp_path, start, at):
+    process = start(BEGIN + NEVER, tmp_path)
+    wait_for(at)
     process.send_signal(signal.SIGINT)
     wait_for(tmp_path / "tidied")
     assert ended(process, signal.SIGINT) == "hystbench: interrupted\n"
 
 
-def test_a_request_to_end_is_one_line_too(tmp_path):
-    process = started(BEGIN + "cli.run = wait\ncli.main()", tmp_path)
-    wait_for(tmp_path / "at")
+def test_a_request_to_end_is_one_line_too(tmp_path, start, at):
+    process = start(BEGIN + "cli.run = wait\ncli.main()", tmp_path)
+    wait_for(at)
     assert ended(process, signal.SIGTERM) == "hystbench: interrupted\n"
 
 
-def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
+def test_a_signal_that_is_ignored_stays_ignored(tmp_path, start, at):
     """As that of a job in the background of a shell script."""
     code = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
     code += BEGIN + "cli.run = lambda: (at(), time.sleep(0.5), 0)[-1]\ncli.main()"
-    process = started(code, tmp_path)
-    wait_for(tmp_path / "at")
+    process = start(code, tmp_path)
+    wait_for(at)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, said) == (0, "")

@@ -40,6 +40,15 @@ def test_smoothed_squared_error_by_hand():
     assert smooth == pytest.approx([2.5, 6.5, 12.5])
 
 
+@pytest.mark.parametrize("window", [1, 3, 4, 7, 10])
+def test_smoothed_squared_error_is_the_mean_of_each_window(window):
+    """Small squares stay exact beside large ones, as after a filter has converged."""
+    e = np.array([1e6, 3e5, 2.0, 1e-6, 3e-6, 2e-6, 1e-6, 5e-6, 4e-6, 1e-6])
+    smooth = smoothed_squared_error(e, window)
+    means = [mean_square_error(e[k : k + window]) for k in range(11 - window)]
+    assert smooth == pytest.approx(means, rel=1e-14, abs=0)
+
+
 def test_smoothed_squared_error_over_all_is_the_mean_square_error():
     e = [1.0, -2.0, 5.0]
     assert smoothed_squared_error(e, 3) == pytest.approx([mean_square_error(e)])

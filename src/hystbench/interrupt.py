@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from types import FrameType
 
 TOLD = "hystbench: interrupted"
-#: Seconds after which a signal that had to wait is looked at again.
+#: Seconds between two looks at a signal that has to wait.
 AGAIN_S = 0.01
 #: Added to a signal's number, as a shell does: 130 for Ctrl-C.
 STATUS = 128
@@ -40,7 +40,7 @@ class _State:
     since : float
         When it came, on the clock that never goes back.
     raised : bool
-        Whether it was raised, so that things are being tidied up.
+        Whether it was raised and not dropped, so that things are being tidied up.
     """
 
     held: int = 0
@@ -104,16 +104,28 @@ def end_at_once() -> None:
 
 def _come(number: int, frame: FrameType | None) -> None:
     again = number == signal.SIGALRM
+    if again and _state.raised:
+        return  # was on its way when the signal was raised
     if not again and _state.waiting and not _state.held:
         _end(number, frame)  # asked a second time
     if not again and not _state.waiting:
         _state.waiting, _state.since = number, time.monotonic()
     waited = time.monotonic() - _state.since
     if _state.held or (waited < LONGEST_S and _importing(frame)):
-        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+        _look_again()
         return
+    signal.setitimer(signal.ITIMER_REAL, 0)
     _state.raised = True
     raise Interrupted(_state.waiting)
+
+
+def _look_again() -> None:
+    """Look at the signal every now and then until it is raised.
+
+    Once would not do: Python sees a signal that comes just before a long call of the
+    system only when the call ends, and the next one ends the call.
+    """
+    signal.setitimer(signal.ITIMER_REAL, AGAIN_S, AGAIN_S)
 
 
 def _importing(frame: FrameType | None) -> bool:
@@ -127,7 +139,8 @@ def _importing(frame: FrameType | None) -> bool:
 def _dropped(about: sys.UnraisableHookArgs) -> None:
     """Bring a signal back whose exception could not be raised where it came."""
     if isinstance(about.exc_value, Interrupted):
-        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
+        _state.raised = False
+        _look_again()
     else:
         sys.__unraisablehook__(about)
 

@@ -98,8 +98,15 @@ def smoothed_squared_error(e: ArrayLike, window: int) -> FloatArray:
     squares = _some("e", e) ** 2
     if not 1 <= window <= len(squares):
         raise InputError(f"window: {window} given, 1 to {len(squares)} expected")
-    windows = np.lib.stride_tricks.sliding_window_view(squares, window)
-    return np.asarray(windows.mean(axis=1))
+    # A window is the end of one block of its length and the start of the next: both
+    # sums are had for all windows at once, and no sum is taken from a larger one.
+    count = len(squares) - window + 1
+    blocks = np.zeros((-(-len(squares) // window), window))
+    blocks.ravel()[: len(squares)] = squares
+    ends = blocks[:, ::-1].cumsum(axis=1)[:, ::-1].ravel()[:count]
+    starts = blocks.cumsum(axis=1).ravel()[window - 1 : window - 1 + count]
+    starts[::window] = 0.0  # where the end is the whole block
+    return np.asarray((ends + starts) / window)
 
 
 def _some(name: str, values: ArrayLike) -> FloatArray:

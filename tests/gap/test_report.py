@@ -598,7 +598,7 @@ def test_what_the_records_cannot_show_is_said_with_its_reason(tmp_path):
 def test_a_reader_is_told_of_a_promise_that_was_not_kept(tmp_path):
     told = "On the fit records 90 % of the gap's power is gone, here 50 %."
     short = {"fit": 0.9, "hold_out": 0.5, "sentence": told}
-    write_report(write_folder(tmp_path, {**GAP, "shortfall": short}))
+    write_report(write_folder(tmp_path, {**GAP, "shortfall": short}, False, False))
     said = read(tmp_path / "report.html").said
     assert told in said
     # Above all evidence, with the verdict.
@@ -631,7 +631,7 @@ def test_a_model_that_runs_away_is_said_to_and_drawn_without_it(tmp_path):
     gap["runs_away"] = [
         {"record": "held-2", "from_s": 0.3, "refused": None, "sentence": told}
     ]
-    write_folder(tmp_path, gap)
+    write_folder(tmp_path, gap, with_curves=False)
     table = tmp_path / "holdout" / "held-2.csv"
     rows = [line.split(",") for line in table.read_text().splitlines()]
     kept = [row if row[0] == "time_s" else [*row[:3], "nan"] for row in rows]

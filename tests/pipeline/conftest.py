@@ -8,6 +8,8 @@ import re
 import shutil
 import subprocess
 import sys
+import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -92,13 +94,41 @@ def jobs(printed: str) -> dict[str, int]:
     return {name: int(count) for name, count in rows if name != "all"}
 
 
+def made_once(tmp_path_factory, make: Callable[[Path], object]) -> Path:
+    """Make a folder in one of the processes that run the tests; the others wait."""
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        folder = tmp_path_factory.mktemp("first")
+        make(folder)
+        return folder
+    # As deep as the folders of each process.
+    shared = tmp_path_factory.getbasetemp().parent / "shared"
+    folder, ended = shared / "first", shared / "ended"
+    try:
+        folder.mkdir(parents=True)
+    except FileExistsError:
+        while not ended.exists():
+            time.sleep(0.1)
+        return folder
+    try:
+        make(folder)
+    finally:
+        ended.touch()
+    return folder
+
+
 @pytest.fixture(scope="session")
 def finished(tmp_path_factory) -> Workflow:
     """A folder in which the small config has run; tests copy it before they write."""
-    workflow = Workflow(tmp_path_factory.mktemp("workflow"))
-    workflow.configure(small_config())
-    workflow.run()
-    return workflow
+
+    def make(folder: Path) -> None:
+        workflow = Workflow(folder)
+        workflow.configure(small_config())
+        workflow.run()
+
+    first = made_once(tmp_path_factory, make)
+    folder = tmp_path_factory.mktemp("workflow")
+    shutil.copytree(first, folder, symlinks=True, dirs_exist_ok=True)
+    return Workflow(folder)
 
 
 @pytest.fixture

@@ -89,6 +89,8 @@ def in_style() -> Iterator[None]:
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PNG or SVG without date or version.
 
+    The layout is made once: a second format of a figure shows it in the same places.
+
     Raises
     ------
     InputError
@@ -100,6 +102,7 @@ def save(figure: Figure, path: Path) -> None:
         )
     with atomic_path(path) as temporary:
         figure.savefig(temporary, metadata=_METADATA[path.suffix])
+    figure.set_layout_engine("none")
 
 
 def unit_text(unit: str) -> str:

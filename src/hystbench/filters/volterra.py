@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
@@ -124,6 +125,12 @@ class VolterraFilter(AdaptiveFilter):
             largest = max(largest, float(np.einsum("ij,ij->i", taps, taps).max()))
         return largest
 
+    def tap_rms(self, x: ArrayLike) -> float:
+        """RMS over an input of the taps x(k-i)."""
+        chunks = [self._windows(line) for line in self._chunks(x)]
+        total = sum(float(np.einsum("ij,ij->", taps, taps)) for taps in chunks)
+        return math.sqrt(total / sum(taps.size for taps in chunks))
+
     def correction(self, power: float) -> float:
         """Share of an error that one update corrects, both parts together.
 
@@ -145,25 +152,25 @@ class VolterraFilter(AdaptiveFilter):
         output: FloatArray,
         error: FloatArray,
     ) -> tuple[int, End]:
-        if self.constant_tap:  # the kernel has none
-            return super()._adapt(line, d, weights, operators, limit, output, error)
         spare = -self.taps % TILE
+        parts = [self.taps, self.taps + self.taps**2]
+        taps, products, constant = np.split(weights, parts)
+        own = np.append(constant, 0.0)  # the kernel wants a place for its weight
         # the kernel's taps run from the oldest to the newest
-        newest_last = np.concatenate((np.zeros(spare), weights[: self.taps][::-1]))
+        newest_last = np.concatenate((np.zeros(spare), taps[::-1]))
         first = kernels.aligned(newest_last)
         second = np.zeros((len(first), len(first)))
-        square = weights[self.taps :].reshape(self.taps, self.taps)
-        second[spare:, spare:] = square[::-1, ::-1]
+        second[spare:, spare:] = products.reshape(self.taps, -1)[::-1, ::-1]
         packed, unmoved = _pack(second)
         rows = line[1 + self.history - len(first) :]
         sizes = (len(d), len(first) // TILE, self.taps)
         steps = (2 * self.step_size, 2 * self.second_order_step)
-        numbers = (*steps, self._kernel_regularization(), limit)
-        arrays = (first, packed, output, error)
+        numbers = (*steps, self.constant_tap, self._kernel_regularization(), limit)
+        arrays = (first, packed, own, output, error)
         taken = kernels.call("hb_lms_volterra", *sizes, rows, d, *numbers, *arrays)
         second = (_unpack(packed, len(first)) + unmoved)[spare:, spare:]
-        after = np.concatenate((first[spare:][::-1], second[::-1, ::-1].ravel()))
-        return taken, (after, operators)
+        after = np.concatenate((first[spare:][::-1], second[::-1, ::-1].ravel(), own))
+        return taken, (after[: self.size], operators)
 
 
 def _tiles(matrix: FloatArray) -> FloatArray:

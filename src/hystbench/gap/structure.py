@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.signal import lfilter
 
 from hystbench.gap.state import State
 from hystbench.operators import play
@@ -164,6 +163,8 @@ def _memory(dt: float, u: FloatArray, times: FloatArray) -> Columns:
 
 def low_pass(signal: FloatArray, dt: float, tau: float, start: float) -> FloatArray:
     """Send a signal through a first-order low-pass that has rested at ``start``."""
+    from scipy.signal import lfilter  # late: it takes long to load
+
     keep = float(np.exp(-dt / tau))
     passed, _ = lfilter([1 - keep], [1, -keep], signal, zi=[keep * start])
     return np.asarray(passed)

@@ -39,7 +39,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_lms_rows": (_SIZE, "iiaiaaffaaa"),
     "hb_lms_play": (None, "iiiaaiaaaffaaaaia"),
     "hb_play_rows": (None, "iiaaiaaa"),
-    "hb_lms_volterra": (_SIZE, "iiiaaffffaaaa"),
+    "hb_lms_volterra": (_SIZE, "iiiaafffffaaaaa"),
     "hb_state_space": (None, "iiiaaafaaa"),
     "hb_modes": (_SIZE, "iiaaafaaa"),
     "hb_slew_limit": (None, "ifaa"),

@@ -7,6 +7,8 @@
  * corrects the weights for sample k-2 and predicts sample k; what the correction for
  * sample k-1 adds to it is step1 g + step2 g^2 times the error, g = x(k-1)'x(k),
  * since the products' own product is g^2 (see lms.c).
+ *
+ * A constant tap, if it is not zero, has a weight of its own, own[0].
  */
 #include "lanes.h"
 
@@ -78,8 +80,9 @@ INLINE double product(const double *a, const double *b, index_t parts)
 
 INLINE index_t lms_volterra(index_t n, index_t taps, const double *line,
                             const double *d, double step1, double step2,
-                            double regularization, double limit, double *first,
-                            double *second, double *y, double *e, index_t parts)
+                            double constant, double regularization, double limit,
+                            double *first, double *second, double *own, double *y,
+                            double *e, index_t parts)
 {
     const index_t size = PART * parts, padding = size - taps;
     double windows[3][size] ALIGNED, used[size] ALIGNED;
@@ -98,6 +101,10 @@ INLINE index_t lms_volterra(index_t n, index_t taps, const double *line,
         double before =
             sweep(x, oldest, step1 * older, step2 * older, first, second, parts);
         double output = before + correction * (step1 * g + step2 * g * g);
+        if (constant) {
+            own[0] += step1 * correction * constant;
+            output += own[0] * constant;
+        }
         double error = d[k] - output;
         older = correction;
         correction = 0;
@@ -111,24 +118,27 @@ INLINE index_t lms_volterra(index_t n, index_t taps, const double *line,
         correction = error;
         if (regularization >= 0) {
             double power = product(last, last, parts); /* products': its square */
-            correction *= 1 / (regularization + power + power * power);
+            power += power * power + constant * constant;
+            correction *= 1 / (regularization + power);
         }
     }
     /* the two corrections still owed; the outputs go nowhere */
     sweep(x, oldest, step1 * older, step2 * older, first, second, parts);
     sweep(x, last, step1 * correction, step2 * correction, first, second, parts);
+    own[0] += step1 * correction * constant;
     return k;
 }
 
 /* line holds x(k - size + 1) .. x(k) from [k] on, size = TILE * tiles. */
 EXPORT index_t hb_lms_volterra(index_t n, index_t tiles, index_t taps,
                                const double *line, const double *d, double step1,
-                               double step2, double regularization, double limit,
-                               double *first, double *second, double *y, double *e)
+                               double step2, double constant, double regularization,
+                               double limit, double *first, double *second,
+                               double *own, double *y, double *e)
 {
-#define CALL(size)                                                             \
-    lms_volterra(n, taps, line, d, step1, step2, regularization, limit, first, \
-                 second, y, e, (size) * PIECES)
+#define CALL(size)                                                                 \
+    lms_volterra(n, taps, line, d, step1, step2, constant, regularization, limit, \
+                 first, second, own, y, e, (size) * PIECES)
     switch (tiles) {
     case 1: return CALL(1);
     case 2: return CALL(2);

@@ -122,45 +122,60 @@ def identify_rdgpi(
 
 @dataclass(frozen=True)
 class _Fit:
-    """Thinned records, and the largest input and rate among them as units."""
+    """Thinned records one after another, with the largest input and rate as units."""
 
     order: int
     start: Start
     largest: float
     fastest: float
-    parts: tuple[tuple[Path, Path, FloatArray], ...]
+    path: Path
+    lead: Path
+    parts: tuple[slice, ...]
+    weight: FloatArray
+    target: FloatArray
 
     @classmethod
     def of(cls, records: Sequence[Record], order: int, start: Start) -> _Fit:
         """Thin records and find the units."""
-        parts = []
+        paths, leads, outputs = [], [], []
         for record in records:
             step = LARGEST_STEP * np.ptp(record.u) / np.max(np.abs(np.diff(record.u)))
             stride = max(1, min(int(step), len(record) // MOST_SAMPLES))
             keep = slice(0, None, stride)
             u, rate = record.u[keep], input_rate(record.u, record.dt)[keep]
             first, last = slice(0, MOST_SAMPLES), slice(-MOST_SAMPLES, None)
-            path, lead = Path(u[first], rate[first]), Path(u[last], rate[last])
-            parts.append((path, lead, record.y[keep][first]))
-        largest = max(float(np.max(np.abs(record.u))) for record in records)
-        fastest = max(float(path.rate.max()) for path, _, _ in parts)
-        return cls(order, start, largest, fastest, tuple(parts))
+            paths.append((u[first], rate[first]))
+            leads.append((u[last], rate[last]))
+            outputs.append(record.y[keep][first])
+        lengths = np.array([len(y) for y in outputs])
+        ends = np.cumsum(lengths)
+        path = Path(*map(np.concatenate, zip(*paths, strict=True)))
+        weight = np.repeat(1 / np.sqrt(lengths), lengths)
+        return cls(
+            order=order,
+            start=start,
+            largest=max(float(np.max(np.abs(record.u))) for record in records),
+            fastest=float(path.rate.max()),
+            path=path,
+            lead=Path(*map(np.concatenate, zip(*leads, strict=True))),
+            parts=tuple(map(slice, ends - lengths, ends)),
+            weight=weight,
+            target=np.concatenate(outputs) * weight,
+        )
 
     def model(self, point: FloatArray) -> RateDependentGPI:
         """Build the model at a point, with the rho and alpha2 that fit best."""
-        plain, design, target = self._linear(point)
-        first, second = _least_squares(design, target)
+        plain, design = self._linear(point)
+        first, second = _least_squares(design, self.target)
         return replace(plain, rho=first, alpha2=-second / first if first else 0.0)
 
     def error(self, point: FloatArray) -> FloatArray:
         """Error of all samples, scaled to add up to the sum of mean squares."""
-        _, design, target = self._linear(point)
-        return design @ _least_squares(design, target) - target
+        _, design = self._linear(point)
+        return design @ _least_squares(design, self.target) - self.target
 
-    def _linear(
-        self, point: FloatArray
-    ) -> tuple[RateDependentGPI, FloatArray, FloatArray]:
-        """Columns that rho and -rho alpha2 multiply, and what they should give."""
+    def _linear(self, point: FloatArray) -> tuple[RateDependentGPI, FloatArray]:
+        """Columns that rho and -rho alpha2 multiply to give the target."""
         alpha1, beta1, lambda1 = np.exp(point[:3])
         plain = RateDependentGPI(
             alpha1=float(alpha1 * self.largest),
@@ -177,13 +192,9 @@ class _Fit:
             order=self.order,
             start=self.start,
         )
-        columns, targets = [], []
-        for path, lead, y in self.parts:
-            weight = 1 / np.sqrt(len(y))
-            output = plain.respond(path, lead) * weight
-            columns.append([output, output * np.log(1 + plain.lambda2 * path.rate)])
-            targets.append(y * weight)
-        return plain, np.hstack(columns).T, np.concatenate(targets)
+        output = plain.respond(self.path, self.lead, self.parts) * self.weight
+        loss = np.log(1 + plain.lambda2 * self.path.rate)
+        return plain, np.stack([output, output * loss]).T
 
 
 def _least_squares(design: FloatArray, target: FloatArray) -> tuple[float, float]:

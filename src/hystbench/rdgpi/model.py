@@ -7,7 +7,8 @@ of models; docs/rdgpi.md says what supports it and what does not.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Literal, NamedTuple
 
@@ -86,8 +87,8 @@ class RateDependentGPI:
 
     def __post_init__(self) -> None:
         """Refuse parameters that define no model."""
-        for name, value in asdict(self).items():
-            if name != "start" and not np.isfinite(value):
+        for name, value in vars(self).items():
+            if name != "start" and not math.isfinite(value):
                 raise InputError(f"rdgpi.{name}: {value} is not a finite number")
         if self.start not in STARTS:
             raise InputError(
@@ -140,18 +141,39 @@ class RateDependentGPI:
         path = Path(u, input_rate(u, dt))
         return self.respond(path, path)
 
-    def respond(self, path: Path, lead: Path) -> FloatArray:
-        """Compute the output along a path; a settled start follows the lead."""
-        _, state = self._operators(lead) if self.start == "settled" else (None, None)
-        total, _ = self._operators(path, state)
+    def respond(
+        self, path: Path, lead: Path, parts: Sequence[slice] = (slice(None),)
+    ) -> FloatArray:
+        """Compute the output along a path; a settled start follows the lead.
+
+        Parameters
+        ----------
+        path, lead : Path
+        parts : sequence of slice
+            Parts of both, of which each starts anew; by default the whole.
+        """
+        before = self._drive(lead) if self.start == "settled" else None
+        along = self._drive(path)
+        total = np.empty(len(path.u))
+        for part in parts:
+            state = None if before is None else self._follow(before, part)[1]
+            total[part] = self._follow(along, part, state)[0]
         return self.gain(path.rate) * total
 
-    def _operators(
-        self, path: Path, state: FloatArray | None = None
-    ) -> tuple[FloatArray, FloatArray]:
+    def _drive(self, path: Path) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Envelope, spacing of the thresholds and ratio of the weights on a path."""
         envelope = self.envelope_gain * path.u + self.envelope_offset
         spacing = self.spacing(path.rate)
-        ratio = np.exp(-self.tau * spacing)
+        return envelope, spacing, np.exp(-self.tau * spacing)
+
+    def _follow(
+        self,
+        drive: tuple[FloatArray, FloatArray, FloatArray],
+        part: slice,
+        state: FloatArray | None = None,
+    ) -> tuple[FloatArray, FloatArray]:
+        """Output of the operators over a part of a path, and their last state."""
+        envelope, spacing, ratio = (values[part] for values in drive)
         return rate_dependent_prandtl_ishlinskii(
             envelope, envelope, spacing, ratio, self.order + 1, state=state
         )

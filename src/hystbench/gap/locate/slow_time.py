@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import cast
 
 import numpy as np
-from scipy import signal
 
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.regression import (
@@ -84,8 +83,10 @@ def slow_forms(samples: Samples) -> tuple[dict[str, Form], FloatArray]:
 
 def low_pass(values: FloatArray, dt: float, tau: float) -> FloatArray:
     """Low-pass of first order from rest, the input held between samples."""
+    from scipy.signal import lfilter  # late: it takes long to load
+
     keep = np.exp(-dt / tau)
-    return cast(FloatArray, signal.lfilter([0.0, 1 - keep], [1.0, -keep], values))
+    return cast(FloatArray, lfilter([0.0, 1 - keep], [1.0, -keep], values))
 
 
 def block_means(values: FloatArray, size: int) -> FloatArray:
