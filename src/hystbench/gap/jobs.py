@@ -9,7 +9,8 @@ from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import Finding, black_box, decide
 from hystbench.gap.floor import Floor
-from hystbench.gap.kept import Restorer, state_mapping
+from hystbench.gap.kept import Restorer
+from hystbench.gap.kept_state import state_mapping
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
 from hystbench.gap.named_apart import named_apart

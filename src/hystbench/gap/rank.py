@@ -11,7 +11,7 @@ from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.blocks.external import External
 from hystbench.errors import InputError
 from hystbench.gap.change import at_end
-from hystbench.gap.effects import effects
+from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fit import score_of
 from hystbench.gap.held_back import gain_held_back
@@ -61,7 +61,7 @@ def rank(
     state : State
     score : Score
     known : sequence of Effect, optional
-        All by default.
+        All that are offered by default.
     work : Work
     folds : bool
         Whether finalists that pay are judged anew on records held back.
@@ -71,7 +71,7 @@ def rank(
     tuple of Candidate
         Finalists first, then the others, then those that declined.
     """
-    known = tuple(effects().values()) if known is None else tuple(known)
+    known = tuple(among(state.offered).values()) if known is None else tuple(known)
     have = {item.effect for item in state.added}
     now = score_of(state, score)
     declined = [

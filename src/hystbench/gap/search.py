@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -78,10 +78,18 @@ class Attempt:
         self.number = number
         self.freedom = state.freedom + variant.freedom
         self.known: dict[Point, Trial] = {}
-        self.more = np.hstack([state.tangents, state.beside_columns])
-        self.stiffness = state.stiffness_of(self.more.shape[1])
         self.zero: FloatArray | None = None
         self.least: Signals | None = None
+
+    @cached_property
+    def more(self) -> FloatArray:
+        """Columns of what the model may re-tune beside the variant."""
+        return np.hstack([self.state.tangents, self.state.beside_columns])
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Charge for the square of a change of each of them."""
+        return self.state.stiffness_of(self.more.shape[1])
 
     def at(self, point: Point) -> Trial:
         """Score the variant at a point of the grid."""

@@ -19,14 +19,8 @@ from hystbench.gap.effects.base import Effect, Variant
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.fit import ready, score_of
 from hystbench.gap.floor import Floor
-from hystbench.gap.kept import (
-    Mapped,
-    Restorer,
-    limit,
-    number,
-    progress_mapping,
-    state_mapping,
-)
+from hystbench.gap.kept import Restorer, progress_mapping
+from hystbench.gap.kept_state import Mapped, limit, number, state_mapping
 from hystbench.gap.name import Named, Progress, advance, settled
 from hystbench.gap.rank import make_score
 from hystbench.gap.say import Say, silent

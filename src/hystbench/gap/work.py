@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.fit import added, finished
+from hystbench.gap.kept_state import (
+    remembered_of,
+    state_again,
+    state_with_correction,
+)
 from hystbench.gap.score import Score
 from hystbench.gap.search import Attempt, Trial, at_a_glance, coarse, fine
 from hystbench.gap.state import State
@@ -14,7 +22,7 @@ Tried = tuple[Attempt, Trial]
 
 
 class Work:
-    """The four steps that jobs can take elsewhere; all are computed here and now.
+    """The four steps that jobs can take elsewhere; here computed, or looked up.
 
     Naming decides by what they give, and by folds, which are judged where it decides:
     so jobs lead to the same names.
@@ -35,22 +43,40 @@ class Work:
         ]
         if variants and not runnable:
             return [], NEEDS_RERUN
-        few, few_score = at_a_glance(state, score)
-        found = []
-        refused = ""
-        for number, item in runnable:
-            attempt = Attempt(state, item, score, number)
-            try:
-                trial = coarse(attempt, Attempt(few, item, few_score))
-            except Declined as reason:
-                refused = str(reason)
-                continue
-            found.append((attempt, trial))
-        return found, "" if found else refused
+
+        def read(content: Any) -> tuple[list[Tried], str]:
+            kept, why = content
+            found = [
+                (
+                    Attempt(state, variants[number], score, number),
+                    Trial(variants[number], values, value),
+                )
+                for number, values, value in kept
+            ]
+            return found, why
+
+        return remembered_of(
+            state,
+            lambda: ["tried", effect.name, score.digest],
+            lambda: _tried(runnable, state, score),
+            lambda result: [
+                [[each.number, x.values, x.score] for each, x in result[0]],
+                result[1],
+            ],
+            read,
+        )
 
     def fine(self, attempt: Attempt, trial: Trial) -> Trial:
         """Search a variant around the best point of its grid."""
-        return fine(attempt, trial)
+        variant = trial.variant
+        about = [variant.effect, attempt.number, trial.values]
+        return remembered_of(
+            attempt.state,
+            lambda: ["fine", *about, attempt.score.digest],
+            lambda: fine(attempt, trial),
+            lambda found: [found.values, found.score],
+            lambda kept: Trial(variant, *kept),
+        )
 
     def added(self, state: State, trial: Trial, score: Score) -> tuple[State, float]:
         """Add an effect as a trial found it and refit everything together.
@@ -60,11 +86,51 @@ class Work:
         InputError
             If a block refuses the values.
         """
-        return added(state, trial, score)
+        variant = trial.variant
+        about = [variant.effect, variant.place, variant.form, variant.start]
+        return remembered_of(
+            state,
+            lambda: ["added", *about, trial.values, score.digest],
+            lambda: added(state, trial, score),
+            _written,
+            lambda kept: _read(kept, state),
+        )
 
     def finished(self, state: State, score: Score) -> tuple[State, float]:
         """Simulate a model exactly and refit it to the end."""
-        return finished(state, score)
+        return remembered_of(
+            state,
+            lambda: ["finished", score.digest],
+            lambda: finished(state, score),
+            _written,
+            lambda kept: _read(kept, state),
+        )
+
+
+def _written(result: tuple[State, float]) -> list[Any]:
+    return [state_with_correction(result[0]), result[1]]
+
+
+def _read(kept: list[Any], like: State) -> tuple[State, float]:
+    return state_again(kept[0], like), kept[1]
+
+
+def _tried(
+    runnable: Sequence[tuple[int, Variant]], state: State, score: Score
+) -> tuple[list[Tried], str]:
+    """Score variants over their grids; say why none can be, if so."""
+    few, few_score = at_a_glance(state, score)
+    found: list[Tried] = []
+    refused = ""
+    for number, item in runnable:
+        attempt = Attempt(state, item, score, number)
+        try:
+            trial = coarse(attempt, Attempt(few, item, few_score))
+        except Declined as reason:
+            refused = str(reason)
+            continue
+        found.append((attempt, trial))
+    return found, "" if found else refused
 
 
 def _needs_rerun(state: State, variant: Variant) -> bool:
