@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from hystbench.errors import InputError
+from hystbench.gap.built_in import put_in
 from hystbench.gap.effects import effects
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.outcome import with_what_was_asked
@@ -75,6 +76,21 @@ def test_what_is_put_in_is_fitted_and_is_no_finding(tiny):
     assert "you put in drive-lag: it is not a finding" in content["reason"]
     assert gap.sentence.startswith("With drive lag, which you put in, there is no gap")
     assert "drive-lag" in {block.name for block in gap.model.chain}
+
+
+@pytest.mark.parametrize(
+    ("name", "free"),
+    [
+        ("drive-lag", {"drive-lag.time_constant_s"}),
+        ("asymmetry", {"gain.offset", "gain#2.offset"}),
+    ],
+)
+def test_of_what_is_put_in_the_effects_own_numbers_stay_free(tiny, name, free):
+    """A field bias is two plain gains, whose value is one and stays so."""
+    data, base = tiny
+    model, built_in = put_in(load_model(base), load_evidence(data), [name])
+    assert {*model.free} == free
+    assert built_in.names == (name,)
 
 
 def test_what_is_new_in_every_record_cannot_be_put_in(tiny):

@@ -107,8 +107,12 @@ def put_in(
         for item in state.added
     )
     model = augmented(base, state)
-    label = f"{base.name} with {' and '.join(names)}"
-    return replace(model, name=label), BuiltIn(base, told)
+    # What the search of an effect does not free, such as the gain of an offset, stays.
+    labels = [label for label, _ in model.labelled()]
+    own = {f"{labels[item.block]}.{item.parameter}" for item in state.free}
+    free = tuple(name for name in model.free if name in own)
+    title = f"{base.name} with {' and '.join(names)}"
+    return replace(model, name=title, free=free), BuiltIn(base, told)
 
 
 def _with(state: State, score: Score, name: str) -> State:
