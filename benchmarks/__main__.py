@@ -17,6 +17,7 @@ PARTS = (
     "imports",
     "pipeline",
     "gap",
+    "rerun",
     "graph",
     "reach",
     "pictures",

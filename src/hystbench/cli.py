@@ -45,6 +45,7 @@ COMMANDS = {
     "twins": "Judge the claims on several twins as configured.",
     "pressure": "Judge the claims on many twins, step sizes and seeds.",
     "contest": "Give each filter its own best step size.",
+    "devices": "Run the paper's models on measured devices.",
     "gap": "Find what a simulator lacks, add it, show the gap shrink.",
     "gap-check": "Check all records of a gap before it is searched.",
     "gap-decide": "Give the verdict on a gap, from the fit records alone.",

@@ -110,6 +110,17 @@ class Model:
                     f"value, got {share!r}"
                 )
 
+    def __repr__(self) -> str:
+        """Tell the channels and the chain, block by block, with what is free."""
+        lines = [f"Model {self.name}: {self.input.label} to {self.output.label}"]
+        for label, block in self.labelled():
+            numbers = ", ".join(
+                _shown(f"{label}.{key}" in self.free, key, getattr(block, key))
+                for key in block.parameters()
+            )
+            lines.append(f"  {label}: {numbers}")
+        return "\n".join(lines)
+
     def simulate(
         self, u: FloatArray, dt: float, rng: np.random.Generator | None = None
     ) -> FloatArray:
@@ -337,6 +348,15 @@ def load_model(path: str | Path) -> Model:
         If there is no such file, or it does not hold a model.
     """
     return Model.from_mapping(load_yaml(path, "a model file"), str(path))
+
+
+def _shown(free: bool, name: str, value: Value) -> str:
+    """Say a parameter shortly, and whether it may be changed."""
+    if isinstance(value, tuple):
+        text = f"{len(value)} numbers"
+    else:
+        text = value if isinstance(value, str) else f"{value:.4g}"
+    return f"{name} {text}{' (free)' if free else ''}"
 
 
 REQUIRED = ("name", "input", "output", "chain")

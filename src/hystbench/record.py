@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
+from functools import cached_property
+from hashlib import blake2b
 from pathlib import Path
 from typing import Literal, cast
 
@@ -103,6 +105,16 @@ class Record:
         """How fast the input moves: rms(du/dt) / rms(u), in 1/s."""
         speed = np.gradient(self.u, self.dt)
         return float(np.sqrt(np.mean(speed**2) / np.mean(self.u**2)))
+
+    @cached_property
+    def digest(self) -> str:
+        """Digest of what the record holds: two that are alike have the same."""
+        about = [self.name, self.dt, *asdict(self.input).values()]
+        about += [*asdict(self.output).values(), self.use, self.period_samples]
+        whole = blake2b(json.dumps(about).encode(), digest_size=16)
+        for array in (self.u, self.y, self.simulated):
+            whole.update(b"none" if array is None else array.tobytes())
+        return whole.hexdigest()
 
     def save(self, path: str | Path) -> None:
         """Write the record as a NumPy archive (no pickle), all of it or nothing."""

@@ -383,6 +383,27 @@ class Settings:
             },
         }
 
+    @property
+    def devices_job(self) -> dict[str, Any]:
+        """Settings of the paper's models on measured devices."""
+        measured = self.config["measured"]
+        filters = {}
+        for model in self.filters:
+            job = self.filter_job(model)
+            job.pop("convergence_factor", None)
+            job.pop("amplitude", None)
+            job["fraction_of_bound"] = measured["fraction_of_bound"]
+            if model == "gpo":
+                job["envelopes"] = measured["envelopes"]
+            filters[model] = job
+        return {
+            "filters": filters,
+            "fractions": self.config["contest"]["fractions"],
+            "constant_tap": max(self.config["pressure"]["constant_taps"]),
+            "identification": self.identification_job,
+            "rdgpi": self.rdgpi_job,
+        }
+
     def filter_job(self, model: str) -> dict[str, Any]:
         """Give the settings on which one filter's run depends."""
         filters = self.config["filters"]

@@ -56,6 +56,22 @@ def test_what_is_missing_is_told_and_the_page_kept(folder, line, expected):
     assert page == text
 
 
+def test_a_page_on_records_that_are_not_shipped_is_no_failure(folder):
+    """Unless it is named: then somebody wants it filled."""
+    (folder / "docs").mkdir()
+    block = "<!-- from {} -->\nold\n<!-- end -->\n"
+    page = folder / "docs" / "devices.md"
+    page.write_text(block.format("results/devices/tracking.csv"))
+    (folder / "README.md").write_text(block.format("t.md"))
+    result = run_hystbench("docs", cwd=folder)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "docs/devices.md: left as it is" in result.stdout
+    assert "new text" in (folder / "README.md").read_text()
+    named = run_hystbench("docs", "docs/devices.md", cwd=folder)
+    assert named.returncode == 2
+    assert "snakemake devices" in named.stderr
+
+
 def test_every_page_that_can_be_filled_is(folder):
     docs = folder / "docs"
     docs.mkdir()

@@ -24,13 +24,19 @@ def run(tmp_path, monkeypatch):
     data, base = write_tiny(tmp_path)
     asked = []
 
-    content = {"verdict": "named", "effects": [], "no_experiment": "no way"}
+    finding = SimpleNamespace(experiment=None, content={"no_experiment": "no way"})
+    found = SimpleNamespace(
+        closed=SimpleNamespace(finding=finding),
+        effects=(),
+        verdict="named",
+        save=lambda out, report: None,
+    )
 
-    def close(evidence, model, out, **given):
+    def find(dataset, model, **given):
         asked.append(given)
-        return SimpleNamespace(experiment=None, content=content)
+        return found
 
-    monkeypatch.setattr(module, "close_gap", close)
+    monkeypatch.setattr(module, "find_gap", find)
 
     def invoke(*more):
         words = [str(data), "--model", str(base), "--out", str(tmp_path / "out"), *more]

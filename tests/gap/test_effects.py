@@ -560,7 +560,7 @@ def test_a_tone_beyond_half_the_sampling_rate_stands_for_nothing():
 
 
 def test_a_light_mode_between_the_points_of_the_grid_is_looked_for():
-    """A mode as wide as a fiftieth of its frequency, beside a base that lags wrongly."""
+    """A mode as wide as a fiftieth of its frequency, beside a base that has no lag."""
     noise = np.random.default_rng(0).normal(size=2000)
     wide = (record(noise, name="wide", dt=1e-3),)
     grid = logarithmic(1.0, 450.0, 6)

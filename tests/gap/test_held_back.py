@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from hystbench.gap import held_back
+from hystbench.gap import held_back, work
 from hystbench.gap import rank as ranked
 from hystbench.gap import score as scores
 from hystbench.gap.effects import effects
@@ -118,7 +118,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
     plain, finished = rank(before, score), []
     last = [item for item in plain if item.held_back is not None][-1]
 
-    exactly = ranked.finished
+    exactly = work.finished
 
     def noted(state, score):
         finished.append(state.added[-1].effect)
@@ -128,7 +128,7 @@ def test_the_first_of_a_ranking_was_simulated_exactly(monkeypatch):
         return 1e3 if after.added[-1].effect == last.effect else -1e3
 
     monkeypatch.setattr(ranked, "gain_held_back", told)
-    monkeypatch.setattr(ranked, "finished", noted)
+    monkeypatch.setattr(work, "finished", noted)
     monkeypatch.setattr(ranked, "EXACT", 1)
     ranking = rank(before, score)
     assert last.effect != plain[0].effect

@@ -51,7 +51,7 @@ def test_a_model_comes_back_from_its_file(tiny, added):
     changes = {k: 1e-3 * step for k, step in enumerate(state.steps)}
     moved = replace(state, chain=state.moved(changes))
     kept = json.loads(json.dumps(state_mapping(moved), allow_nan=False))
-    restored = Restorer(moved.records, model).state(kept)
+    restored = Restorer(moved.records, model.chain).state(kept)
     assert restored.chain == moved.chain
     assert restored.free == moved.free
     assert restored.added == moved.added

@@ -8,7 +8,8 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.rank import rank
-from hystbench.gap.search import Attempt, coarse, tried
+from hystbench.gap.search import Attempt, coarse
+from hystbench.gap.work import tried
 from tests.gap.small import block, measured, plain_score, state_of
 
 NOISE = 0.02

@@ -17,7 +17,9 @@ from hystbench.written import check_replaceable, claim_logs
 shell.prefix(f"PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; ")
 
 PACKAGE = Path(os.path.relpath(Path(hystbench.__file__).parent))
-GRAPH = grimp.build_graph("hystbench", cache_dir=".snakemake/imports")
+GRAPH = grimp.build_graph(
+    "hystbench", cache_dir=".snakemake/imports", exclude_type_checking_imports=True
+)
 SCHEMA = workflow.source_path("../schemas/config.schema.yaml")
 # Where a mistake in the config may be.
 PLACE = ", ".join(

@@ -8,11 +8,12 @@ import click
 
 from hystbench import options
 from hystbench.gap.asked import check_base
-from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.limits import Limits
-from hystbench.gap.run import close_gap
+from hystbench.gap.run import will_write
+from hystbench.gap.vocabulary import Vocabulary
 from hystbench.gap.wanted import write_wanted
+from hystbench.interface.gap import find_gap
 
 
 @click.command()
@@ -23,15 +24,36 @@ from hystbench.gap.wanted import write_wanted
     help="Model file, gpi, linear, column, or package.module:function.",
 )
 @options.out_folder
+@click.option(
+    "--without",
+    multiple=True,
+    metavar="EFFECT",
+    help="An effect that the search must not name; may stand there several times.",
+)
+@click.option(
+    "--with",
+    "with_",
+    multiple=True,
+    metavar="EFFECT",
+    help="An effect that you put in: it is fitted from the start, and is no finding.",
+)
 @options.write_experiment
 @options.limits
 @options.unnamed_share
 @options.calls
+@click.option(
+    "--cache/--no-cache",
+    default=True,
+    help="Whether what the search computes is kept in the user's cache folder, so that "
+    "another one on the same records is quicker.",
+)
 @click.option("--report/--no-report", default=True, help="Whether to write the page.")
 def gap(
     dataset: Path,
     model: str,
     out: Path,
+    without: tuple[str, ...],
+    with_: tuple[str, ...],
     write_experiment: Path | None,
     limit_low: float | None,
     limit_high: float | None,
@@ -39,11 +61,13 @@ def gap(
     unnamed_share: float,
     calls: int | None,
     keep_calls: bool,
+    cache: bool,
     report: bool,
 ) -> None:
     """Find what MODEL lacks beside the measurements in DATASET.
 
-    Writes OUT/gap.json, model.yaml, holdout/ and report.html.
+    Writes OUT/gap.json, model.yaml, holdout/ and report.html. To reject a name, run the
+    same again with --without NAME; to hold your own against it, with --with NAME.
     """
 
     def say(line: str) -> None:
@@ -51,25 +75,29 @@ def gap(
 
     asked = options.asked_limits(limit_low, limit_high, limit_rate)
     check_base(model)
+    Vocabulary.of(without, with_)  # refuses, before a file is read
     evidence = load_evidence(dataset)
     options.warn(evidence.warnings)
     Limits.within(evidence.fit, asked)  # refuses, before work is paid
-    with options.counted_calls(calls, keep_calls, say):
-        base, note = load_base(model, evidence)
-        if note:
-            click.echo(note)
-        finding = close_gap(
-            evidence,
-            base,
-            out,
-            place=model,
-            limits=asked,
-            unnamed_share=unnamed_share,
-            report=report,
-            say=say,
-        )
+    will_write(out, evidence)
+    found = find_gap(
+        dataset,
+        model,
+        without=without,
+        with_=with_,
+        limits=asked,
+        unnamed_share=unnamed_share,
+        calls=calls,
+        keep_calls=keep_calls,
+        cache=cache,
+        say=say,
+        evidence=evidence,
+    )
+    found.save(out, report)
     if write_experiment is not None:
+        finding = found.closed.finding
         click.echo(write_wanted(finding, evidence.input, write_experiment))
-    effects = [item["name"] for item in finding.content["effects"]]
+    effects = [effect.name for effect in found.effects]
     named = f": {', '.join(effects)}" if effects else ""
-    click.echo(f"{out / 'gap.json'}: {finding.content['verdict']}{named}")
+    put_in = f" (you put in {', '.join(with_)})" if with_ else ""
+    click.echo(f"{out / 'gap.json'}: {found.verdict}{named}{put_in}")

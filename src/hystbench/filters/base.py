@@ -287,9 +287,8 @@ class AdaptiveFilter(ABC):
         x : array_like, shape (n,)
             Input, at least one sample.
         """
-        largest, operators = 0.0, self._first_operators()
-        for line in self._chunks(x):
-            rows, operators = self.whole_regressor(line, operators)
+        largest = 0.0
+        for rows in self.rows(x):
             largest = max(largest, float(np.einsum("ij,ij->i", rows, rows).max()))
         return largest
 
@@ -302,6 +301,23 @@ class AdaptiveFilter(ABC):
             total += float(np.einsum("ij,ij->", taps, taps))
             count += taps.size
         return math.sqrt(total / count)
+
+    def rows(self, x: ArrayLike) -> Iterator[FloatArray]:
+        """Give the regressors of an input, some samples at a time.
+
+        Parameters
+        ----------
+        x : array_like, shape (n,)
+            Input, at least one sample.
+
+        Returns
+        -------
+        iterator of ndarray, shape (samples, size)
+        """
+        operators = self._first_operators()
+        for line in self._chunks(x):
+            rows, operators = self.whole_regressor(line, operators)
+            yield rows
 
     def correction(self, power: float) -> float:
         """Share of an error that one update corrects, ``2 mu H'H``.
@@ -340,9 +356,7 @@ class AdaptiveFilter(ABC):
     def _correlation(self, x: ArrayLike) -> FloatArray:
         """Mean of H H' over the input."""
         total, count = np.zeros((self.size, self.size)), 0
-        operators = self._first_operators()
-        for line in self._chunks(x):
-            rows, operators = self.whole_regressor(line, operators)
+        for rows in self.rows(x):
             total += rows.T @ rows
             count += len(rows)
         return total / count

@@ -100,6 +100,7 @@ def find(
     asked: Mapping[str, float] | None = None,
     say: Say = silent,
     unnamed_share: float = SHARE,
+    offered: tuple[str, ...] | None = None,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
 
@@ -120,6 +121,8 @@ def find(
         Told a line of progress at a time.
     unnamed_share : float
         Share of the power of the gap that may stay unnamed beside a name.
+    offered : tuple of str, optional
+        Effects that may be named; all by default.
 
     Raises
     ------
@@ -127,7 +130,7 @@ def find(
         If the base does not run on the records, or no excitation fits the limits.
     """
     limits = Limits.within(records, asked) if asked else None
-    start, floor = start_state(records, base, hold, declared)
+    start, floor = start_state(records, base, hold, declared, offered)
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
     return decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hystbench.blocks.calls import PATIENCE, current, minutes
 from hystbench.blocks.external import External
 from hystbench.errors import InputError
-from hystbench.gap.effects import effects
+from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Declined, Variant
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.say import Say
@@ -42,7 +42,7 @@ def calls_of_a_round(state: State) -> int:
     count = len(state.records)
     few = count if count < GLANCE else count - count // 2
     grids, before, names = 0, 0, set()
-    for effect in effects().values():
+    for effect in among(state.offered).values():
         try:
             variants = list(effect.variants(state.scene))
         except Declined:

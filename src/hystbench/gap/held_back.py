@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hystbench.gap.fit import refit
 from hystbench.gap.folds import make_folds
+from hystbench.gap.kept import remembered_of, state_key
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.record import FloatArray
@@ -56,6 +57,16 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
     float
         Over all folds, so of every record once; above zero where the effect pays.
     """
+    return remembered_of(
+        after,
+        lambda: ["held back", *state_key(before), score.digest],
+        lambda: _gain(before, after, score),
+        float,
+        float,
+    )
+
+
+def _gain(before: State, after: State, score: Score) -> float:
     folds, inside = _folds(before, score)
     gain = 0.0
     for fold in folds:

@@ -96,7 +96,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     decided = read_json(folder / DECISION)
     own = OwnValues.of_mapping(decided["record_values"])
     fit = own.taken_off(evidence.fit, evidence.hold)
-    restorer = Restorer(fit, base)
+    restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
     steps = [
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]

@@ -1,31 +1,36 @@
-"""A model with its effects, as JSON: one job names them, another shows what they do.
+"""A model as far as it has come, as JSON.
 
 Arrays are not kept. They follow from the chain and the records, and are computed anew;
-effects give back the shapes of what lies beside a chain.
+effects give back the shapes of what lies beside a chain. The correction of the quick
+simulation alone may be kept beside it, as it costs an exact one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import json
+from base64 import b64decode, b64encode
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.blocks.external import External
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
+from hystbench.gap.remembered import Result, records_digest, remembered
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.state import Added, Free, State
-from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
 Mapped = dict[str, Any]
 
 
 def state_mapping(state: State) -> Mapped:
-    """Give a model as JSON holds it."""
+    """Give a model as far as it has come, as JSON holds it."""
     at = state.corrected_at
     return {
         "hold": state.hold,
@@ -48,6 +53,74 @@ def state_mapping(state: State) -> Mapped:
     }
 
 
+def state_key(state: State) -> list[str]:
+    """Tell all that a model computes from, in words and digests."""
+    return [
+        records_digest(state.records),
+        json.dumps(state_with_correction(state), sort_keys=True),
+        *(_text(positions) for positions in state.sample.positions),
+    ]
+
+
+def state_with_correction(state: State) -> Mapped:
+    """Give a model as JSON holds it, and what the quick simulation lacks."""
+    lacks = None if state.correction is None else _text(state.correction)
+    return state_mapping(state) | {"correction": lacks}
+
+
+def state_again(content: Mapped, like: State) -> State:
+    """Give the model that :func:`state_with_correction` wrote.
+
+    Parameters
+    ----------
+    content : dict
+    like : State
+        On the same records, with the same blocks where they are the base's own.
+    """
+    plain = content | {"corrected_at": None}
+    restorer = Restorer(like.records, like.chain)
+    at, lacks = content["corrected_at"], content["correction"]
+    return replace(
+        restorer.state(plain),
+        sample=like.sample,
+        offered=like.offered,
+        correction=None if lacks is None else _array(lacks),
+        corrected_at=None if at is None else restorer.chain(at),
+    )
+
+
+def remembered_of(
+    state: State,
+    more: Callable[[], list[Any]],
+    compute: Callable[[], Result],
+    write: Callable[[Result], Any],
+    read: Callable[[Any], Result],
+) -> Result:
+    """Give a result that follows from a model, by all that it is made of.
+
+    Parameters
+    ----------
+    state : State
+        One with a function of somebody's own is always computed: what it is made of is
+        not known. Its outputs are kept elsewhere.
+    more : callable
+        Gives what the result depends on beside it: words and digests.
+    compute, write, read : callable
+        As for :meth:`hystbench.gap.remembered.Remembered.result`.
+    """
+    if any(isinstance(block, External) for block in state.chain):
+        return compute()
+    return remembered(lambda: [*more(), *state_key(state)], compute, write, read)
+
+
+def _text(array: np.ndarray[Any, Any]) -> str:
+    return b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
+
+
+def _array(text: str) -> FloatArray:
+    return np.frombuffer(b64decode(text), dtype=np.float64).copy()
+
+
 class Restorer:
     """Makes models of JSON on the same records; what they share is computed once.
 
@@ -55,21 +128,21 @@ class Restorer:
     ----------
     records : tuple of Record
         The fit records.
-    base : Model
-        Gives its own blocks back: one may hold more than a file does, such as the
-        output of a simulator that ran elsewhere.
+    own : sequence of Block
+        Blocks to be given back: one may hold more than a file does, such as the output
+        of a simulator that ran elsewhere.
     """
 
-    def __init__(self, records: tuple[Record, ...], base: Model) -> None:
+    def __init__(self, records: tuple[Record, ...], own: Sequence[Block]) -> None:
         self.records, self.sample = records, Sample.of(records)
-        self._own = base.chain
+        self._own = own
         self._corrections: dict[tuple[Block, ...], FloatArray | None] = {}
 
     def state(self, content: Mapped) -> State:
         """Give the model that :func:`state_mapping` wrote."""
         hold = content["hold"]
         state = State(
-            self._chain(content["chain"]),
+            self.chain(content["chain"]),
             self.records,
             self.sample,
             tuple(
@@ -89,7 +162,7 @@ class Restorer:
         at = content["corrected_at"]
         if at is None:
             return _replaced(state, beside)
-        chain = self._chain(at)
+        chain = self.chain(at)
         if chain not in self._corrections:
             settled = State(chain, self.records, self.sample, hold=hold).settled()
             self._corrections[chain] = settled.correction
@@ -102,7 +175,8 @@ class Restorer:
         own = (item for item in self._own if _block_mapping(item) == kept)
         return next(own, block)
 
-    def _chain(self, content: Sequence[Mapping[str, Any]]) -> tuple[Block, ...]:
+    def chain(self, content: Sequence[Mapping[str, Any]]) -> tuple[Block, ...]:
+        """Give the blocks of a chain."""
         return tuple(self._block(item) for item in content)
 
     def _added(self, content: Mapped) -> Added:

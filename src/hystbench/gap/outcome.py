@@ -9,6 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from hystbench.gap.built_in import BuiltIn
+from hystbench.gap.vocabulary import Vocabulary
+
 WORSE = 1.01
 """RMS over the base's on hold-out records that is worse. Noise alone may move it by
 less, up or down: to withdraw a name for that would be to toss a coin for it."""
@@ -101,3 +104,55 @@ def without_names(
         "withdrawn": dict(taken),
         "base_parameters": numbers,
     }
+
+
+def with_what_was_asked(
+    content: Mapping[str, Any], vocabulary: Vocabulary
+) -> dict[str, Any]:
+    """Tell in the reason which effects the user put in or left out.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+    vocabulary : Vocabulary
+    """
+    words = vocabulary.words()
+    if not words:
+        return dict(content)
+    reason = "; ".join([content["reason"], *words])
+    return {**content, "reason": reason, "asked": vocabulary.mapping()}
+
+
+def with_built_in(
+    content: Mapping[str, Any], built_in: BuiltIn, alone: float
+) -> dict[str, Any]:
+    """Tell what the effects that the user put in do, apart from what was found.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds; its ``gap`` begins with the effects that were put in.
+    built_in : BuiltIn
+    alone : float
+        RMS residual of the simulator without them on the hold-out records.
+    """
+    names = " and ".join(built_in.names)
+    first, *rest = content["ladder"]
+    after, unit = content["gap"]["before"], content["unit"]
+    told = {
+        "effects": list(built_in.effects),
+        "before": alone,
+        "after": after,
+        "sentence": (
+            f"You put {names} into the simulator; on the hold-out records the residual "
+            f"of the simulator alone is {alone:.3g} {unit} rms, with {names} "
+            f"{after:.3g} {unit}. Nothing of that counts as found."
+        ),
+    }
+    ladder = [
+        {"name": first["name"], "rms": alone},
+        {"name": f"{names} (you put it in)", "rms": after},
+        *rest,
+    ]
+    return {**content, "built_in": told, "ladder": ladder}

@@ -10,15 +10,16 @@ import numpy as np
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.blocks.external import External
 from hystbench.errors import InputError
+from hystbench.gap import work
 from hystbench.gap.change import at_end
-from hystbench.gap.effects import effects
+from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Effect
-from hystbench.gap.fit import added, finished, score_of
+from hystbench.gap.fit import score_of
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.reshape import orthonormal
 from hystbench.gap.rounds import Candidate, Tested, in_order
 from hystbench.gap.score import Score
-from hystbench.gap.search import Trial, Tried, fine, tried
+from hystbench.gap.search import Trial
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import (
     EXACT,
@@ -59,7 +60,7 @@ def rank(
     state : State
     score : Score
     known : sequence of Effect, optional
-        All by default.
+        All that are offered by default.
     folds : bool
         Whether finalists that pay are judged anew on records held back.
 
@@ -68,7 +69,7 @@ def rank(
     tuple of Candidate
         Finalists first, then the others, then those that declined.
     """
-    known = tuple(effects().values()) if known is None else tuple(known)
+    known = tuple(among(state.offered).values()) if known is None else tuple(known)
     have = {item.effect for item in state.added}
     now = score_of(state, score)
     declined = [
@@ -77,9 +78,9 @@ def rank(
         if effect.name in have
     ]
     others = [effect for effect in known if effect.name not in have]
-    found: list[Tried] = []
+    found: list[work.Tried] = []
     for effect in others:
-        trials, why = tried(effect, state, score)
+        trials, why = work.tried(effect, state, score)
         found += trials
         if why:
             declined.append(Candidate(effect.name, effect.place, declined=why))
@@ -88,7 +89,7 @@ def rank(
     best = min(trial.score for _, trial in found)
     reach = max(NEAR, (now - best) * STILL)
     refined = [
-        fine(attempt, trial) if trial.score < best + reach else trial
+        work.fine(attempt, trial) if trial.score < best + reach else trial
         for attempt, trial in found
     ]
     refined.sort(key=lambda trial: trial.score)
@@ -160,7 +161,7 @@ def _judged(trial: Trial, state: State, score: Score, now: float) -> Candidate:
         return Candidate(variant.effect, variant.place, declined=why)
 
     try:
-        after, value = added(state, trial, score)
+        after, value = work.added(state, trial, score)
     except InputError as error:
         return declined(f"fits best where {error}")
     end = at_end(after, variant)
@@ -192,7 +193,7 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     if item.state is None:
         return item
     try:
-        after, value = finished(item.state, score)
+        after, value = work.finished(item.state, score)
     except CallsUsedUp as error:
         return Candidate(item.effect, item.place, declined=str(error))
     return replace(item, state=after, score=value, gain=now - value)

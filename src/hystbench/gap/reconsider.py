@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hystbench.gap.change import last_to, removable, without_effect
-from hystbench.gap.effects import effects
+from hystbench.gap.effects import among
 from hystbench.gap.fit import finished
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.rank import make_score, rank
@@ -54,8 +54,8 @@ def reconsidered(
         score = make_score(short, floor_rms)
         as_is, now = finished(state, score)
         have = tuple(other.effect for other in short.added)
-        names = set(effects()) if every else _rivals(item.effect, rounds)
-        known = [effects()[name] for name in sorted(names - set(have))]
+        names = set(among(state.offered)) if every else _rivals(item.effect, rounds)
+        known = list(among(names - set(have)).values())
         ranking = rank(short, score, known, folds=False)
         best = ranking[0]
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)

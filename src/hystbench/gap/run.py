@@ -14,14 +14,21 @@ from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.augmented import augmented
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
+from hystbench.gap.built_in import put_in
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
 from hystbench.gap.foretell import keep_back
 from hystbench.gap.nuisance import Nuisance, degree_that_carries_on, path_and_mains
-from hystbench.gap.outcome import first_figure, withdrawal, without_names
+from hystbench.gap.outcome import (
+    first_figure,
+    with_built_in,
+    with_what_was_asked,
+    withdrawal,
+    without_names,
+)
 from hystbench.gap.own_values import NONE, OwnValues
-from hystbench.gap.rungs import Rung
+from hystbench.gap.rungs import BASE, Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.scene import Scene
 from hystbench.gap.shortfall import shortfall
@@ -36,6 +43,7 @@ from hystbench.gap.shrink import (
 from hystbench.gap.start import run_base
 from hystbench.gap.state import State
 from hystbench.gap.unnamed import SHARE
+from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -50,51 +58,92 @@ RESULT = (*FILES, "holdout/*.csv")
 """Files of a folder, as names or patterns, that a later result replaces."""
 
 
-def close_gap(
+@dataclass(frozen=True)
+class Closed:
+    """A gap that was searched and shown on hold-out records; nothing is written yet.
+
+    Parameters
+    ----------
+    finding : Finding
+        Its ``model`` and ``content`` are those after the hold-out records were read.
+    outcome : Outcome
+    evidence : Evidence
+    """
+
+    finding: Finding
+    outcome: Outcome
+    evidence: Evidence
+
+    def write(self, folder: Path, report: bool = True) -> None:
+        """Write gap.json, model.yaml, curves.json, holdout/ and the page.
+
+        Parameters
+        ----------
+        folder : Path
+            Gets them all together when the last is done. Those of an earlier result
+            go; any other file stays.
+        report : bool
+            Whether to write the page.
+
+        Raises
+        ------
+        InputError
+            If a file that hystbench did not write, or an input, stands in the way;
+            nothing is written then.
+        """
+        with whole_folder(folder, RESULT) as fresh:
+            write_json(fresh / "curves.json", self.finding.curves)
+            write_shown(fresh, self.evidence.hold_out, self.outcome)
+            if report:
+                from hystbench.gap.report import write_report  # late: it draws
+
+                write_report(fresh)
+
+
+def will_write(folder: Path, evidence: Evidence) -> None:
+    """Refuse a folder in which a result cannot stand, before the search is paid."""
+    tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
+    writes(*(folder / name for name in (*FILES, *tables)))
+
+
+def closed_gap(
     evidence: Evidence,
     base: Model,
-    folder: Path,
     *,
     place: str = "model",
     limits: Mapping[str, float] | None = None,
-    report: bool = True,
     unnamed_share: float = SHARE,
+    vocabulary: Vocabulary = EVERYTHING,
     say: Say = silent,
-) -> Finding:
-    """Find what the base lacks, show on hold-out records how the gap shrinks, write it.
+) -> Closed:
+    """Find what the base lacks, and show on hold-out records how the gap shrinks.
 
     Parameters
     ----------
     evidence : Evidence
     base : Model
-    folder : Path
-        Gets gap.json, model.yaml, curves.json, holdout/ and report.html, all together
-        when the last is done. Those of an earlier result go; any other file stays,
-        and where one stands in the way it is refused before the search.
     place : str
         Where the base came from, for messages.
     limits : mapping of str to float, optional
         What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
         What is not given is taken from the fit records.
-    report : bool
-        Whether to write the page.
     unnamed_share : float
         Share of the power of the gap that may stay unnamed beside a name.
+    vocabulary : Vocabulary
+        Effects that may be named, and those that are in the model from the start.
     say : callable
         Told a line of progress at a time.
 
     Raises
     ------
     InputError
-        If units do not match, the base does not run, or a file that hystbench did
-        not write, or an input, stands in the way; nothing is written then.
+        If units do not match, the base does not run, or an effect cannot be put in.
     """
     check_units(evidence, base, place)
-    tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
-    writes(*(folder / name for name in (*FILES, *tables)))
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
+    base, built_in = put_in(base, evidence, vocabulary.fixed, say)
     finding = find(
         evidence.name,
         evidence.fit,
@@ -104,6 +153,7 @@ def close_gap(
         limits,
         say,
         unnamed_share,
+        vocabulary.offered,
     )
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.
@@ -118,15 +168,46 @@ def close_gap(
         finding.own,
         evidence.warnings,
     )
-    with whole_folder(folder, RESULT) as fresh:
-        write_json(fresh / "curves.json", finding.curves)
-        write_shown(fresh, evidence.hold_out, shown)
-        if report:
-            from hystbench.gap.report import write_report  # late: it draws
+    content = with_what_was_asked(shown.content, vocabulary)
+    if built_in is not None:
+        outputs = run_base(built_in.alone, evidence.hold_out, evidence.hold)
+        mine = as_recorded(finding.own, evidence.hold_out, outputs, finding.floor)
+        nuisance = nuisance_of(finding.state, finding.own)
+        ((_, alone),) = ladder(evidence.hold_out, [(BASE, mine)], nuisance)
+        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
+        content = with_built_in(content, built_in, alone)
+    shown = replace(shown, content=content)
+    say(f"{content['verdict']}: {content['reason']}")
+    return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
 
-            write_report(fresh)
-    say(f"{shown.content['verdict']}: {shown.content['reason']}")
-    return replace(finding, model=shown.model, content=shown.content)
+
+def close_gap(
+    evidence: Evidence,
+    base: Model,
+    folder: Path,
+    *,
+    report: bool = True,
+    **asked: Any,
+) -> Finding:
+    """Search a gap as :func:`closed_gap` does, and write the result to a folder.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    base : Model
+    folder : Path
+        As for :meth:`Closed.write`; what stands in the way is refused before the
+        search.
+    report : bool
+        Whether to write the page.
+    **asked
+        As for :func:`closed_gap`.
+    """
+    check_units(evidence, base, asked.get("place", "model"))
+    will_write(folder, evidence)
+    closed = closed_gap(evidence, base, **asked)
+    closed.write(folder, report)
+    return closed.finding
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:
@@ -262,28 +343,23 @@ def show(
         If the base's output is not finite on a record. Where a model's is not, the
         finding stays: the record is told, and counts as nothing closed.
     """
-    nuisance = what_is_new(state)
-    if own.kinds and nuisance is None:
-        nuisance = path_and_mains(None)  # nothing more, but the first part estimates
-
-    def as_recorded(outputs: Sequence[FloatArray | None]) -> list[FloatArray | None]:
-        return [
-            output
-            if output is None or not own.kinds
-            else own.fitted_first(record, output, floor.rms**2).of(output, record.dt)
-            for record, output in zip(records, outputs, strict=True)
-        ]
-
+    nuisance = nuisance_of(state, own)
     plain = run_base(base, records, state.hold)
     usual = reach(plain, floor.rms)
-    before = [output for output in as_recorded(plain) if output is not None]
+    mine = as_recorded(own, records, plain, floor)
+    before = [output for output in mine if output is not None]
     found_after, lost = _run(_name(base, state), state, records, usual)
-    after = as_recorded(found_after)
+    after = as_recorded(own, records, found_after, floor)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
     stages = [
         (
             rung.name,
-            as_recorded(_run(_name(base, rung.state), rung.state, records, usual)[0]),
+            as_recorded(
+                own,
+                records,
+                _run(_name(base, rung.state), rung.state, records, usual)[0],
+                floor,
+            ),
         )
         for rung in steps
     ]
@@ -308,6 +384,29 @@ def _after(record: Record, item: RecordShrink) -> FloatArray:
     if item.residual_after is None:
         return np.full(len(record), np.nan)
     return record.y - item.residual_after
+
+
+def nuisance_of(state: State, own: OwnValues) -> Nuisance | None:
+    """Give regressors of what is new in every record, of the device or its own."""
+    nuisance = what_is_new(state)
+    if own.kinds and nuisance is None:
+        nuisance = path_and_mains(None)  # nothing more, but the first part estimates
+    return nuisance
+
+
+def as_recorded(
+    own: OwnValues,
+    records: Sequence[Record],
+    outputs: Sequence[FloatArray | None],
+    floor: Floor,
+) -> list[FloatArray | None]:
+    """Give simulated outputs with what each record has of its own."""
+    return [
+        output
+        if output is None or not own.kinds
+        else own.fitted_first(record, output, floor.rms**2).of(output, record.dt)
+        for record, output in zip(records, outputs, strict=True)
+    ]
 
 
 def what_is_new(state: State) -> Nuisance | None:

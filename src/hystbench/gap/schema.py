@@ -276,6 +276,28 @@ EXPERIMENT = _object(
     }
 ) | {"type": ["object", "null"]}
 
+# Effects that the user put into the simulator, as they were fitted before the search,
+# and the RMS residual on the hold-out records without and with them. `gap` begins with
+# them: its `before` is this `after`.
+BUILT_IN = _object(
+    {
+        "effects": {
+            "type": "array",
+            "items": _object(
+                {
+                    "name": WORDS,
+                    "place": WORDS,
+                    "form": WORDS,
+                    "parameters": {"type": "object", "additionalProperties": VALUE},
+                }
+            ),
+        },
+        "before": NUMBER,
+        "after": NUMBER,
+        "sentence": WORDS,
+    }
+)
+
 SCHEMA = _object(
     {
         "dataset": {"type": "string"},
@@ -298,6 +320,12 @@ SCHEMA = _object(
     findings={"type": "array", "items": FOUND},
     record_values={"oneOf": [RECORD_VALUES, {"type": "null"}]},
     withdrawn={"oneOf": [WITHDRAWN, {"type": "null"}]},
+    # Where the user put effects in or left some out.
+    asked=_object({"without": NAMES, "with": NAMES, "sentence": WORDS}),
+    built_in=BUILT_IN,
+    # What hystbench gap was called with, as typed, so that the page can show how to run
+    # it again.
+    command=_object({"dataset": WORDS, "model": WORDS, "out": WORDS}),
     # Effects that need a simulator that can be run again, where it cannot.
     not_tried={"type": "array", "items": {"type": "string"}},
     taken_out={"type": "array", "items": TAKEN_OUT},

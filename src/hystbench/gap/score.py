@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from hashlib import blake2b
 from typing import NamedTuple
 
 import numpy as np
@@ -74,6 +75,15 @@ class Score:
         if self.used is not None:
             places = [p[u] for p, u in zip(places, self.used, strict=True)]
         return tuple(p for p in places if len(p))
+
+    @cached_property
+    def digest(self) -> str:
+        """Digest of all that the score holds fixed, but for the samples' places."""
+        whole = blake2b(repr((self.floor, self.directions.shape)).encode())
+        whole.update(self.directions.tobytes())
+        for used in self.used or ():
+            whole.update(used.tobytes())
+        return whole.hexdigest()
 
     @property
     def weight(self) -> float:

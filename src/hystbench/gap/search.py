@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from hystbench.blocks.calls import CallsUsedUp
-from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Declined, Effect, Values, Variant
+from hystbench.gap.effects.base import Declined, Values, Variant
 from hystbench.gap.reshape import orthonormal
 from hystbench.gap.score import Amplitudes, Score
 from hystbench.gap.state import State, beside_columns
@@ -67,16 +66,30 @@ class Signals(NamedTuple):
 
 
 class Attempt:
-    """One variant on one model, evaluated at values of its searched parameters."""
+    """One variant on one model, evaluated at values of its searched parameters.
 
-    def __init__(self, state: State, variant: Variant, score: Score) -> None:
+    Its number is its place among all that the effect offers.
+    """
+
+    def __init__(
+        self, state: State, variant: Variant, score: Score, number: int = 0
+    ) -> None:
         self.state, self.variant, self.score = state, variant, score
+        self.number = number
         self.freedom = state.freedom + variant.freedom
         self.known: dict[Point, Trial] = {}
-        self.more = np.hstack([state.tangents, state.beside_columns])
-        self.stiffness = state.stiffness_of(self.more.shape[1])
         self.zero: FloatArray | None = None
         self.least: Signals | None = None
+
+    @cached_property
+    def more(self) -> FloatArray:
+        """Columns of what the model may re-tune beside the variant."""
+        return np.hstack([self.state.tangents, self.state.beside_columns])
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Charge for the square of a change of each of them."""
+        return self.state.stiffness_of(self.more.shape[1])
 
     def at(self, point: Point) -> Trial:
         """Score the variant at a point of the grid."""
@@ -191,39 +204,6 @@ class Attempt:
         own = np.column_stack(columns)
         anchored = variant.zero is not None
         return own, state.residual if anchored else state.reference - now
-
-
-Tried = tuple[Attempt, Trial]
-"""A variant beside a model, and how it does over its grid."""
-
-
-def tried(effect: Effect, state: State, score: Score) -> tuple[list[Tried], str]:
-    """Score every variant of an effect over its grid; or say why it declines."""
-    try:
-        variants = list(effect.variants(state.scene))
-    except Declined as reason:
-        return [], str(reason)
-    runnable = [item for item in variants if not _needs_rerun(state, item)]
-    if variants and not runnable:
-        return [], NEEDS_RERUN
-    few, few_score = at_a_glance(state, score)
-    found = []
-    refused = ""
-    for item in runnable:
-        attempt = Attempt(state, item, score)
-        try:
-            trial = coarse(attempt, Attempt(few, item, few_score))
-        except Declined as reason:
-            refused = str(reason)
-            continue
-        found.append((attempt, trial))
-    return found, "" if found else refused
-
-
-def _needs_rerun(state: State, variant: Variant) -> bool:
-    """Tell whether a variant changes what enters a block whose output is stored."""
-    behind = state.chain[variant.start :]
-    return variant.beside is None and not all(block.reruns for block in behind)
 
 
 def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:

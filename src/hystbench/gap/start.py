@@ -22,6 +22,7 @@ def start_state(
     base: Model,
     hold: Hold = "band-limited",
     declared: float | None = None,
+    offered: tuple[str, ...] | None = None,
 ) -> tuple[State, Floor]:
     """Simulate the base on the fit records and measure the noise floor.
 
@@ -33,6 +34,8 @@ def start_state(
         How the input moves between samples.
     declared : float, optional
         RMS noise, where it is known.
+    offered : tuple of str, optional
+        Effects that a search may add; all by default.
 
     Raises
     ------
@@ -44,7 +47,12 @@ def start_state(
     exact = Scene(chain, records, hold, fine=True).output
     check_finite(base.name, records, exact)
     state = State(
-        chain, records, Sample.of(records), free=free_numbers(base), hold=hold
+        chain,
+        records,
+        Sample.of(records),
+        free=free_numbers(base),
+        hold=hold,
+        offered=offered,
     ).settled()
     compared = [
         Compared(record, simulated)

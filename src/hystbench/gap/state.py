@@ -75,6 +75,8 @@ class State:
         from candidate to candidate; :meth:`settled` measures it anew.
     corrected_at : tuple of Block, optional
         The chain at which the correction was measured.
+    offered : tuple of str, optional
+        Effects that may be added; all by default.
     """
 
     chain: tuple[Block, ...]
@@ -86,6 +88,7 @@ class State:
     hold: Hold = "band-limited"
     correction: FloatArray | None = None
     corrected_at: tuple[Block, ...] | None = None
+    offered: tuple[str, ...] | None = None
 
     @cached_property
     def scene(self) -> Scene:

@@ -108,7 +108,7 @@ def effect_mapping(
         Factor on the confidence, less than one where more stays unnamed than may.
     """
     own = next((x for x in ranking if x.effect == item.effect), None)
-    parameters = _parameters(item, state, errors, of_beside)
+    parameters = parameters_of(item, state, errors, of_beside)
     # Of a shape each number stands in for its neighbours: only all together say much.
     # Of a path in every record the mean slope is told, which may well be nothing.
     shape = any(state.chain[k].hysteretic for k in item.blocks)
@@ -125,9 +125,19 @@ def effect_mapping(
     }
 
 
-def _parameters(
-    item: Added, state: State, errors: FloatArray, of_beside: Sequence[Errors]
+def parameters_of(
+    item: Added, state: State, errors: FloatArray, of_beside: Sequence[Errors] = ()
 ) -> dict[str, Any]:
+    """Give the numbers of an added effect with their standard errors and units.
+
+    Parameters
+    ----------
+    item : Added
+    state : State
+    errors : ndarray, shape (free numbers,)
+    of_beside : sequence of dict
+        Standard errors of the signals beside the chain.
+    """
     found: dict[str, Any] = {}
     record = state.records[0]
     if not item.blocks:

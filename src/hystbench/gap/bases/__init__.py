@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,12 +12,14 @@ import numpy as np
 from hystbench.blocks.calls import current
 from hystbench.blocks.external import External, called
 from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.asked import kind_of_base
+from hystbench.gap.asked import IDENTIFIED, kind_of_base
 from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
 from hystbench.gap.evidence import Evidence, check_units
+from hystbench.gap.remembered import records_digest, remembered
 from hystbench.gap.scene import Scene
 from hystbench.model import Model, load_model
 
@@ -31,14 +35,15 @@ __all__ = [
 ]
 
 
-def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
+def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
     """Give the base that ``--model`` asks for.
 
     Parameters
     ----------
-    text : str
+    text : str or Model
         A model file; ``gpi`` or ``linear`` to identify one from the fit records;
-        ``column`` for the simulated output beside them; or ``package.module:function``.
+        ``column`` for the simulated output beside them; ``package.module:function``;
+        or a model itself.
     evidence : Evidence
 
     Returns
@@ -52,20 +57,48 @@ def load_base(text: str, evidence: Evidence) -> tuple[Model, str]:
     InputError
         If the text is none of these, units differ, or the base cannot be had.
     """
-    if text == "gpi":
-        return identified_gpi(evidence)
-    if text == "linear":
-        found = identified_linear(evidence)
-        # It was fitted with the gap in it: what is added may take its part back.
-        numbers = [
-            name
-            for name in found.model.parameter_names()
-            if not isinstance(found.model.value(name), str)
-        ]
-        return replace(found.model, free=tuple(numbers)), found.note
-    model, note = given_base(text, evidence)
-    model, more = split_given(model, evidence)
+    if isinstance(text, Model):
+        model, note = checked_base(text, text.name, evidence), f"base {text.name}"
+    elif text in IDENTIFIED:
+        return _kept(["base", text], evidence, lambda: _identified(text, evidence))
+    else:
+        model, note = given_base(text, evidence)
+    if not isinstance(model.chain[0], TransferFunction):
+        return model, note
+    about = ["split", json.dumps(model.to_mapping(), sort_keys=True)]
+    model, more = _kept(about, evidence, lambda: split_given(model, evidence))
     return model, note + more
+
+
+def _kept(
+    about: list[str], evidence: Evidence, compute: Callable[[], tuple[Model, str]]
+) -> tuple[Model, str]:
+    """Compute a base from the fit records, or look up what an earlier run computed."""
+    return remembered(
+        lambda: [
+            *about,
+            records_digest(evidence.fit),
+            evidence.hold,
+            evidence.identification,
+        ],
+        compute,
+        lambda found: [found[0].to_mapping(), found[1]],
+        lambda kept: (Model.from_mapping(kept[0], "a base that was kept"), kept[1]),
+    )
+
+
+def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
+    """Identify a base from the fit records."""
+    if word == "gpi":
+        return identified_gpi(evidence)
+    found = identified_linear(evidence)
+    # It was fitted with the gap in it: what is added may take its part back.
+    numbers = [
+        name
+        for name in found.model.parameter_names()
+        if not isinstance(found.model.value(name), str)
+    ]
+    return replace(found.model, free=tuple(numbers)), found.note
 
 
 def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
@@ -109,16 +142,33 @@ def written_base(path: Path, evidence: Evidence) -> Model:
     InputError
         If it is no model of these records, or does not stay bounded on them.
     """
-    model = load_model(path)
-    check_units(evidence, model, str(path))
+    return checked_base(load_model(path), str(path), evidence)
+
+
+def checked_base(model: Model, place: str, evidence: Evidence) -> Model:
+    """Give a model as a base, once it has been held against the records.
+
+    Parameters
+    ----------
+    model : Model
+    place : str
+        Where it comes from, for messages.
+    evidence : Evidence
+
+    Raises
+    ------
+    InputError
+        If it is no model of these records, or does not stay bounded on them.
+    """
+    check_units(evidence, model, place)
     try:
         model = model.with_records(
             (*evidence.fit, *evidence.hold_out), evidence.simulated_column
         )
     except InputError as error:
-        raise InputError(f"{path}: {error}") from None
+        raise InputError(f"{place}: {error}") from None
     held = model.with_hold(evidence.hold)
-    _check_bounded(held, evidence, str(path))
+    _check_bounded(held, evidence, place)
     check_repeats(held, evidence)
     return model
 

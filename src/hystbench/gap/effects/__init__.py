@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
+from collections.abc import Iterable
 from functools import cache
 
 from hystbench.gap.effects.base import Effect
@@ -28,3 +29,9 @@ def effects() -> dict[str, Effect]:
             ):
                 found[item.name] = item()
     return dict(sorted(found.items()))
+
+
+def among(names: Iterable[str] | None) -> dict[str, Effect]:
+    """Give one of each of some effects, by name; of all where none are told."""
+    kept = set(effects() if names is None else names)
+    return {name: item for name, item in effects().items() if name in kept}

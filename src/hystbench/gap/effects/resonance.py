@@ -53,7 +53,7 @@ class Resonance(Effect):
 def peaks(scene: Scene, low: float, high: float) -> FloatArray:
     """Give the frequencies at which one light mode would lower the residual most.
 
-    Only what lies within ``NEAR`` of a mode's frequency counts, where the mode stands out
+    Only what lies within ``NEAR`` of a mode's frequency counts, where it stands out
     of what else the residual holds.
 
     Parameters

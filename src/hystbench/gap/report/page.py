@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from itertools import groupby
 from typing import Any
 
@@ -35,6 +35,9 @@ OPTIONAL: dict[str, Any] = {
     "unnamed": None,
     "simulator": None,
     "calls_used_up": None,
+    "asked": None,
+    "built_in": None,
+    "command": None,
 }
 #: And its parts with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
@@ -70,10 +73,7 @@ def page(content: Content) -> str:
         environment.filters[name] = getattr(words, name)
     environment.filters["unit"] = words.unit
     environment.filters["listed"] = words.listed
-    gap = OPTIONAL | content.gap
-    gap["gap"] = INTERVALS | gap["gap"]
-    if gap["black_box"]:
-        gap["black_box"] = INTERVALS | gap["black_box"]
+    gap = with_optional(content.gap)
     drawn, missing = _where(content)
     page = environment.get_template(TEMPLATE).render(
         gap=gap,
@@ -83,6 +83,7 @@ def page(content: Content) -> str:
         named=[effect["name"] for effect in gap["effects"]],
         glance=headline(gap, content),
         advice=words.advice(gap),
+        reruns=words.rerun_commands(gap),
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
@@ -97,6 +98,15 @@ def page(content: Content) -> str:
         held=len(content.hold_out),
     )
     return one_micro(page)
+
+
+def with_optional(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Give what gap.json holds, with what it may leave out."""
+    gap = OPTIONAL | dict(content)
+    gap["gap"] = INTERVALS | gap["gap"]
+    if gap["black_box"]:
+        gap["black_box"] = INTERVALS | gap["black_box"]
+    return gap
 
 
 def headline(gap: dict[str, Any], content: Content) -> list[Picture]:

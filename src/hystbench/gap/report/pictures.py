@@ -198,7 +198,7 @@ def series(axes: Any, tables: Sequence[HoldOut], floor: float, unit: str) -> Non
         outputs.set_title(table.name)
         outputs.set_ylabel(f"output ({shown})")
         for values, color in zip(left, (BEFORE, AFTER), strict=True):
-            residuals.plot(*_hull(time, values), color=color, linewidth=0.8)
+            residuals.plot(*hull(time, values), color=color, linewidth=0.8)
         residuals.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
         residuals.set_title("residual, noise floor grey")
         residuals.set_ylabel(f"({shown})")
@@ -243,7 +243,7 @@ def logarithmic(panel: Axes, directions: str) -> None:
             axis.set_minor_formatter(NullFormatter())
 
 
-def _hull(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def hull(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Thin a long line to the least and the largest value of each stretch."""
     size = len(time) // (POINTS // 2)
     if size < 3:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 from typing import Any
 
 from markupsafe import Markup
@@ -28,7 +29,69 @@ FLOORS = {
 
 
 def verdict_sentence(gap: dict[str, Any]) -> str:
-    """Say the verdict in plain words."""
+    """Say the verdict in plain words, what the user put in first."""
+    put_in = gap["asked"]["with"] if gap["asked"] else []
+    if not put_in:
+        return _verdict(gap)
+    names = listed([name.replace("-", " ") for name in put_in])
+    said = _verdict(gap)
+    return f"With {names}, which you put in, {said[:1].lower()}{said[1:]}"
+
+
+def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
+    """Give what an engineer may say to a verdict, and the command for each.
+
+    Returns
+    -------
+    list of (str, str)
+    """
+    place = gap["command"] or {"dataset": "DATASET", "model": "MODEL", "out": "OUT"}
+    asked = gap["asked"] or {"without": [], "with": []}
+    named = [effect["name"] for effect in gap["effects"]]
+    if gap["withdrawn"]:
+        named = gap["withdrawn"]["names"]
+    known = {*named, *asked["with"], *asked["without"]}
+    rivals = [
+        name
+        for effect in gap["effects"]
+        for name in effect["cannot_be_told_from"]
+        if name not in known
+    ]
+    rivals += [
+        item["name"]
+        for item in gap["ranking"]
+        if item["round"] == 1 and not item["look"]
+        if item["name"] not in known and "declined" not in item
+    ]
+    found = [(f"it is not {name}", [name], "") for name in dict.fromkeys(named)]
+    for rival in rivals[:1]:
+        found.append((f"it is {rival}", [], rival))
+        if named:
+            first = named[0]
+            found.append((f"it is not {first}, it is {rival}", [first], rival))
+    return [
+        (words, _command(place, asked, without, put_in))
+        for words, without, put_in in found
+    ]
+
+
+def _command(
+    place: dict[str, str], asked: dict[str, list[str]], without: list[str], put_in: str
+) -> str:
+    closed = [*asked["without"], *without]
+    fixed = [*asked["with"], *([put_in] if put_in else [])]
+    label = "".join(f"-without-{name}" for name in without)
+    label += f"-with-{put_in}" if put_in else ""
+    words = ["hystbench", "gap", place["dataset"], "--model", place["model"]]
+    words += ["--out", f"{place['out'].rstrip('/')}{label}"]
+    for name in closed:
+        words += ["--without", name]
+    for name in fixed:
+        words += ["--with", name]
+    return shlex.join(words)
+
+
+def _verdict(gap: dict[str, Any]) -> str:
     if gap["withdrawn"] and gap["verdict"] == "unnamed":
         return _withdrawn_sentence(gap["withdrawn"])
     names = [effect["name"].replace("-", " ") for effect in gap["effects"]]

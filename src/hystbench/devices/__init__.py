@@ -1,0 +1,1 @@
+"""The paper's models on measured devices that it never saw."""

@@ -1,0 +1,1 @@
+"""What ``from hystbench import ...`` gives: records, gaps and their pictures."""

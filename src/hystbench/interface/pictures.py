@@ -1,0 +1,69 @@
+"""What is drawn of records and gaps: labelled, with units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.ticker import MaxNLocator
+
+from hystbench.figures.style import BLUE, GREY, VERMILION, unit_text
+from hystbench.gap.report.pictures import TICKS, hull
+from hystbench.record import Channel, FloatArray, Record
+
+MEASURED: dict[str, Any] = {"color": GREY, "linewidth": 2.2, "label": "measured"}
+BEFORE: dict[str, Any] = {"color": VERMILION, "linestyle": "--", "label": "before"}
+AFTER: dict[str, Any] = {"color": BLUE, "label": "after"}
+
+Outputs = tuple[FloatArray, FloatArray]
+"""Of a record, before and after, shape (n,) each."""
+
+
+def records(axes: Any, shown: Sequence[Record]) -> None:
+    """Draw input, output and loop of each record, a row each."""
+    for row, record in zip(axes, shown, strict=True):
+        given, got, loop = row
+        given.plot(*hull(record.time, record.u), color=BLUE)
+        got.plot(*hull(record.time, record.y), color=BLUE)
+        loop.plot(record.u, record.y, color=BLUE, linewidth=0.8)
+        given.set_title(f"{record.name} ({record.use})")
+        for panel in (given, got):
+            panel.set_xlabel("time (s)")
+        given.set_ylabel(_label(record.input))
+        got.set_ylabel(_label(record.output))
+        loop.set_xlabel(_label(record.input))
+        loop.set_ylabel(_label(record.output))
+        _few_ticks(row)
+
+
+def gap(
+    axes: Any, held_out: Sequence[Record], outputs: Sequence[Outputs], floor: float
+) -> None:
+    """Draw each hold-out record: its loop and its residual, before and after."""
+    for row, record, (before, after) in zip(axes, held_out, outputs, strict=True):
+        loop, left = row
+        for values, line in ((record.y, MEASURED), (before, BEFORE), (after, AFTER)):
+            loop.plot(record.u, values, **line)
+        loop.set_title(record.name)
+        loop.set_xlabel(_label(record.input))
+        loop.set_ylabel(_label(record.output))
+        for values, line in ((before, BEFORE), (after, AFTER)):
+            own = {**line, "linewidth": 0.9}
+            left.plot(*hull(record.time, record.y - values), **own)
+        left.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
+        left.set_title("noise floor grey")
+        left.set_xlabel("time (s)")
+        left.set_ylabel(f"residual ({unit_text(record.output.unit)})")
+        _few_ticks(row)
+    lines = axes[0][0].get_legend_handles_labels()[0]
+    axes[0][0].figure.legend(handles=lines, loc="outside upper center", ncols=3)
+
+
+def _label(channel: Channel) -> str:
+    return f"{channel.name} ({unit_text(channel.unit)})"
+
+
+def _few_ticks(panels: Any) -> None:
+    for panel in panels:
+        panel.xaxis.set_major_locator(MaxNLocator(TICKS))
+        panel.yaxis.set_major_locator(MaxNLocator(TICKS))
