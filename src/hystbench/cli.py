@@ -22,7 +22,7 @@ COMMANDS = {
     "simulate": "Run a model on one record.",
     "export": "Write a model as C, a Python module or an FMU.",
     "invert": "Find the input that makes a model's output follow a reference.",
-    "inverse": "Compare tracking with and without the inverse on the twin.",
+    "tracking": "Follow references on the twin with and without the inverse.",
     "load": "Read and check one record of a measured dataset.",
     "identify": "Identify the envelope functions (Algorithm 1).",
     "filter": "Run one LMS filter on one record.",

@@ -28,6 +28,7 @@ MAKERS = (
     ("results/benchmarks/", "make bench"),
     ("results/blind/", "snakemake blind"),
     ("results/gap/", "snakemake gap"),
+    ("results/inverse/", "snakemake inverse"),
     ("results/pressure/", "snakemake pressure"),
     ("results/figures/contest.", "snakemake pressure"),
     ("results/structures/held-out", "snakemake held_out"),
