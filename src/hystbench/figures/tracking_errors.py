@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hystbench.figures import style
+from hystbench.inverse.told import GOAL
 from hystbench.inverse.tracking import DRIVES, LINEAR, OWN, WITH, WITHOUT, Tracked
 from hystbench.record import Channel
 
@@ -59,7 +60,15 @@ def _errors(axes: Axes, rows: Sequence[Tracked], names: Sequence[str]) -> None:
             color=color,
             label=DRIVES[drive],
         )
-    axes.axvline(2.0, color=style.BLACK, linewidth=0.8, linestyle=":")
+    axes.axvline(100 * GOAL, color=style.BLACK, linewidth=0.8, linestyle=":")
+    axes.annotate(
+        f"{100 * GOAL:g} %",
+        (100 * GOAL, 0.0),
+        xycoords=axes.get_xaxis_transform(),
+        xytext=(3, 3),
+        textcoords="offset points",
+        fontsize="small",
+    )
     axes.set_xscale("log")
     axes.set_yticks(np.arange(len(names)), [_title(name) for name in names])
     axes.invert_yaxis()
@@ -68,8 +77,8 @@ def _errors(axes: Axes, rows: Sequence[Tracked], names: Sequence[str]) -> None:
 
 def _scan(above: Axes, below: Axes, rows: Sequence[Tracked], output: Channel) -> None:
     reference = rows[0].reference
-    count = round(SHOWN_S / reference.dt)
     middle = len(reference.y) // 2
+    count = min(round(SHOWN_S / reference.dt), len(reference.y) - middle)
     part = slice(middle, middle + count)
     time = 1e3 * np.arange(count) * reference.dt
     above.plot(time, reference.y[part], **style.BEHIND)

@@ -7,11 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hystbench.blocks.base import Block
-from hystbench.blocks.friction import Friction
 from hystbench.blocks.gain import Gain
-from hystbench.blocks.thermal_drift import ThermalDrift
-from hystbench.blocks.wrapping import Wrapped
 from hystbench.errors import InputError
 from hystbench.inverse.plays import FAR, Plays
 from hystbench.inverse.response import Response, best_linear, without
@@ -73,11 +69,11 @@ def feedforward(
 ) -> Feedforward:
     """Find the input that makes a model's output follow a reference.
 
-    Play operators at the beginning of the chain, behind nothing but straight lines, are
-    inverted exactly. The rest, or the whole model where it does not begin so, is
-    inverted by iteration: the best linear approximation of what is left gives the
-    first input, and turns each error that is left into a correction [1]_. The
-    reference is known as a whole, so that the input may move before it does.
+    The first play operators in the chain are inverted exactly. What is before, around
+    and behind them, or the whole model where there are none, is inverted by iteration:
+    the best linear approximation of what is left gives the first input, and turns each
+    error that is left into a correction [1]_. The reference is known as a whole, so
+    that the input may move before it does.
 
     Parameters
     ----------
@@ -117,16 +113,18 @@ def feedforward(
             f"--band: {band:g} Hz; expected above 0 and at most {0.5 / dt:g} Hz, half "
             "the sampling rate"
         )
-    split = Split.of(model, limits)
+    start = Start.of(model, limits)
+    anywhere = Start.of(model, Limits())
     response = best_linear(
-        lambda x: split.after(x, dt),
+        lambda x: model.simulate(anywhere.to_input(x)[0], dt),
         stroke,
         len(reference),
         dt,
         min(1.5 * band, 0.5 / dt),
+        hysteretic=start.plays is None,
     )
     x = without(response, reference - response.rest, dt, band)
-    found = _corrected(model, split, response, x, reference, dt, band)
+    found = _corrected(model, start, response, x, reference, dt, band)
     if found.clipped and limits == Limits():
         raise InputError(
             f"reference: {found.clipped} of {len(reference)} samples lie beyond what "
@@ -137,53 +135,43 @@ def feedforward(
 
 
 @dataclass(frozen=True)
-class Split:
-    """A model as plays that are inverted exactly, and the rest, which is iterated.
+class Start:
+    """How what is iterated becomes an input: by plays that are inverted exactly.
+
+    What is iterated is then the output of these plays, else the input itself.
 
     Parameters
     ----------
     name : str
-        The block of the plays; nothing where the whole model is iterated.
+        The block of the plays; nothing where there is none.
     plays : Plays or None
     scale, shift : float
-        The straight line before the plays.
-    rest : tuple of Block or Wrapped
-        What follows.
+        The straight line before the plays; what else is before or around them counts
+        as nothing here, and is left to the iteration.
     limits : Limits
-        Those of the model's input.
+        Those of the input.
     """
 
     name: str
     plays: Plays | None
     scale: float
     shift: float
-    rest: tuple[Block | Wrapped, ...]
     limits: Limits
 
     @classmethod
-    def of(cls, model: Model, limits: Limits) -> Split:
-        """Look for plays behind nothing but straight lines."""
+    def of(cls, model: Model, limits: Limits) -> Start:
+        """Look for the first plays in the chain."""
         scale, shift = 1.0, 0.0
-        for place, step in enumerate(model.steps):
-            if isinstance(step, Gain) and step.value != 0:
-                scale, shift = scale * step.value, shift * step.value + step.offset
-                continue
-            plays, rest = Plays.of(step), model.steps[place + 1 :]
-            if plays is None or any(isinstance(each, WITH_INPUT) for each in rest):
-                break
-            name = step.name if isinstance(step, Block) else ""
-            return cls(name, plays, scale, shift, rest, limits)
-        return cls("", None, 1.0, 0.0, model.steps, limits)
-
-    def after(self, x: FloatArray, dt: float) -> FloatArray:
-        """Simulate the rest."""
-        y = x
-        for step in self.rest:
-            y = step.simulate(y, x, dt)
-        return y
+        for block in model.chain:
+            plays = Plays.of(block)
+            if plays is not None and scale != 0:
+                return cls(block.name, plays, scale, shift, limits)
+            if isinstance(block, Gain):
+                scale, shift = scale * block.value, shift * block.value + block.offset
+        return cls("", None, 1.0, 0.0, limits)
 
     def to_input(self, x: FloatArray) -> tuple[FloatArray, int]:
-        """Give the model's input for what enters the rest, and the samples lost."""
+        """Give the input, and the samples at which it stands at a limit."""
         if self.plays is None:
             u = np.clip(x, *self.limits)
             return u, int((u != x).sum())
@@ -192,13 +180,9 @@ class Split:
         return (v - self.shift) / self.scale, lost
 
 
-WITH_INPUT = (Friction, ThermalDrift)
-"""Blocks that take the model's input as well: not to be told apart from it."""
-
-
 def _corrected(
     model: Model,
-    split: Split,
+    start: Start,
     response: Response,
     x: FloatArray,
     reference: FloatArray,
@@ -209,10 +193,10 @@ def _corrected(
     stroke = float(np.ptp(reference))
 
     def tried(x: FloatArray) -> Feedforward:
-        u, clipped = split.to_input(x)
+        u, clipped = start.to_input(x)
         y = model.simulate(u, dt)
         off = float(np.sqrt(np.mean((reference - y) ** 2))) / stroke
-        return Feedforward(u, y, (off,), split.name, clipped)
+        return Feedforward(u, y, (off,), start.name, clipped)
 
     best = tried(x)
     errors, share = list(best.error), 1.0

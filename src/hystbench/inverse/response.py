@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,10 @@ from hystbench.record import FloatArray
 
 Map = Callable[[FloatArray], FloatArray]
 
-LINES = 40
-"""Sines of an excitation, evenly spaced in the logarithm of their frequency."""
+DRAWS = 3
+"""Draws of the phases: what is nonlinear differs from one to the next."""
+NEIGHBOURS = 0.15
+"""How far neighbours lie at most, as a share of the frequency."""
 TRIES = 30
 """How often the size of the excitation is corrected, at most."""
 
@@ -38,16 +40,24 @@ class Response(NamedTuple):
         return float(self.value[0].real)
 
     def at(self, frequency_hz: FloatArray) -> NDArray[np.complex128]:
-        """Interpolate size and phase; a constant is multiplied by the gain."""
-        size = np.interp(frequency_hz, self.frequency_hz, np.abs(self.value))
+        """Interpolate size and phase; a constant has the gain and no phase."""
+        at, size = np.append(0.0, self.frequency_hz), np.abs(self.value)
         phase = np.unwrap(np.angle(self.value))
-        turned = np.interp(frequency_hz, self.frequency_hz, phase)
-        found = size * np.exp(1j * turned)
-        return np.where(frequency_hz < self.frequency_hz[0], self.gain, found)
+        still = 0.0 if self.gain > 0 else np.copysign(np.pi, phase[0])
+        found = np.interp(frequency_hz, at, np.append(size[0], size))
+        turned = np.interp(frequency_hz, at, np.append(still, phase))
+        whole: NDArray[np.complex128] = found * np.exp(1j * turned)
+        return whole
 
 
 def best_linear(
-    map_: Map, size: float, count: int, dt: float, band_hz: float, seed: int = 1
+    map_: Map,
+    size: float,
+    count: int,
+    dt: float,
+    band_hz: float,
+    hysteretic: bool = False,
+    seed: int = 1,
 ) -> Response:
     """Estimate the best linear approximation by a sum of sines of random phases.
 
@@ -63,6 +73,9 @@ def best_linear(
         Sampling interval in seconds.
     band_hz : float
         Highest frequency.
+    hysteretic : bool
+        Whether neighbouring frequencies are averaged: where the map has hysteresis,
+        what the strong sines make of it hides the response to the weak ones.
     seed : int
         Draws the phases.
 
@@ -71,27 +84,49 @@ def best_linear(
     InputError
         If no input makes an output of that size.
     """
-    last = max(int(band_hz * count * dt), 2)
-    lines = np.unique(np.geomspace(1, last, LINES).round().astype(int))
-    phases = np.random.default_rng(seed).uniform(0, 2 * np.pi, len(lines))
-    spectrum = np.zeros(count // 2 + 1, complex)
-    # Slow motion carries the stroke: the sines fall off as those of a triangle.
-    spectrum[lines] = np.exp(1j * phases) / np.sqrt(lines)
-    sines = np.fft.irfft(spectrum, count)
-    u = sines / np.abs(sines).max()
+    lines = np.arange(1, max(int(band_hz * count * dt), 2) + 1)
+    random = np.random.default_rng(seed)
+    spectra = np.zeros((DRAWS, count // 2 + 1), complex)
+    # Slow motion carries the stroke: the sines fall off with their frequency.
+    phases = random.uniform(0, 2 * np.pi, (DRAWS, len(lines)))
+    spectra[:, lines] = np.exp(1j * phases) / lines
+    draws = np.fft.irfft(spectra, count)
+    draws /= np.abs(draws).max(axis=1, keepdims=True)
     rest = float(map_(np.zeros(8))[-1])
+    scale = _scaled(map_, draws[0], size)
+    inputs = np.fft.rfft(scale * draws)
+    settled = [map_(np.tile(scale * u, 2))[count:] for u in draws]
+    outputs = np.fft.rfft(np.array(settled))
+    cross = (outputs * inputs.conj()).sum(axis=0)[lines]
+    power = (np.abs(inputs) ** 2).sum(axis=0)[lines]
+    if hysteretic:
+        # A sine of line k has the power 1 / k^2: all count alike.
+        cross, power = _averaged(cross * lines**2), _averaged(power * lines**2)
+    return Response(lines / (count * dt), cross / power, rest)
+
+
+def _averaged(values: NDArray[Any]) -> NDArray[Any]:
+    """Average over neighbours, as far as :data:`NEIGHBOURS` of the frequency."""
+    half = (NEIGHBOURS * np.arange(1, len(values) + 1)).astype(int)
+    place = np.arange(len(values))
+    low, high = np.maximum(place - half, 0), np.minimum(place + half + 1, len(values))
+    total = np.append(0.0, np.cumsum(values))
+    averaged: NDArray[Any] = (total[high] - total[low]) / (high - low)
+    return averaged
+
+
+def _scaled(map_: Map, u: FloatArray, size: float) -> float:
+    """Find a factor on an input for which the output is about of a size."""
     scale, known = 1.0, 0.0
     for _ in range(TRIES):
-        y = map_(np.tile(scale * u, 2))[count:]
-        reached = float(np.ptp(y))
+        reached = float(np.ptp(map_(np.tile(scale * u, 2))[len(u) :]))
         if not np.isfinite(reached) or reached == 0:
             scale *= 0.1 if reached else 10.0
             continue
         known = max(known, reached)
         factor = size / reached
         if 0.8 < factor < 1.25:
-            found = np.fft.rfft(y)[lines] / np.fft.rfft(scale * u)[lines]
-            return Response(lines / (count * dt), found, rest)
+            return scale
         scale *= min(max(factor, 0.1), 10.0)
     raise InputError(
         f"reference: a stroke of {size:g}; the model makes at most {known:.4g}"
