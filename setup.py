@@ -38,6 +38,7 @@ SOURCES = [
     "drive.c",
     "envelope.c",
     "hardening.c",
+    "inverse.c",
     "jiles_atherton.c",
     "largest.c",
     "lms.c",

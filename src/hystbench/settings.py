@@ -19,7 +19,7 @@ from hystbench.errors import InputError, nearest
 from hystbench.published import load
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.schema import check_against_schema
-from hystbench.signals import Signal, make_signal
+from hystbench.signals import Signal, highest_hz, make_signal
 from hystbench.units import plain
 from hystbench.yaml_files import load_yaml
 
@@ -173,6 +173,19 @@ class Settings:
         """Settings of the twin's measurement."""
         keys = ("seed", "input_zero_error", "input_noise")
         return {key: self.config["twin"][key] for key in keys}
+
+    @property
+    def tracking_job(self) -> dict[str, Any]:
+        """Settings of open-loop tracking on the twin."""
+        common = self.config["excitation"]
+        definitions = {name: self.config["excitations"][name] for name in self.signals}
+        return {
+            "input_zero_error": self.config["twin"]["input_zero_error"],
+            "highest_hz": {
+                name: highest_hz(name, definition, common)
+                for name, definition in definitions.items()
+            },
+        }
 
     @property
     def identification_job(self) -> dict[str, Any]:

@@ -265,6 +265,26 @@ def check_definition(
     return kind, values
 
 
+def highest_hz(
+    name: str, definition: Mapping[str, Mapping[str, Any]], common: Mapping[str, Any]
+) -> float:
+    """Give the highest frequency in a signal's definition in config.yaml.
+
+    Parameters
+    ----------
+    name, definition, common
+        As for :func:`check_definition`.
+    """
+    _, values = check_definition(name, definition, common)
+    if "band" in values:
+        return float(values["band"][1] * values["sampling_frequency_hz"] / 2)
+    if "frequencies_hz" in values:
+        return float(max(values["frequencies_hz"]))
+    if "to_hz" in values:
+        return float(max(values["from_hz"], values["to_hz"]))
+    return float(values["frequency_hz"])
+
+
 def _check_value(place: str, key: str, value: object, annotation: str) -> None:
     """Refuse what is not of the parameter's type, or no frequency or count."""
     numbers = value if annotation == "Sequence[float]" else [value]

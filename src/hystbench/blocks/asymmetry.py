@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.record import FloatArray
 
 
@@ -29,3 +30,7 @@ class Asymmetry(Block):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial."""
         return z * (1.0 + self.coefficient * z)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give the polynomial."""
+        return polynomial(0.0, 1.0, self.coefficient)

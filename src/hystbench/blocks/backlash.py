@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
@@ -33,3 +34,8 @@ class Backlash(Block):
         """Follow the input at the edges of the gap."""
         y, _ = play(z, [self.half_width], z[:1])
         return y[:, 0]
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give the play operator that starts at its first sample."""
+        constants = {"half_width": self.half_width}
+        return Step("backlash", constants, {"started": 1, "w": 1})

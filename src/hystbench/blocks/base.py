@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hystbench.blocks.parameter import Parameter
+from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError, nearest
 from hystbench.record import FloatArray
 
@@ -35,6 +36,9 @@ class Block(ABC):
 
     seen: ClassVar[bool] = True
     """Whether it says what it does inside, or is a whole simulator of somebody's."""
+
+    no_step: ClassVar[str] = "has no step that could be exported"
+    """Why the block cannot be exported, if it cannot."""
 
     @classmethod
     def parameters(cls) -> dict[str, Parameter]:
@@ -82,6 +86,20 @@ class Block(ABC):
             for name, about in self.parameters().items()
             if getattr(self, name) != defaults[name]
         }
+
+    def step(self, sampling: Sampling) -> Step:
+        """Say what the block does at one sample, for code that runs elsewhere.
+
+        Parameters
+        ----------
+        sampling : Sampling
+
+        Raises
+        ------
+        InputError
+            If it cannot be said.
+        """
+        raise InputError(f"{self.name}: {self.no_step}")
 
     @abstractmethod
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:

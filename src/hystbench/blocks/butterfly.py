@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.operators import growing_play, play
 from hystbench.record import FloatArray
@@ -49,3 +50,8 @@ class Butterfly(WrappingBlock):
         else:
             moved = growing_play(v, [self.threshold], growth)
         return inner.grow(v, u, dt, growth) + self.coefficient * moved[:, 0] ** 2
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give what is added to the hysteresis inside."""
+        constants = {"coefficient": self.coefficient, "threshold": self.threshold}
+        return Step("butterfly", constants, {"w": 1}, grows=True)

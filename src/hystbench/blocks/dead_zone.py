@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
@@ -33,3 +34,7 @@ class DeadZone(Block):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Take off the dead zone."""
         return z - np.clip(z, -self.half_width, self.half_width)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Take off the dead zone."""
+        return Step("dead_zone", {"half_width": self.half_width})

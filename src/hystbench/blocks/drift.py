@@ -9,6 +9,8 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number, numbers
+from hystbench.blocks.step import Sampling, Step
+from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
@@ -47,3 +49,27 @@ class Drift(Block):
             knots = np.linspace(0.0, max(len(z) - 1, 1), len(self.path) + 1)
             y += np.interp(place, knots, (0.0, *self.path))
         return y
+
+    def step(self, sampling: Sampling) -> Step:
+        """Count the samples; a path keeps its last value after its record's end.
+
+        Raises
+        ------
+        InputError
+            If there is a path and nobody says how long its record is.
+        """
+        if self.path and sampling.duration_s is None:
+            raise InputError(
+                "drift: path: spread over one record, whose length is not known here; "
+                "expected --duration, or a model without the path"
+            )
+        path, spacing = np.array((0.0, *self.path)), 1.0
+        if self.path and sampling.duration_s is not None:
+            spacing = sampling.duration_s / sampling.dt / len(self.path)
+        constants = {
+            "slope": self.slope * sampling.dt,
+            "spacing": spacing,
+            "values": len(path),
+            "path": path,
+        }
+        return Step("drift", constants, {"count": 1})

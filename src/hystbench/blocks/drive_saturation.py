@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
@@ -31,3 +32,7 @@ class DriveSaturation(Block):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Clip the current."""
         return np.clip(z, -self.limit, self.limit)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Clip the current."""
+        return Step("clip", {"limit": self.limit})

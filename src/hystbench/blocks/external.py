@@ -42,6 +42,7 @@ class External(Block):
     place: ClassVar = "base"
     reference: ClassVar = "by definition"
     seen: ClassVar = False
+    no_step: ClassVar = "a Python function of somebody's cannot be turned into code"
 
     function: str = text("package.module:function of u and dt, which gives y")
 

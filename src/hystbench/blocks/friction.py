@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.step import Sampling, Step, central_difference, foretold
 from hystbench.record import FloatArray
 
 
@@ -41,3 +42,15 @@ class Friction(Block):
         """Add the friction."""
         velocity = np.gradient(u, dt)
         return z + self.coulomb * np.tanh(velocity / self.velocity_scale)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Take the rate from the curve through the input's newest samples."""
+        constants = {
+            "coulomb": self.coulomb,
+            "velocity_scale": self.velocity_scale,
+            "points": sampling.points,
+            "rate": central_difference(sampling.points, 0.0, 1.0) / sampling.dt,
+        }
+        history = {"history": 1 + sampling.points}
+        differs = foretold(sampling.points)
+        return Step("friction", constants, history, takes_input=True, differs=differs)

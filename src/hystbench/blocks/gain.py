@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.record import FloatArray
 
 
@@ -29,3 +30,7 @@ class Gain(Block):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the straight line."""
         return self.value * z + self.offset
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give the straight line."""
+        return polynomial(self.offset, self.value)

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.parameter import HUGE, numbers
+from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.operators import growing_play, play
@@ -73,3 +74,16 @@ class HysteresisShape(WrappingBlock):
         if self.powers:
             y += v * np.polyval(self.powers[::-1], v)
         return y
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give what is added to the hysteresis inside."""
+        count = len(self.thresholds)
+        constants = {
+            "count": count,
+            "thresholds": np.array(self.thresholds),
+            "weights": np.array(self.weights),
+            "square_weights": np.array(self.square_weights or (0.0,) * count),
+            "degrees": 1 + len(self.powers),
+            "powers": np.array((0.0, *self.powers)),
+        }
+        return Step("hysteresis_shape", constants, {"w": count}, grows=True)

@@ -10,6 +10,7 @@ import numpy as np
 from hystbench.blocks.band_limited import sine_series
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.parameter import number
+from hystbench.blocks.step import Sampling, Step, smooth_curve, value_at
 from hystbench.record import FloatArray
 
 
@@ -51,3 +52,22 @@ class InputDelay(HeldBlock):
         v = series.line(len(z), shift) + series.sines(len(z), turn)
         v[place < shift] = z[0]
         return v
+
+    def step(self, sampling: Sampling) -> Step:
+        """Keep samples, and take the delayed one from a curve through a few of them.
+
+        With straight lines that is through two of them, else through as many on both
+        sides as there are.
+        """
+        shift = self.delay_s / sampling.dt
+        points = sampling.points if self.holding == "band-limited" else 2
+        first = max(int(shift) - points // 2 + 1, 0)
+        constants = {
+            "shift": shift,
+            "first": first,
+            "points": points,
+            "taps": value_at(points, first - shift),
+        }
+        states = {"count": 1, "kept": first + points}
+        differs = smooth_curve(points) if points > 2 else ""
+        return Step("input_delay", constants, states, differs=differs)

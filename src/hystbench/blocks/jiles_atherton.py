@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -104,6 +105,21 @@ class JilesAtherton(HystereticBlock):
             else:
                 high = middle
         return middle
+
+    def step(self, sampling: Sampling) -> Step:
+        """Integrate over the field; the states count from the bias."""
+        finer = 1 - self.coupling / (3 * self.shape)
+        constants = {
+            "saturation": self.saturation,
+            "shape": self.shape,
+            "coupling": self.coupling,
+            "pinning": self.pinning,
+            "reversibility": self.reversibility,
+            "longest": min(self.shape, self.pinning) / STEPS * finer,
+            "bias": self.bias,
+            "start": self.anhysteretic(self.bias),
+        }
+        return Step("jiles_atherton", constants, {"field": 1, "magnetization": 1})
 
 
 def langevin(x: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import lru_cache
+from math import comb, factorial
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from hystbench import operators
 from hystbench.blocks.band_limited import ComplexArray, sine_series
 from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.step import Sampling, Step, smooth_curve, through_samples
 from hystbench.record import FloatArray
 
 
@@ -43,6 +45,10 @@ class LinearBlock(HeldBlock):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the response to ``z`` from rest."""
         return respond(self.continuous(), z, dt, self.holding)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Move the state over the interval that has passed."""
+        return linear_step(self.continuous(), sampling, self.holding)
 
     def frequency_response(self, frequency_hz: FloatArray) -> ComplexArray:
         """Evaluate ``C (jwI - A)^-1 B + D`` of the block in continuous time.
@@ -148,6 +154,107 @@ def _over(above: FloatArray, below: FloatArray, at_zero: float) -> FloatArray:
     out = np.full(len(below), at_zero)
     np.divide(above, below, out=out, where=below != 0)
     return out
+
+
+def linear_step(
+    system: StateSpace, sampling: Sampling, hold: Hold, settled: bool = False
+) -> Step:
+    """Give the step ``x(k) = phi x(k-1) + sum_j b_j v(k-j)``, ``y = c x + d v``.
+
+    The result is exact for a staircase and for straight lines; a band-limited input is
+    taken as the polynomial through its newest samples.
+
+    Parameters
+    ----------
+    system : StateSpace
+    sampling : Sampling
+    hold : {"zero-order", "linear", "band-limited"}
+    settled : bool
+        Whether the first value is to have stood there for ever before.
+    """
+    points = sampling.points if hold == "band-limited" else 2
+    diagonal = system.is_diagonal
+    if diagonal:
+        phi, moments = moments_of_modes(system, sampling.dt, points)
+    else:
+        phi, moments = moments_of(system, sampling.dt, points)
+    if hold == "zero-order":
+        drive = np.array([np.zeros(len(system.b)), moments[0]])
+    else:
+        # The moments count from the start of the interval, one before the newest.
+        ahead = [
+            sum(comb(m, j) * (-1.0) ** (m - j) * moments[j] for j in range(m + 1))
+            for m in range(points)
+        ]
+        drive = through_samples(points, lambda m: ahead[m])
+    static = 0.0
+    if settled:
+        static = float(system.d - system.c @ np.linalg.solve(system.a, system.b))
+    constants = {
+        "size": len(system.b),
+        "points": points,
+        "phi": phi.ravel(),
+        "drive": drive.ravel(),
+        "output": system.c,
+        "direct": system.d,
+        "settled": int(settled),
+        "static": static,
+    }
+    own = ("x",) if diagonal else ("x", "next")
+    states = {**dict.fromkeys(own, len(system.b)), "history": 1 + points, "offset": 1}
+    differs = smooth_curve(points) if hold == "band-limited" else ""
+    function = "modes" if diagonal else "linear"
+    return Step(function, constants, states, differs=differs)
+
+
+def moments_of(
+    system: StateSpace, dt: float, points: int
+) -> tuple[FloatArray, list[FloatArray]]:
+    """Give what inputs ``s^m`` add to the state in one interval, s from 0 to 1.
+
+    Returns
+    -------
+    phi : ndarray, shape (n, n)
+        What is left of the state.
+    moments : list of ndarray, shape (n,)
+        For m from 0 to ``points - 1``, by one matrix exponential as
+        :func:`discretise`.
+    """
+    from scipy.linalg import expm  # late: a filter's process never needs it
+
+    n = len(system.b)
+    augmented = np.zeros((n + points, n + points))
+    augmented[:n, :n] = system.a * dt
+    augmented[:n, n] = system.b * dt
+    for m in range(points - 1):
+        augmented[n + m, n + m + 1] = 1.0
+    exponential = expm(augmented)
+    moments = [factorial(m) * exponential[:n, n + m] for m in range(points)]
+    return exponential[:n, :n], moments
+
+
+def moments_of_modes(
+    system: StateSpace, dt: float, points: int
+) -> tuple[FloatArray, list[FloatArray]]:
+    """Do the same where A is diagonal, mode by mode; ``phi`` is its diagonal.
+
+    ``I_m = int exp(x (1 - s)) s^m ds`` is ``(m I_(m-1) - 1) / x``, and for small x,
+    where that loses digits, the series ``sum_k x^k m! / (m + k + 1)!``.
+    """
+    x = np.diag(system.a) * dt
+    phi = np.exp(x)
+    small = np.abs(x) < 2.0
+    safe = np.where(small, 1.0, x)
+    moments: list[FloatArray] = []
+    for m in range(points):
+        term = np.full(len(x), 1.0 / (m + 1))
+        series = term.copy()
+        for k in range(1, 40):
+            term = term * np.where(small, x, 0.0) / (m + k + 1)
+            series += term
+        closed = (phi - 1) / safe if m == 0 else (m * moments[-1] - 1) / safe
+        moments.append(np.where(small, series, closed))
+    return phi, [system.b * dt * moment for moment in moments]
 
 
 class Steps(NamedTuple):

@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number, numbers
+from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -48,3 +49,13 @@ class MainsPickup(Block):
         for harmonic, (amplitude, phase) in enumerate(both, start=1):
             y += amplitude * np.sin(harmonic * angle + phase)
         return y
+
+    def step(self, sampling: Sampling) -> Step:
+        """Count the samples."""
+        constants = {
+            "cycles": self.frequency_hz * sampling.dt,
+            "harmonics": len(self.amplitudes),
+            "amplitudes": np.array(self.amplitudes),
+            "phases": np.array(self.phases),
+        }
+        return Step("mains_pickup", constants, {"count": 1})

@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, numbers
+from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.operators import growing_play, play
@@ -80,3 +81,16 @@ class PrandtlIshlinskii(HystereticBlock):
 
     def check_growth(self) -> None:
         """Accept: the thresholds of play operators can grow."""
+
+    def step(self, sampling: Sampling) -> Step:
+        """Add the weighted plays."""
+        none = (0.0,) * len(self.thresholds)
+        constants = {
+            "count": len(self.weights),
+            "thresholds": np.array(self.thresholds),
+            "weights": np.array(self.weights),
+            "square_weights": np.array(self.square_weights or none),
+            "cube_weights": np.array(self.cube_weights or none),
+        }
+        states = {"w": len(self.weights)}
+        return Step("prandtl_ishlinskii", constants, states, grows=True)

@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.parameter import HUGE, TINY, number, numbers
+from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -135,3 +136,22 @@ class Preisach(HystereticBlock):
         path[1::2] *= -1
         path[-1] = 0.0
         return np.asarray(path)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Keep the turning points that are not wiped out, twice as many as at first.
+
+        Where the input has made more of them, one inside another, the two newest go:
+        their loop is the smallest of all.
+        """
+        cells = int(self.cells)
+        room = 4 * cells + 8
+        constants = {
+            "cells": cells,
+            "room": room,
+            "limit": self.limit,
+            "reversible": self.reversible,
+            "mass": self._mass.ravel(),
+        }
+        states = {"memory": 5, "turns": room, "outputs": room}
+        differs = f"keeps {room} turning points, one inside another"
+        return Step("preisach", constants, states, differs=differs)

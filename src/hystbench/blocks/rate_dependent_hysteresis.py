@@ -11,6 +11,14 @@ from hystbench import kernels
 from hystbench.blocks.band_limited import finer
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.step import (
+    Sampling,
+    Step,
+    central_difference,
+    foretold,
+    smooth_curve,
+    value_at,
+)
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
@@ -100,3 +108,32 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         given = (self.coefficient, self.exponent, dt, np.ascontiguousarray(v))
         kernels.call("hb_acting_field", len(v), *given, field)
         return field
+
+    def step(self, sampling: Sampling) -> Step:
+        """Take fields and rates from the curve through the newest samples.
+
+        It gives the inner points of a band-limited field, and the sample after the
+        newest, which a central difference needs.
+        """
+        points = sampling.points
+        fine = OVERSAMPLING if self.holding == "band-limited" else 1
+        places = np.arange(1 - fine, 1) / fine
+        rates = [central_difference(points, place, 1 / fine) for place in places]
+        constants = {
+            "form": FORMS.index(self.form),
+            "coefficient": self.coefficient,
+            "exponent": self.exponent,
+            "dt": sampling.dt / fine,
+            "fine": fine,
+            "points": points,
+            "values": np.array([value_at(points, place) for place in places]).ravel(),
+            "rates": np.array(rates).ravel() / sampling.dt,
+        }
+        states = {"history": 1 + points, "growth_before": 1, "field": 2}
+        function = "rate_dependent_hysteresis"
+        differs = smooth_curve(points) if fine > 1 else ""
+        if self.form != "acting-field":
+            differs += f"{'; ' if differs else ''}{foretold(points)}"
+        return Step(
+            function, constants, states, grows=True, drives=fine, differs=differs
+        )

@@ -5,7 +5,16 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.step import (
+    PASSED_ONCE,
+    Sampling,
+    Step,
+    central_difference,
+    foretold,
+)
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.rdgpi.model import STARTS, RateDependentGPI
@@ -57,3 +66,23 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
     def _model(self) -> RateDependentGPI:
         values: dict[str, Any] = asdict(self)
         return RateDependentGPI(**values | {"order": int(self.order)})
+
+    def step(self, sampling: Sampling) -> Step:
+        """Take the rate from the curve through the input's newest samples."""
+        count = int(self.order) + 1
+        constants = {
+            "spacing": np.array([self.c * self.alpha1, self.beta1, self.lambda1]),
+            "loss": np.array([self.alpha2, self.beta2, self.lambda2]),
+            "weight": self.rho / count,
+            "tau": self.tau,
+            "envelope_gain": self.envelope_gain,
+            "envelope_offset": self.envelope_offset,
+            "points": sampling.points,
+            "rate": central_difference(sampling.points, 0.0, 1.0) / sampling.dt,
+            "count": count,
+        }
+        states = {"history": 1 + sampling.points, "w": count}
+        differs = foretold(sampling.points)
+        if self.start == "settled":
+            differs += f"; {PASSED_ONCE}"
+        return Step("rdgpi", constants, states, differs=differs)

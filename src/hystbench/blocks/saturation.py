@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -52,3 +53,8 @@ class Saturation(Block):
             return self.level * np.tanh(ratio)
         size = 1.0 + np.abs(ratio) ** self.sharpness
         return z / size ** (1.0 / self.sharpness)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give the curve."""
+        constants = {"level": self.level, "sharpness": self.sharpness}
+        return Step("saturation", constants)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
 
 from hystbench.blocks.base import RandomBlock
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.record import FloatArray
 
 
@@ -33,3 +34,7 @@ class SensorNoise(RandomBlock):
     def draw(self, n: int, dt: float, rng: np.random.Generator) -> FloatArray:
         """Draw independent normal samples."""
         return rng.normal(0.0, self.rms, n)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Pass the signal on: code that is exported adds no noise."""
+        return replace(polynomial(0.0, 1.0), differs="adds no noise")

@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.record import FloatArray
 
 
@@ -31,3 +32,7 @@ class SensorNonlinearity(Block):
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the polynomial."""
         return z * (1.0 + z * (self.quadratic + self.cubic * z))
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give the polynomial."""
+        return polynomial(0.0, 1.0, self.quadratic, self.cubic)

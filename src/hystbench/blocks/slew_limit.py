@@ -10,6 +10,7 @@ import numpy as np
 from hystbench import kernels
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
@@ -39,3 +40,8 @@ class SlewLimit(Block):
         rate = self.rate * dt
         kernels.call("hb_slew_limit", len(z), rate, np.ascontiguousarray(z), v)
         return v
+
+    def step(self, sampling: Sampling) -> Step:
+        """Follow the input, which goes straight from its last sample."""
+        states = {"started": 1, "before": 1, "now": 1}
+        return Step("slew_limit", {"rate": self.rate * sampling.dt}, states)

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from hystbench.blocks.base import Block
-from hystbench.blocks.linear import lag, respond
+from hystbench.blocks.linear import discretise_modes, lag, respond
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 
 
@@ -41,3 +44,19 @@ class ThermalDrift(Block):
         if self.second_time_constant_s > 0:
             heat = respond(lag(self.second_time_constant_s), heat, dt, "linear")
         return z + self.coefficient * heat
+
+    def step(self, sampling: Sampling) -> Step:
+        """Let the heat go through one low-pass, or two."""
+        seconds = [self.time_constant_s, self.second_time_constant_s]
+        lags = [
+            np.array(discretise_modes(lag(tau), sampling.dt, "linear")).ravel()
+            for tau in seconds
+            if tau > 0
+        ]
+        constants = {
+            "coefficient": self.coefficient,
+            "count": len(lags),
+            "lags": np.concatenate(lags),
+        }
+        states = {"started": 1, "before": len(lags), "x": len(lags)}
+        return Step("thermal_drift", constants, states, takes_input=True)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
 import numpy as np
 
-from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
 from hystbench.blocks.parameter import HUGE, choice, numbers
+from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -49,6 +50,15 @@ class TransferFunction(LinearBlock):
         static = self.numerator[-1] / self.denominator[-1]
         y = super().simulate(path - before, u, dt) + static * before
         return y[len(path) - len(z) :]
+
+    def step(self, sampling: Sampling) -> Step:
+        """Move the state; exported code takes ``moving`` as ``settled``."""
+        settled = self.start != "rest"
+        step = linear_step(self.continuous(), sampling, self.holding, settled)
+        if self.start != "moving":
+            return step
+        started = "starts settled on its first sample, whatever came before"
+        return replace(step, differs="; ".join(filter(None, (step.differs, started))))
 
     def check(self) -> None:
         """Refuse an improper or unstable transfer function."""

@@ -29,6 +29,7 @@ MAKERS = (
     ("results/blind/", "snakemake blind"),
     ("results/gap/", "snakemake gap"),
     ("results/devices/", "snakemake devices"),
+    ("results/inverse/", "snakemake inverse"),
     ("results/pressure/", "snakemake pressure"),
     ("results/figures/contest.", "snakemake pressure"),
     ("results/structures/held-out", "snakemake held_out"),

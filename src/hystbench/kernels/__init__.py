@@ -47,6 +47,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_hardening": (_SIZE, "iffffaa"),
     "hb_preisach": (None, "iifaaaaa"),
     "hb_jiles_atherton": (None, "iffffffaaa"),
+    "hb_invert_plays": (_SIZE, "iiifaaaffaaa"),
 }
 
 

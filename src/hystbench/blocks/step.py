@@ -1,0 +1,134 @@
+"""What a block does at one sample, for code that runs elsewhere.
+
+A block of the vocabulary says its step as the name of a function and what that
+function takes: constants, and states that are all zero at the start. The functions are
+written twice, in C and in Python, in :mod:`hystbench.export`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hystbench.record import FloatArray
+
+LARGEST_POINTS = 8
+"""Samples that a curve goes through at most; the C functions hold so many."""
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """What is known of the signal that exported code will get.
+
+    Parameters
+    ----------
+    dt : float
+        Sampling interval in seconds.
+    points : int
+        A signal that is smooth between its samples is taken as the polynomial through
+        the newest so many: code that runs sample by sample knows none to come.
+    duration_s : float, optional
+        Length of the record to which a path of drift belongs.
+    """
+
+    dt: float
+    points: int = 6
+    duration_s: float | None = None
+
+
+@dataclass(frozen=True)
+class Step:
+    """One call of a function: constants, states, and then the signals that it takes.
+
+    Parameters
+    ----------
+    function : str
+        Name of the function, without the prefix that it has in C.
+    constants : mapping of str to int, float or ndarray of float
+        In the order of the function's arguments.
+    states : mapping of str to int
+        Name and length of each state, an array of numbers; zero at the start.
+    takes_input : bool
+        Whether the function takes the model's input beside what enters the block.
+    grows : bool
+        Whether it takes a factor on its thresholds.
+    drives : int
+        For a block that wraps hysteresis: 0 where it adds its own output to that of
+        what is inside; else how often, at most, it calls what is inside in one sample.
+    differs : str
+        How the step differs from the block's simulation of a whole record, if it does:
+        the end of a sentence that begins with the block.
+    """
+
+    function: str
+    constants: Mapping[str, Any] = field(default_factory=dict)
+    states: Mapping[str, int] = field(default_factory=dict)
+    takes_input: bool = False
+    grows: bool = False
+    drives: int = 0
+    differs: str = ""
+
+
+def polynomial(*coefficients: float) -> Step:
+    """Give the step of a polynomial, the constant first."""
+    count = len(coefficients)
+    return Step("polynomial", {"count": count, "coefficients": np.array(coefficients)})
+
+
+def through_samples(
+    points: int, moment: Callable[[int], float | FloatArray]
+) -> FloatArray:
+    """Find what a linear functional takes of the polynomial through the newest samples.
+
+    Parameters
+    ----------
+    points : int
+        Samples, the newest at time 0 and the others at -1, -2 and so on.
+    moment : callable
+        Gives the functional of ``t^m`` from m.
+
+    Returns
+    -------
+    ndarray, shape (points,) or (points, k)
+        Weights of the samples, the newest first; ``(points, k)`` for k functionals.
+    """
+    degrees = np.arange(points)
+    places = -np.arange(points, dtype=np.float64)
+    wanted = np.array([moment(int(m)) for m in degrees])
+    weights: FloatArray = np.linalg.solve(places[None, :] ** degrees[:, None], wanted)
+    return weights
+
+
+def value_at(points: int, place: float) -> FloatArray:
+    """Weights of the samples for the curve's value at a time, the newest at 0."""
+    return through_samples(points, lambda m: place**m)
+
+
+def central_difference(points: int, place: float, half_width: float) -> FloatArray:
+    """Weights of the samples for a central difference of the curve, per sample."""
+    ahead, back = place + half_width, place - half_width
+    return through_samples(points, lambda m: (ahead**m - back**m) / (2 * half_width))
+
+
+def smooth_curve(points: int) -> str:
+    """Say what becomes of a band-limited input."""
+    return (
+        "takes its input between two samples from the polynomial through the newest "
+        f"{points}, and not from all samples of a record"
+    )
+
+
+def foretold(points: int) -> str:
+    """Say what becomes of a central difference."""
+    return (
+        f"foretells the next sample by the polynomial through the newest {points}, "
+        "for its rate"
+    )
+
+
+PASSED_ONCE = (
+    "starts at rest; that its input has passed once before is so after it was fed once"
+)

@@ -1,0 +1,84 @@
+"""``hystbench export``: write a model as code that runs elsewhere."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.blocks.held import HOLDS, Hold
+from hystbench.blocks.step import LARGEST_POINTS, Sampling
+from hystbench.errors import InputError
+from hystbench.export import c, fmu, python
+from hystbench.export.described import describe
+from hystbench.files import whole_folder
+from hystbench.model import load_model
+
+
+@click.command()
+@click.argument("model", type=options.FILE)
+@click.option(
+    "--to",
+    type=click.Choice(["c", "python", "fmu"]),
+    required=True,
+    help="C99 source and header, a Python module, or a source FMU of FMI 3.0.",
+)
+@click.option("--dt", type=float, required=True, help="Sampling interval in seconds.")
+@click.option(
+    "--points",
+    type=click.IntRange(2, LARGEST_POINTS),
+    default=6,
+    show_default=True,
+    help="Samples through which a curve goes where the model wants its input between "
+    "samples or its rate; fewer for an input with noise.",
+)
+@click.option(
+    "--duration", type=float, help="Length in seconds of the record of a path of drift."
+)
+@click.option(
+    "--hold",
+    type=click.Choice(HOLDS),
+    help="How the input moves between samples where MODEL does not say.",
+)
+@options.out_folder
+def export(
+    model: Path,
+    to: str,
+    dt: float,
+    points: int,
+    duration: float | None,
+    hold: Hold | None,
+    out: Path,
+) -> None:
+    """Write MODEL as code that is called once a sample and needs no hystbench.
+
+    The files in OUT are named after the model. What its steps do otherwise than a
+    simulation of a whole record is printed, and stands in the code.
+    """
+    system = load_model(model)
+    if hold is not None:
+        system = system.with_hold(hold)
+    try:
+        described = describe(system, Sampling(dt, points, duration))
+    except InputError as error:
+        where = "" if str(error).startswith("--") else f"{model}: "
+        raise InputError(f"{where}{error}") from None
+    name = described.name
+    names = {
+        "c": [f"{name}.h", f"{name}.c"],
+        "python": [f"{name}.py"],
+        "fmu": [f"{name}.fmu"],
+    }[to]
+    with whole_folder(out, names) as fresh:
+        if to == "c":
+            (fresh / names[0]).write_text(c.header(described), encoding="utf-8")
+            (fresh / names[1]).write_text(c.source(described), encoding="utf-8")
+        elif to == "python":
+            (fresh / names[0]).write_text(python.module(described), encoding="utf-8")
+        else:
+            fmu.write_fmu(described, fresh / names[0])
+    told = [f"{out / made}" for made in names]
+    click.echo(f"{', '.join(told)}: {described.about}")
+    for line in described.differences:
+        click.echo(line)

@@ -1,0 +1,130 @@
+"""``hystbench invert``: the input that makes a model follow a reference."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from hystbench import options
+from hystbench.dataset import read_input
+from hystbench.errors import InputError
+from hystbench.files import write_csv
+from hystbench.inverse.bandwidth import HOLDS, bandwidth, holds_to
+from hystbench.inverse.feedforward import BAND_SHARE, Limits, feedforward
+from hystbench.model import Model, load_model
+from hystbench.record import column_name
+
+
+@click.command()
+@click.argument("model", type=options.FILE)
+@click.option(
+    "--reference",
+    type=options.FILE,
+    help="CSV file with time_s and the output that is wanted, such as displacement_um.",
+)
+@click.option("--dt", type=float, help="Sampling interval in seconds; no reference.")
+@click.option("--stroke", type=float, help="Peak-to-peak of sines; no reference.")
+@click.option(
+    "--band",
+    type=float,
+    help="Correct errors up to this frequency in Hz; by default a tenth of the "
+    "sampling rate.",
+)
+@click.option("--limit-low", type=float, help="Lowest input of the actuator.")
+@click.option("--limit-high", type=float, help="Highest input of the actuator.")
+@options.out
+def invert(
+    model: Path,
+    reference: Path | None,
+    dt: float | None,
+    stroke: float | None,
+    band: float | None,
+    limit_low: float | None,
+    limit_high: float | None,
+    out: Path,
+) -> None:
+    """Find the input that makes the output of MODEL follow a reference.
+
+    Writes the input beside the reference and the model's output. Without a reference it
+    writes how well sines of one --stroke are followed, from slow to the band's edge.
+    """
+    system = load_model(model)
+    asked = options.asked_limits(limit_low, limit_high, None)
+    limits = Limits(**asked)
+    if reference is not None:
+        if dt is not None or stroke is not None:
+            raise InputError("--dt and --stroke: expected none beside --reference")
+        _follow(system, model, reference, band, limits, out)
+        return
+    if dt is None or stroke is None:
+        missing = "--dt" if dt is None else "--stroke"
+        raise InputError(f"{missing}: expected it, or a --reference")
+    for name, value in (("--dt", dt), ("--stroke", stroke)):
+        if not 0 < value < np.inf:
+            raise InputError(f"{name}: {value:g}; expected a number above 0")
+    _table(system, dt, stroke, band or BAND_SHARE / dt, limits, out)
+
+
+def _follow(
+    system: Model,
+    model: Path,
+    file: Path,
+    band: float | None,
+    limits: Limits,
+    out: Path,
+) -> None:
+    wanted = column_name(system.output.name, system.output.unit)
+    dt, reference = read_input(file, wanted)
+    try:
+        found = feedforward(system, reference, dt, band, limits)
+    except InputError as error:
+        where = "" if str(error).startswith("--") else f"{model}: {file}: "
+        raise InputError(f"{where}{error}") from None
+    columns = {
+        "time_s": np.arange(len(reference)) * dt,
+        column_name(system.input.name, system.input.unit): found.u,
+        wanted: reference,
+        column_name("simulated", system.output.unit): found.y,
+    }
+    cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
+    write_csv(out, list(columns), zip(*cells, strict=True))
+    exact = f"'{found.exact}' inverted exactly, " if found.exact else ""
+    unit = system.input.unit
+    click.echo(
+        f"{out}: {len(reference)} samples, input from {found.u.min():.4g} to "
+        f"{found.u.max():.4g} {unit}; {exact}{len(found.error) - 1} corrections up to "
+        f"{band or BAND_SHARE / dt:g} Hz; the model's output is off by "
+        f"{100 * found.left:.3g} % of the stroke (RMS)"
+    )
+    if found.clipped:
+        click.echo(f"{found.clipped} samples stand at a limit of the input")
+
+
+def _table(
+    system: Model, dt: float, stroke: float, band: float, limits: Limits, out: Path
+) -> None:
+    rows = bandwidth(system, stroke, dt, band, limits)
+    header = ["frequency_hz", "rms_error_percent", "largest_input", "said"]
+    cells = [
+        [
+            f"{row.frequency_hz:.4g}",
+            "" if row.error is None else f"{100 * row.error:.3g}",
+            "" if row.largest_input is None else f"{row.largest_input:.4g}",
+            row.said,
+        ]
+        for row in rows
+    ]
+    write_csv(out, header, cells)
+    for row in cells:
+        click.echo(
+            f"{row[0]:>8} Hz  {row[1] or '-':>8} %  {row[2]:>8}  {row[3]}".rstrip()
+        )
+    highest = holds_to(rows)
+    share = f"{100 * HOLDS:g} % of the stroke (RMS)"
+    click.echo(
+        f"{out}: the inverse of the model holds to {highest:.4g} Hz within {share}"
+        if highest is not None
+        else f"{out}: the inverse of the model holds at none of these within {share}"
+    )

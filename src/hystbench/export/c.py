@@ -1,0 +1,189 @@
+"""A model as C99: a header, and a source that allocates nothing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from functools import cache
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+
+from hystbench.export.described import Described, Piece, needed
+
+STEPS = Path(__file__).with_name("steps.c")
+WIDTH = 88
+
+
+def header(model: Described) -> str:
+    """Write the header: the state, and the two functions that use it."""
+    name = model.name
+    states = [f"    double {state}[{size}];" for state, size in model.all_states()]
+    told = [f"{model.title}: {model.about}.", *model.differences]
+    return "\n".join(
+        [
+            _comment(told),
+            f"#ifndef HB_{name.upper()}_H",
+            f"#define HB_{name.upper()}_H",
+            "",
+            f"#define {name.upper()}_DT {model.sampling.dt!r} /* s */",
+            "",
+            "#ifdef __cplusplus",
+            'extern "C" {',
+            "#endif",
+            "",
+            "typedef struct {",
+            *(states or ["    double none; /* the model remembers nothing */"]),
+            f"}} {name}_state;",
+            "",
+            "/* Nothing has ever entered. */",
+            f"void {name}_init({name}_state *state);",
+            "",
+            f"/* The next sample: {model.output.label} of {model.input.label}. */",
+            f"double {name}_step({name}_state *state, double input);",
+            "",
+            "#ifdef __cplusplus",
+            "}",
+            "#endif",
+            "",
+            "#endif",
+            "",
+        ]
+    )
+
+
+def source(model: Described) -> str:
+    """Write the source, which includes the header."""
+    return "\n\n".join(
+        [
+            f'#include "{model.name}.h"',
+            library([model]),
+            body(model),
+        ]
+    )
+
+
+def library(models: Iterable[Described]) -> str:
+    """Give what some models need of the functions of steps.c."""
+    opening, chunks = _library()
+    wanted = set().union(*(model.functions for model in models))
+    return f"{opening}\n\n{needed(chunks, wanted, 'hb_')}"
+
+
+def body(model: Described) -> str:
+    """Write the constants of a model, and its own functions."""
+    parts = [
+        _array(f"{model.name}_{piece.label}_{key}", value)
+        for piece in model.all_pieces()
+        for key, value in piece.step.constants.items()
+        if isinstance(value, np.ndarray)
+    ]
+    for piece in model.pieces:
+        parts += [_wrapped(model, part) for part in piece.all_inside() if piece.inner]
+    lines = [_chained(model, piece) for piece in model.pieces]
+    used = [] if any(model.all_states()) else ["    (void)s;"]
+    name = model.name
+    parts += [
+        f"void {name}_init({name}_state *s)\n{{\n    memset(s, 0, sizeof *s);\n}}",
+        "\n".join(
+            [
+                f"double {name}_step({name}_state *s, double input)",
+                "{",
+                "    double y = input;",
+                *used,
+                *lines,
+                "    return y;",
+                "}",
+            ]
+        ),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _chained(model: Described, piece: Piece) -> str:
+    """Write the line of a block in the chain."""
+    if piece.inner is not None:
+        growth = ", 1" if piece.step.grows else ""
+        return f"    y = {model.name}_{piece.label}(s, y{growth});"
+    own = ["y"]
+    if piece.step.takes_input:
+        own.append("input")
+    if piece.step.grows:
+        own.append("1")
+    return f"    y = {_call(model, piece, own)};"
+
+
+def _wrapped(model: Described, piece: Piece) -> str:
+    """Write the function of hysteresis that is wrapped, or of what wraps it."""
+    own = ["v"] + ["growth"] * piece.step.grows
+    declared = ", ".join(f"double {name}" for name in own)
+    name = f"{model.name}_{piece.label}"
+    opening = f"static double {name}({model.name}_state *s, {declared})"
+    inner = piece.inner
+    if inner is None:
+        lines = [f"    return {_call(model, piece, own)};"]
+    else:
+        inside = f"{model.name}_{inner.label}(s"
+        if not piece.step.drives:
+            given = ", ".join(["v"] + ["growth"] * inner.step.grows)
+            call = _call(model, piece, own)
+            lines = [f"    return {inside}, {given}) + {call};"]
+        else:
+            given = ", ".join(["fields[i]"] + ["growths[i]"] * inner.step.grows)
+            call = _call(model, piece, [*own, "fields", "growths"])
+            lines = [
+                f"    double fields[{piece.step.drives}], "
+                f"growths[{piece.step.drives}], y = 0;",
+                f"    const int count = {call};",
+                f"    for (int i = 0; i < count; i++) y = {inside}, {given});",
+                "    return y;",
+            ]
+    return "\n".join([opening, "{", *lines, "}"])
+
+
+def _call(model: Described, piece: Piece, given: Sequence[str]) -> str:
+    arguments = [
+        f"{model.name}_{piece.label}_{key}"
+        if isinstance(value, np.ndarray)
+        else _number(value)
+        for key, value in piece.step.constants.items()
+    ]
+    arguments += [f"s->{piece.label}_{state}" for state in piece.step.states]
+    text = ", ".join([*arguments, *given])
+    lines = wrap(text, WIDTH - 8, break_long_words=False, break_on_hyphens=False)
+    inside = "\n        ".join(lines)
+    opening = "" if len(lines) == 1 else "\n        "
+    return f"hb_{piece.step.function}({opening}{inside})"
+
+
+def _array(name: str, values: Any) -> str:
+    numbers = ", ".join(_number(value) for value in values)
+    lines = wrap(numbers, WIDTH - 4, break_long_words=False, break_on_hyphens=False)
+    inside = "\n    ".join(lines)
+    return f"static const double {name}[{len(values)}] = {{\n    {inside}\n}};"
+
+
+def _number(value: float) -> str:
+    """Write a number so that reading it gives the same one."""
+    return str(int(value)) if isinstance(value, int) else repr(float(value))
+
+
+def _comment(sentences: Sequence[str]) -> str:
+    lines = [line for said in sentences for line in wrap(said, WIDTH - 4)]
+    return "/* " + "\n * ".join(lines) + "\n */"
+
+
+@cache
+def _library() -> tuple[str, dict[str, str]]:
+    """Divide steps.c into what stands before its functions, and the functions."""
+    text = STEPS.read_text(encoding="utf-8")
+    opening, *chunks = re.split(r"\n\n(?=/\*|static )", text.strip())
+    opening = opening.partition("*/\n")[2]
+    found = {}
+    for chunk in chunks:
+        name = re.search(r"^static \w+ (hb_\w+)\(", chunk, re.MULTILINE)
+        if name is not None:
+            found[name[1]] = chunk
+    return opening.strip(), found

@@ -1,0 +1,160 @@
+"""A model as steps: what each block calls at a sample, with names for all it keeps."""
+
+from __future__ import annotations
+
+import keyword
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import cast
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.step import LARGEST_POINTS, Sampling, Step
+from hystbench.blocks.wrapping import Wrapped, WrappingBlock
+from hystbench.errors import InputError
+from hystbench.model import Model
+from hystbench.record import Channel
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One block's step, and for one that wraps hysteresis what is inside."""
+
+    label: str
+    step: Step
+    inner: Piece | None = None
+
+    def all_inside(self) -> Iterator[Piece]:
+        """Give the piece and what is inside it, the innermost first."""
+        if self.inner is not None:
+            yield from self.inner.all_inside()
+        yield self
+
+
+@dataclass(frozen=True)
+class Described:
+    """A model as the pieces that its signal passes, one call of each a sample.
+
+    Parameters
+    ----------
+    name : str
+        The model's name as an identifier of C and of Python.
+    title : str
+        The model's name as its file has it.
+    input, output : Channel
+    sampling : Sampling
+    pieces : tuple of Piece
+    """
+
+    name: str
+    title: str
+    input: Channel
+    output: Channel
+    sampling: Sampling
+    pieces: tuple[Piece, ...]
+
+    def all_pieces(self) -> Iterator[Piece]:
+        """Give every piece, what is inside another before it."""
+        for piece in self.pieces:
+            yield from piece.all_inside()
+
+    def all_states(self) -> Iterator[tuple[str, int]]:
+        """Give the name and length of every state."""
+        for piece in self.all_pieces():
+            for name, length in piece.step.states.items():
+                yield f"{piece.label}_{name}", length
+
+    @property
+    def functions(self) -> set[str]:
+        """Name the functions that are called."""
+        return {piece.step.function for piece in self.all_pieces()}
+
+    @property
+    def differences(self) -> list[str]:
+        """Say how the steps differ from :meth:`Model.simulate`, a sentence each."""
+        return [
+            f"{piece.label} {piece.step.differs}."
+            for piece in self.all_pieces()
+            if piece.step.differs
+        ]
+
+    @property
+    def about(self) -> str:
+        """Say what the code computes."""
+        return (
+            f"{self.output.name} ({self.output.unit}) of {self.input.name} "
+            f"({self.input.unit}), one call a sample of {self.sampling.dt:.12g} s"
+        )
+
+
+def describe(model: Model, sampling: Sampling) -> Described:
+    """Ask every block for its step.
+
+    Raises
+    ------
+    InputError
+        If the interval or the points make no sense, or a block cannot be exported.
+    """
+    if not 0 < sampling.dt < float("inf"):
+        raise InputError(f"--dt: {sampling.dt:g} s; expected a time above 0")
+    if not 2 <= sampling.points <= LARGEST_POINTS:
+        raise InputError(
+            f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
+        )
+    labels = {id(block): identifier(label) for label, block in model.labelled()}
+    places = {id(block): place for place, block in enumerate(model.chain, start=1)}
+
+    def of_block(block: Block, sampling: Sampling, inner: Piece | None) -> Piece:
+        try:
+            return Piece(labels[id(block)], block.step(sampling), inner)
+        except InputError as error:
+            place = f"chain: block {places[id(block)]}: "
+            raise InputError(f"{place}{error}") from None
+
+    def of_step(step: Block | Wrapped, sampling: Sampling) -> Piece:
+        if isinstance(step, Block):
+            return of_block(step, sampling, None)
+        outer: WrappingBlock = step.by
+        around = of_block(outer, sampling, None)
+        times = max(around.step.drives, 1)
+        inside = cast("Block | Wrapped", step.inner)
+        inner = of_step(inside, replace(sampling, dt=sampling.dt / times))
+        return replace(around, inner=inner)
+
+    return Described(
+        identifier(model.name),
+        model.name,
+        model.input,
+        model.output,
+        sampling,
+        tuple(of_step(step, sampling) for step in model.steps),
+    )
+
+
+def identifier(name: str) -> str:
+    """Turn a name into an identifier of C and of Python."""
+    plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_") or "model"
+    if plain[0].isdigit() or keyword.iskeyword(plain):
+        plain = f"model_{plain}"
+    return plain
+
+
+def needed(chunks: dict[str, str], wanted: set[str], prefix: str = "") -> str:
+    """Give the functions that are wanted and those that they call, in their order.
+
+    Parameters
+    ----------
+    chunks : dict of str to str
+        Text of each function by its name.
+    wanted : set of str
+    prefix : str
+        What stands before the names of ``wanted`` in ``chunks``.
+    """
+    found: set[str] = set()
+    left = {prefix + name for name in wanted}
+    while left:
+        name = left.pop()
+        found.add(name)
+        words = set(re.findall(r"\w+", chunks[name]))
+        left |= (words & set(chunks)) - found
+    return "\n\n".join(text for name, text in chunks.items() if name in found)

@@ -1,0 +1,329 @@
+/* A model of hystbench as an FMU of FMI 3.0 for co-simulation.
+ *
+ * The model takes a step wherever a multiple of its own interval is passed: with the
+ * input that was set before, so that its output is that of the step's first sample.
+ * The FMI headers are the importing tool's.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FMI3_FUNCTION_PREFIX @name@_
+#include "fmi3Functions.h"
+#include "@name@.h"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#endif
+
+enum { TIME, INPUT, OUTPUT };
+
+typedef struct {
+    double start, time, input, output;
+    double count; /* steps since the start */
+    @name@_state state;
+} Values;
+
+typedef struct {
+    Values now;
+    fmi3InstanceEnvironment environment;
+    fmi3LogMessageCallback log;
+} Instance;
+
+static fmi3Status refuse(const Instance *self, const char *why)
+{
+    if (self->log) self->log(self->environment, fmi3Error, "logStatusError", why);
+    return fmi3Error;
+}
+
+static void begin(Values *now)
+{
+    memset(now, 0, sizeof *now);
+    @name@_init(&now->state);
+}
+
+const char *fmi3GetVersion(void) { return fmi3Version; }
+
+fmi3Instance fmi3InstantiateCoSimulation(
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+    fmi3Boolean visible, fmi3Boolean loggingOn, fmi3Boolean eventModeUsed,
+    fmi3Boolean earlyReturnAllowed,
+    const fmi3ValueReference requiredIntermediateVariables[],
+    size_t nRequiredIntermediateVariables, fmi3InstanceEnvironment instanceEnvironment,
+    fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
+{
+    Instance *self;
+    if (!instantiationToken || strcmp(instantiationToken, "@token@") != 0) {
+        if (logMessage)
+            logMessage(instanceEnvironment, fmi3Error, "logStatusError",
+                       "the instantiation token is that of another model");
+        return NULL;
+    }
+    self = malloc(sizeof *self);
+    if (!self) return NULL;
+    begin(&self->now);
+    self->environment = instanceEnvironment;
+    self->log = logMessage;
+    return self;
+}
+
+fmi3Instance fmi3InstantiateModelExchange(
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+    fmi3Boolean visible, fmi3Boolean loggingOn,
+    fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage)
+{
+    return NULL;
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(
+    fmi3String instanceName, fmi3String instantiationToken, fmi3String resourcePath,
+    fmi3Boolean visible, fmi3Boolean loggingOn,
+    fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
+    fmi3ClockUpdateCallback clockUpdate, fmi3LockPreemptionCallback lockPreemption,
+    fmi3UnlockPreemptionCallback unlockPreemption)
+{
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance instance) { free(instance); }
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn,
+                               size_t nCategories, const fmi3String categories[])
+{
+    return fmi3OK;
+}
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance,
+                                       fmi3Boolean toleranceDefined,
+                                       fmi3Float64 tolerance, fmi3Float64 startTime,
+                                       fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
+{
+    Instance *self = instance;
+    self->now.start = self->now.time = startTime;
+    return fmi3OK;
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) { return fmi3OK; }
+
+fmi3Status fmi3EnterEventMode(fmi3Instance instance) { return fmi3OK; }
+
+fmi3Status fmi3EnterStepMode(fmi3Instance instance) { return fmi3OK; }
+
+fmi3Status fmi3Terminate(fmi3Instance instance) { return fmi3OK; }
+
+fmi3Status fmi3Reset(fmi3Instance instance)
+{
+    Instance *self = instance;
+    begin(&self->now);
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetFloat64(fmi3Instance instance,
+                          const fmi3ValueReference valueReferences[],
+                          size_t nValueReferences, fmi3Float64 values[], size_t nValues)
+{
+    const Instance *self = instance;
+    if (nValues != nValueReferences) return refuse(self, "one value a reference");
+    for (size_t i = 0; i < nValueReferences; i++) {
+        switch (valueReferences[i]) {
+        case TIME: values[i] = self->now.time; break;
+        case INPUT: values[i] = self->now.input; break;
+        case OUTPUT: values[i] = self->now.output; break;
+        default: return refuse(self, "no such variable");
+        }
+    }
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance instance,
+                          const fmi3ValueReference valueReferences[],
+                          size_t nValueReferences, const fmi3Float64 values[],
+                          size_t nValues)
+{
+    Instance *self = instance;
+    if (nValues != nValueReferences) return refuse(self, "one value a reference");
+    for (size_t i = 0; i < nValueReferences; i++) {
+        if (valueReferences[i] != INPUT) return refuse(self, "only the input can be set");
+        self->now.input = values[i];
+    }
+    return fmi3OK;
+}
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
+                      fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+                      fmi3Boolean *eventHandlingNeeded, fmi3Boolean *terminateSimulation,
+                      fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
+{
+    Instance *self = instance;
+    Values *now = &self->now;
+    const double end = currentCommunicationPoint + communicationStepSize;
+    /* times are sums, which are a little off */
+    const double due = floor((end - now->start) / @NAME@_DT + 1e-6);
+    for (; now->count < due; now->count++)
+        now->output = @name@_step(&now->state, now->input);
+    now->time = end;
+    *eventHandlingNeeded = fmi3False;
+    *terminateSimulation = fmi3False;
+    *earlyReturn = fmi3False;
+    *lastSuccessfulTime = end;
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
+{
+    const Instance *self = instance;
+    if (!*FMUState) *FMUState = malloc(sizeof(Values));
+    if (!*FMUState) return refuse(self, "out of memory");
+    memcpy(*FMUState, &self->now, sizeof(Values));
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)
+{
+    Instance *self = instance;
+    memcpy(&self->now, FMUState, sizeof(Values));
+    return fmi3OK;
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
+{
+    free(*FMUState);
+    *FMUState = NULL;
+    return fmi3OK;
+}
+
+/* What an FMU must have, and this one has no use for. */
+#define ABSENT(name, ...)                                             \
+    fmi3Status name(__VA_ARGS__)                                      \
+    {                                                                 \
+        return refuse(instance, #name " is not part of this model");  \
+    }
+
+ABSENT(fmi3GetFloat32, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, fmi3Float32 values[], size_t nValues)
+ABSENT(fmi3GetInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3Int8 values[], size_t nValues)
+ABSENT(fmi3GetUInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3UInt8 values[], size_t nValues)
+ABSENT(fmi3GetInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3Int16 values[], size_t nValues)
+ABSENT(fmi3GetUInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3UInt16 values[], size_t nValues)
+ABSENT(fmi3GetInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3Int32 values[], size_t nValues)
+ABSENT(fmi3GetUInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3UInt32 values[], size_t nValues)
+ABSENT(fmi3GetInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3Int64 values[], size_t nValues)
+ABSENT(fmi3GetUInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3UInt64 values[], size_t nValues)
+ABSENT(fmi3GetBoolean, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, fmi3Boolean values[], size_t nValues)
+ABSENT(fmi3GetString, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3String values[], size_t nValues)
+ABSENT(fmi3GetBinary, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, size_t valueSizes[], fmi3Binary values[], size_t
+       nValues)
+ABSENT(fmi3GetClock, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, fmi3Clock values[])
+ABSENT(fmi3SetFloat32, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, const fmi3Float32 values[], size_t
+       nValues)
+ABSENT(fmi3SetInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3Int8 values[], size_t nValues)
+ABSENT(fmi3SetUInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3UInt8 values[], size_t nValues)
+ABSENT(fmi3SetInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3Int16 values[], size_t nValues)
+ABSENT(fmi3SetUInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3UInt16 values[], size_t nValues)
+ABSENT(fmi3SetInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3Int32 values[], size_t nValues)
+ABSENT(fmi3SetUInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3UInt32 values[], size_t nValues)
+ABSENT(fmi3SetInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3Int64 values[], size_t nValues)
+ABSENT(fmi3SetUInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3UInt64 values[], size_t nValues)
+ABSENT(fmi3SetBoolean, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, const fmi3Boolean values[], size_t
+       nValues)
+ABSENT(fmi3SetString, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3String values[], size_t nValues)
+ABSENT(fmi3SetBinary, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const size_t valueSizes[], const fmi3Binary values[],
+       size_t nValues)
+ABSENT(fmi3SetClock, fmi3Instance instance, const fmi3ValueReference valueReferences[],
+       size_t nValueReferences, const fmi3Clock values[])
+ABSENT(fmi3GetNumberOfVariableDependencies, fmi3Instance instance, fmi3ValueReference
+       valueReference, size_t* nDependencies)
+ABSENT(fmi3GetVariableDependencies, fmi3Instance instance, fmi3ValueReference dependent,
+       size_t elementIndicesOfDependent[], fmi3ValueReference independents[], size_t
+       elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[], size_t
+       nDependencies)
+ABSENT(fmi3SerializedFMUStateSize, fmi3Instance instance, fmi3FMUState FMUState, size_t*
+       size)
+ABSENT(fmi3SerializeFMUState, fmi3Instance instance, fmi3FMUState FMUState, fmi3Byte
+       serializedState[], size_t size)
+ABSENT(fmi3DeserializeFMUState, fmi3Instance instance, const fmi3Byte serializedState[],
+       size_t size, fmi3FMUState* FMUState)
+ABSENT(fmi3GetDirectionalDerivative, fmi3Instance instance, const fmi3ValueReference
+       unknowns[], size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
+       const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t
+       nSensitivity)
+ABSENT(fmi3GetAdjointDerivative, fmi3Instance instance, const fmi3ValueReference
+       unknowns[], size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns,
+       const fmi3Float64 seed[], size_t nSeed, fmi3Float64 sensitivity[], size_t
+       nSensitivity)
+ABSENT(fmi3EnterConfigurationMode, fmi3Instance instance)
+ABSENT(fmi3ExitConfigurationMode, fmi3Instance instance)
+ABSENT(fmi3GetIntervalDecimal, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, fmi3Float64 intervals[],
+       fmi3IntervalQualifier qualifiers[])
+ABSENT(fmi3GetIntervalFraction, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64
+       resolutions[], fmi3IntervalQualifier qualifiers[])
+ABSENT(fmi3GetShiftDecimal, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, fmi3Float64 shifts[])
+ABSENT(fmi3GetShiftFraction, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64
+       resolutions[])
+ABSENT(fmi3SetIntervalDecimal, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, const fmi3Float64 intervals[])
+ABSENT(fmi3SetIntervalFraction, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, const fmi3UInt64 counters[], const
+       fmi3UInt64 resolutions[])
+ABSENT(fmi3SetShiftDecimal, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, const fmi3Float64 shifts[])
+ABSENT(fmi3SetShiftFraction, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, const fmi3UInt64 counters[], const
+       fmi3UInt64 resolutions[])
+ABSENT(fmi3EvaluateDiscreteStates, fmi3Instance instance)
+ABSENT(fmi3UpdateDiscreteStates, fmi3Instance instance, fmi3Boolean*
+       discreteStatesNeedUpdate, fmi3Boolean* terminateSimulation, fmi3Boolean*
+       nominalsOfContinuousStatesChanged, fmi3Boolean* valuesOfContinuousStatesChanged,
+       fmi3Boolean* nextEventTimeDefined, fmi3Float64* nextEventTime)
+ABSENT(fmi3EnterContinuousTimeMode, fmi3Instance instance)
+ABSENT(fmi3CompletedIntegratorStep, fmi3Instance instance, fmi3Boolean
+       noSetFMUStatePriorToCurrentPoint, fmi3Boolean* enterEventMode, fmi3Boolean*
+       terminateSimulation)
+ABSENT(fmi3SetTime, fmi3Instance instance, fmi3Float64 time)
+ABSENT(fmi3SetContinuousStates, fmi3Instance instance, const fmi3Float64
+       continuousStates[], size_t nContinuousStates)
+ABSENT(fmi3GetContinuousStateDerivatives, fmi3Instance instance, fmi3Float64
+       derivatives[], size_t nContinuousStates)
+ABSENT(fmi3GetEventIndicators, fmi3Instance instance, fmi3Float64 eventIndicators[],
+       size_t nEventIndicators)
+ABSENT(fmi3GetContinuousStates, fmi3Instance instance, fmi3Float64 continuousStates[],
+       size_t nContinuousStates)
+ABSENT(fmi3GetNominalsOfContinuousStates, fmi3Instance instance, fmi3Float64 nominals[],
+       size_t nContinuousStates)
+ABSENT(fmi3GetNumberOfEventIndicators, fmi3Instance instance, size_t* nEventIndicators)
+ABSENT(fmi3GetNumberOfContinuousStates, fmi3Instance instance, size_t*
+       nContinuousStates)
+ABSENT(fmi3GetOutputDerivatives, fmi3Instance instance, const fmi3ValueReference
+       valueReferences[], size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64
+       values[], size_t nValues)
+ABSENT(fmi3ActivateModelPartition, fmi3Instance instance, fmi3ValueReference
+       clockReference, fmi3Float64 activationTime)

@@ -1,0 +1,140 @@
+"""A model as one Python module that needs NumPy alone."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from textwrap import indent, wrap
+from typing import Any
+
+import numpy as np
+
+from hystbench.export.described import Described, Piece, needed
+
+STEPS = Path(__file__).with_name("steps.py")
+WIDTH = 88
+
+CLASS = '''\
+class Model:
+    """The model as a machine that is fed one sample after the other."""
+
+    def __init__(self):
+        self.reset()
+
+    def reset(self):
+        """Forget all that has entered."""
+{reset}
+
+    def step(self, u):
+        """Give the output for the next sample of the input."""
+        y = float(u)
+{steps}
+        return float(y)
+
+    def simulate(self, u):
+        """Give the output for the next samples of the input."""
+        return np.array([self.step(value) for value in u])
+'''
+
+
+def module(model: Described) -> str:
+    """Write the module: constants, functions, and the class ``Model``."""
+    chunks = _library()
+    told = [f"{model.title}: {model.about}.", *model.differences]
+    text = "\n".join(line for said in told for line in wrap(said, WIDTH - 4))
+    constants = [
+        _array(_constant(piece, key), value)
+        for piece in model.all_pieces()
+        for key, value in piece.step.constants.items()
+        if isinstance(value, np.ndarray)
+    ]
+    reset = [f"self.{name} = np.zeros({size})" for name, size in model.all_states()]
+    steps = [_line(model, piece) for piece in model.pieces]
+    for piece in model.pieces:
+        if piece.inner is not None:
+            steps += [""]  # the methods below are part of the class
+    methods = [
+        _method(part)
+        for piece in model.pieces
+        if piece.inner is not None
+        for part in piece.all_inside()
+    ]
+    body = CLASS.format(
+        reset=indent("\n".join(reset or ["pass"]), " " * 8),
+        steps=indent("\n".join(filter(None, steps)), " " * 8),
+    )
+    parts = [
+        f'"""{text}\n"""\n\nimport math\n\nimport numpy as np',
+        f"DT = {model.sampling.dt!r}  # s",
+        *constants,
+        needed(chunks, model.functions).replace("\n\n", "\n\n\n"),
+        "\n".join([body.rstrip(), *methods]),
+    ]
+    return "\n\n\n".join(filter(None, parts)) + "\n"
+
+
+def _line(model: Described, piece: Piece) -> str:
+    if piece.inner is not None:
+        growth = ", 1.0" if piece.step.grows else ""
+        return f"y = self._{piece.label}(y{growth})"
+    given = ["y"]
+    if piece.step.takes_input:
+        given.append("float(u)")
+    if piece.step.grows:
+        given.append("1.0")
+    return f"y = {_call(piece, given)}"
+
+
+def _method(piece: Piece) -> str:
+    own = ["v"] + ["growth"] * piece.step.grows
+    lines = [f"return {_call(piece, own)}"]
+    inner = piece.inner
+    if inner is not None:
+        given = ", ".join(["v"] + ["growth"] * inner.step.grows)
+        if not piece.step.drives:
+            lines = [f"return self._{inner.label}({given}) + {_call(piece, own)}"]
+        else:
+            lines = [
+                f"inside = {_call(piece, own)}",
+                "for v, growth in inside:",
+                f"    y = self._{inner.label}({given})",
+                "return y",
+            ]
+    opening = f"\ndef _{piece.label}(self, {', '.join(own)}):"
+    return indent("\n".join([opening, *(f"    {line}" for line in lines)]), "    ")
+
+
+def _call(piece: Piece, given: Sequence[str]) -> str:
+    arguments = [
+        _constant(piece, key) if isinstance(value, np.ndarray) else repr(value)
+        for key, value in piece.step.constants.items()
+    ]
+    arguments += [f"self.{piece.label}_{state}" for state in piece.step.states]
+    inside = wrap(
+        ", ".join([*arguments, *given]), 76, break_long_words=False,
+        break_on_hyphens=False,
+    )  # fmt: skip
+    return f"{piece.step.function}(\n    " + "\n    ".join(inside) + "\n)"
+
+
+def _constant(piece: Piece, key: str) -> str:
+    return f"{piece.label}_{key}".upper()
+
+
+def _array(name: str, values: Any) -> str:
+    numbers = ", ".join(repr(float(value)) for value in values)
+    lines = wrap(numbers, 80, break_long_words=False, break_on_hyphens=False)
+    return f"{name} = np.array([\n    " + "\n    ".join(lines) + "\n])"
+
+
+@cache
+def _library() -> dict[str, str]:
+    """Give the text of each function of steps.py by its name."""
+    text = STEPS.read_text(encoding="utf-8")
+    return {
+        item.name: ast.get_source_segment(text, item) or ""
+        for item in ast.parse(text).body
+        if isinstance(item, ast.FunctionDef)
+    }

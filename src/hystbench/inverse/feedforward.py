@@ -1,0 +1,216 @@
+"""The input for a reference: exact for plays, iterated for all around them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.blocks.gain import Gain
+from hystbench.errors import InputError
+from hystbench.inverse.plays import FAR, Plays
+from hystbench.inverse.response import Response, best_linear, without
+from hystbench.model import Model
+from hystbench.record import FloatArray
+
+ROUNDS = 40
+"""Corrections at most."""
+ENOUGH = 2e-4
+"""RMS error, as a share of the reference's peak-to-peak, that needs no more of them."""
+SLOW = 0.98
+"""A correction that leaves more of the error than this is the last."""
+BAND_SHARE = 0.1
+"""Band of the inverse as a share of the sampling rate, where nobody says another."""
+
+
+class Limits(NamedTuple):
+    """Lowest and highest input of the actuator."""
+
+    low: float = -FAR
+    high: float = FAR
+
+
+@dataclass(frozen=True)
+class Feedforward:
+    """An input, and how well the model's output follows the reference with it.
+
+    Parameters
+    ----------
+    u, y : ndarray, shape (n,)
+        The input and the model's output.
+    error : tuple of float
+        RMS error of the model's output after each correction, as a share of the
+        reference's peak-to-peak.
+    exact : str
+        The block that was inverted exactly, or nothing.
+    clipped : int
+        Samples at which the input stands at a limit.
+    """
+
+    u: FloatArray
+    y: FloatArray
+    error: tuple[float, ...]
+    exact: str
+    clipped: int
+
+    @property
+    def left(self) -> float:
+        """RMS error that is left, as a share of the reference's peak-to-peak."""
+        return min(self.error)
+
+
+def feedforward(
+    model: Model,
+    reference: FloatArray,
+    dt: float,
+    band_hz: float | None = None,
+    limits: Limits = Limits(),  # noqa: B008 - cannot be changed
+) -> Feedforward:
+    """Find the input that makes a model's output follow a reference.
+
+    The first play operators in the chain are inverted exactly. What is before, around
+    and behind them, or the whole model where there are none, is inverted by iteration:
+    the best linear approximation of what is left gives the first input, and turns each
+    error that is left into a correction [1]_. The reference is known as a whole, so
+    that the input may move before it does.
+
+    Parameters
+    ----------
+    model : Model
+    reference : ndarray, shape (n,)
+        Wanted output, in the unit of the model's.
+    dt : float
+        Sampling interval in seconds.
+    band_hz : float, optional
+        Up to this frequency errors are corrected; a tenth of the sampling rate else.
+    limits : Limits
+        Those of the input.
+
+    Returns
+    -------
+    Feedforward
+
+    Raises
+    ------
+    InputError
+        If the reference does not move, or wants what no input makes.
+
+    References
+    ----------
+    .. [1] D. A. Bristow, M. Tharayil, A. G. Alleyne, "A survey of iterative learning
+       control", IEEE Control Systems Magazine 26 (2006) 96-114.
+    """
+    reference = np.ascontiguousarray(reference, dtype=np.float64)
+    stroke = float(np.ptp(reference)) if len(reference) else 0.0
+    if len(reference) < 16 or not np.isfinite(reference).all() or stroke == 0:
+        raise InputError(
+            "reference: expected at least 16 finite samples that are not all the same"
+        )
+    band = BAND_SHARE / dt if band_hz is None else band_hz
+    if not 0 < band <= 0.5 / dt:
+        raise InputError(
+            f"--band: {band:g} Hz; expected above 0 and at most {0.5 / dt:g} Hz, half "
+            "the sampling rate"
+        )
+    start = Start.of(model, limits)
+    anywhere = Start.of(model, Limits())
+    response = best_linear(
+        lambda x: model.simulate(anywhere.to_input(x)[0], dt),
+        stroke,
+        len(reference),
+        dt,
+        min(1.5 * band, 0.5 / dt),
+        hysteretic=start.plays is None,
+    )
+    x = without(response, reference - response.rest, dt, band)
+    found = _corrected(model, start, response, x, reference, dt, band)
+    if found.clipped and limits == Limits():
+        raise InputError(
+            f"reference: {found.clipped} of {len(reference)} samples lie beyond what "
+            f"'{found.exact}' gives for any input; expected a smaller or slower "
+            "reference, or --limit-low and --limit-high, at which the input then stays"
+        )
+    return found
+
+
+@dataclass(frozen=True)
+class Start:
+    """How what is iterated becomes an input: by plays that are inverted exactly.
+
+    What is iterated is then the output of these plays, else the input itself.
+
+    Parameters
+    ----------
+    name : str
+        The block of the plays; nothing where there is none.
+    plays : Plays or None
+    scale, shift : float
+        The straight line before the plays; what else is before or around them counts
+        as nothing here, and is left to the iteration.
+    limits : Limits
+        Those of the input.
+    """
+
+    name: str
+    plays: Plays | None
+    scale: float
+    shift: float
+    limits: Limits
+
+    @classmethod
+    def of(cls, model: Model, limits: Limits) -> Start:
+        """Look for the first plays in the chain."""
+        scale, shift = 1.0, 0.0
+        for block in model.chain:
+            plays = Plays.of(block)
+            if plays is not None and scale != 0:
+                return cls(block.name, plays, scale, shift, limits)
+            if isinstance(block, Gain):
+                scale, shift = scale * block.value, shift * block.value + block.offset
+        return cls("", None, 1.0, 0.0, limits)
+
+    def to_input(self, x: FloatArray) -> tuple[FloatArray, int]:
+        """Give the input, and the samples at which it stands at a limit."""
+        if self.plays is None:
+            u = np.clip(x, *self.limits)
+            return u, int((u != x).sum())
+        ends = sorted(self.scale * limit + self.shift for limit in self.limits)
+        v, lost = self.plays.invert(x, *ends)
+        return (v - self.shift) / self.scale, lost
+
+
+def _corrected(
+    model: Model,
+    start: Start,
+    response: Response,
+    x: FloatArray,
+    reference: FloatArray,
+    dt: float,
+    band: float,
+) -> Feedforward:
+    """Correct by the error that is left, as long as it falls."""
+    stroke = float(np.ptp(reference))
+
+    def tried(x: FloatArray) -> Feedforward:
+        u, clipped = start.to_input(x)
+        y = model.simulate(u, dt)
+        off = float(np.sqrt(np.mean((reference - y) ** 2))) / stroke
+        return Feedforward(u, y, (off,), start.name, clipped)
+
+    best = tried(x)
+    errors, share = list(best.error), 1.0
+    for _ in range(ROUNDS):
+        if errors[-1] <= ENOUGH or share < 0.05:
+            break
+        change = share * without(response, reference - best.y, dt, band)
+        again = tried(x + change)
+        if again.error[0] < errors[-1]:
+            slow = again.error[0] > SLOW * errors[-1]
+            x, best = x + change, again
+            errors.append(again.error[0])
+            if slow:
+                break
+        else:
+            share *= 0.5
+    return replace(best, error=tuple(errors))

@@ -1,0 +1,152 @@
+"""Open-loop tracking on a plant: inputs from several models for the same references."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hystbench.inverse.feedforward import feedforward
+from hystbench.model import Model
+from hystbench.record import FloatArray
+from hystbench.signals import Signal
+
+STROKE_SHARE = 0.7
+"""Stroke of the references, as a share of the one that the signals' own size makes:
+what is lost to the dynamics needs more input than a slow motion of the same stroke."""
+RASTER_HZ = (5.0, 20.0)
+"""Lines a second of the raster scans."""
+
+LINEAR, WITHOUT, WITH, OWN = "linear", "without", "with", "own"
+DRIVES = {
+    LINEAR: "no inverse: a linear gain",
+    WITHOUT: "inverse without the gap's effects",
+    WITH: "inverse with the gap's effects",
+    OWN: "inverse of the plant itself",
+}
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What the plant is to do: a signal in the unit of its output."""
+
+    name: str
+    highest_hz: float
+    dt: float
+    y: FloatArray
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """A reference and what the plant does with the input from one model.
+
+    Errors are shares of the reference's peak-to-peak.
+    """
+
+    reference: Reference
+    drive: str
+    u: FloatArray
+    y: FloatArray
+
+    @property
+    def stroke(self) -> float:
+        """Peak-to-peak of the reference."""
+        return float(np.ptp(self.reference.y))
+
+    @property
+    def rms(self) -> float:
+        """RMS of the error."""
+        return float(np.sqrt(np.mean((self.reference.y - self.y) ** 2))) / self.stroke
+
+    @property
+    def largest(self) -> float:
+        """Largest error."""
+        return float(np.abs(self.reference.y - self.y).max()) / self.stroke
+
+
+@dataclass(frozen=True)
+class Line:
+    """A straight line from input to output."""
+
+    gain: float
+    offset: float
+
+    @classmethod
+    def of(cls, model: Model, signal: Signal) -> Line:
+        """Fit the line to a model's loop by least squares."""
+        y = model.simulate(signal.u, signal.dt)
+        gain, offset = np.polyfit(signal.u, y, 1)
+        return cls(float(gain), float(offset))
+
+
+def references(
+    signals: Sequence[Signal], highest_hz: Mapping[str, float], line: Line, rest: float
+) -> list[Reference]:
+    """Make references of the signals' forms, and raster scans: triangles.
+
+    They begin at the output at rest.
+
+    Parameters
+    ----------
+    signals : sequence of Signal
+        Inputs; the line makes outputs of them, :data:`STROKE_SHARE` of their size.
+    highest_hz : mapping of str to float
+        The highest frequency of each signal.
+    line : Line
+    rest : float
+        Output at rest.
+    """
+    made = [
+        Reference(
+            signal.name,
+            highest_hz[signal.name],
+            signal.dt,
+            rest + STROKE_SHARE * line.gain * (signal.u - signal.u[0]),
+        )
+        for signal in signals
+    ]
+    like = signals[0]
+    time = np.arange(len(like.u)) * like.dt
+    size = STROKE_SHARE * line.gain * float(np.abs(like.u).max())
+    for lines in RASTER_HZ:
+        phase = (time * lines + 0.25) % 1.0
+        triangle = 1 - 4 * np.abs(phase - 0.5)
+        name = f"raster-{lines:g}-lines-a-second"
+        made.append(Reference(name, lines, like.dt, rest + size * triangle))
+    return made
+
+
+def track(
+    plant: Model,
+    input_zero_error: float,
+    models: Mapping[str, Model],
+    line: Line,
+    wanted: Sequence[Reference],
+) -> list[Tracked]:
+    """Drive the plant with the input that each model gives for each reference.
+
+    Parameters
+    ----------
+    plant : Model
+        Simulated without its sensor's noise.
+    input_zero_error : float
+        The models are identified on inputs that were recorded with this error; inputs
+        that they ask for are therefore this much larger than the plant's own.
+    models : mapping of str to Model
+        By drive; that of the plant itself knows of no such error.
+    line : Line
+        Gives the input without an inverse.
+    wanted : sequence of Reference
+    """
+    rows = []
+    for reference in wanted:
+        u = (reference.y - line.offset) / line.gain
+        y = plant.simulate(u - input_zero_error, reference.dt)
+        rows.append(Tracked(reference, LINEAR, u, y))
+        for drive, model in models.items():
+            u = feedforward(model, reference.y, reference.dt).u
+            error = 0.0 if drive == OWN else input_zero_error
+            y = plant.simulate(u - error, reference.dt)
+            rows.append(Tracked(reference, drive, u, y))
+    return rows
