@@ -20,6 +20,8 @@ COMMANDS = {
     "signal": "Make an excitation signal.",
     "measure": "Simulate a model on a signal and record it.",
     "simulate": "Run a model on one record.",
+    "init": "Propose a dataset.yaml for files of measurements.",
+    "check": "Say what records are like and which effects they can reveal.",
     "load": "Read and check one record of a measured dataset.",
     "identify": "Identify the envelope functions (Algorithm 1).",
     "filter": "Run one LMS filter on one record.",

@@ -41,7 +41,7 @@ def _frame(path: Path) -> Any:
     else:
         # A tenth of the size; pandas no longer takes it as an engine of its own.
         parquet = library("fastparquet", "fastparquet", path)
-        with told(path, "Parquet file"):
-            frame = parquet.ParquetFile(path).to_pandas()
+        with told(path, "Parquet file"), path.open("rb") as stream:
+            frame = parquet.ParquetFile(stream).to_pandas()
     # An index with a name is a column, as a rule the time.
     return frame.reset_index() if frame.index.name is not None else frame
