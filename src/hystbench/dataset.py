@@ -151,18 +151,18 @@ class Dataset:
 
     def use(self, name: str) -> Use:
         """Tell what a record may be used for."""
-        use: Use = self._entry(name).get("use", "fit")
+        use: Use = self.entry(name).get("use", "fit")
         return use
 
     def stands_still(self, name: str) -> tuple[str, ...]:
         """Tell which channels of a record, input or output, really stand still."""
-        return tuple(self._entry(name).get("stands_still", ()))
+        return tuple(self.entry(name).get("stands_still", ()))
 
     def meant(self, name: str) -> tuple[str, ...]:
         """Tell what of a record is meant as it is, and no longer warned of."""
-        return tuple(self._entry(name).get("meant", ()))
+        return tuple(self.entry(name).get("meant", ()))
 
-    def _entry(self, name: str) -> Mapping[str, Any]:
+    def entry(self, name: str) -> Mapping[str, Any]:
         """Give what dataset.yaml says of a record."""
         entries = {_record_name(entry): entry for entry in self.about["records"]}
         entry: Mapping[str, Any] = entries[name]
@@ -177,7 +177,7 @@ class Dataset:
             If a column is missing, a cell is no finite number, time does not
             increase uniformly, or a channel does not move.
         """
-        file, entry = self.record_files[name], self._entry(name)
+        file, entry = self.record_files[name], self.entry(name)
         time_about = self.about.get("time")
         channels = [self.about["input"], self.about["output"]]
         abouts = [*channels]

@@ -19,8 +19,8 @@ from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table, read_table
 from hystbench.inspection.excitation import Excitation, excitation_of
 from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
-from hystbench.inspection.period import find_period
 from hystbench.inspection.roles import propose
+from hystbench.periods import find_period
 from hystbench.record import FloatArray, Record
 from hystbench.units import NONE, check_known, plain, seconds
 

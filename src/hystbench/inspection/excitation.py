@@ -54,6 +54,11 @@ class Excitation:
         """Peak to peak, in the input's unit."""
         return self.high - self.low
 
+    @property
+    def relative_rate(self) -> float:
+        """Rms of the rate over half of the range, in 1/s."""
+        return 2 * self.rate / self.span
+
 
 def excitation_of(u: FloatArray, dt: float) -> Excitation:
     """Describe an input.

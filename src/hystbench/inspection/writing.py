@@ -10,7 +10,7 @@ HEAD = (
 )
 ORDER = (
     *("file", "group", "rows", "name", "use", "period_samples", "missing"),
-    *("sampling_frequency_hz", "sha256"),
+    *("sampling_frequency_hz", "stands_still", "meant", "sha256"),
 )
 
 
@@ -21,10 +21,14 @@ def yaml_text(about: Mapping[str, Any]) -> str:
         if key != "records":
             lines.append(f"{key}: {_flow(value)}\n")
     lines.append("records:\n")
-    for entry in about["records"]:
-        ordered = {key: entry[key] for key in ORDER if key in entry}
-        lines.append(f"  - {_flow(ordered)}\n")
+    lines += [f"  - {entry_text(entry)}\n" for entry in about["records"]]
     return "".join(lines)
+
+
+def entry_text(entry: Mapping[str, Any]) -> str:
+    """Write a record's entry in one line."""
+    ordered = {key: entry[key] for key in ORDER if key in entry}
+    return _flow(ordered)
 
 
 def _flow(value: Any) -> str:

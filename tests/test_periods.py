@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.inspection.period import find_period
+from hystbench.periods import find_period
 
 K = np.arange(4000)
 RNG = np.random.default_rng(3)
