@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hystbench import libraries
 from hystbench.formats import format_of, read_table
-from hystbench.formats import library as library_module
 from tests.messages import message
 
 FILES = Path(__file__).parent / "files"
@@ -240,8 +240,8 @@ def test_a_missing_library_is_told_with_what_to_install(monkeypatch):
     def missing(name):
         raise ImportError(f"No module named {name!r}")
 
-    monkeypatch.setattr(library_module.importlib, "import_module", missing)
-    said = message(lambda: library_module.library("h5py", "h5py", Path("rig.mat")))
+    monkeypatch.setattr(libraries.importlib, "import_module", missing)
+    said = message(lambda: libraries.library("h5py", "h5py", "rig.mat", "formats"))
     assert "rig.mat: needs the package h5py" in said
     assert "pip install 'hystbench[formats]'" in said
 

@@ -8,15 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.formats.library import library, told
+from hystbench.formats.damaged import told
 from hystbench.formats.table import FREQUENCIES, INTERVALS, Column, Table, columns_of
+from hystbench.libraries import library
 
 UNITS = ("units", "unit", "Units", "Unit", "unit_string")
 
 
 def read(path: Path) -> Table:
     """Read all datasets that hold numbers, named by their path in the file."""
-    h5py = library("h5py", "h5py", path)
+    h5py = library("h5py", "h5py", path, "formats")
     columns: list[Column] = []
     numbers: dict[str, float] = {}
     notes: list[str] = []

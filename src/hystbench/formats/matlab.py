@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.formats.library import library, told
+from hystbench.formats.damaged import told
 from hystbench.formats.table import Column, Table, columns_of
+from hystbench.libraries import library
 
 _HDF5 = b"\x89HDF"
 """What HDF5 begins with; MATLAB writes 512 bytes of its own before it."""
@@ -83,7 +84,7 @@ def _elements(array: np.ndarray, name: str) -> Iterator[tuple[Any, str]]:
 
 
 def _version_73(path: Path) -> Iterator[tuple[str, Any]]:
-    h5py = library("h5py", "h5py", path)
+    h5py = library("h5py", "h5py", path, "formats")
     with told(path, "MATLAB file"), h5py.File(path, "r") as content:
         for name in content:
             if not name.startswith("#"):  # where MATLAB keeps what is referred to

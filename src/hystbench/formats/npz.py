@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.formats.library import told
+from hystbench.formats.damaged import told
 from hystbench.formats.table import Column, Table, columns_of
 
 

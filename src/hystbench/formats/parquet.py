@@ -6,8 +6,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hystbench.formats.library import library, told
+from hystbench.formats.damaged import told
 from hystbench.formats.table import Column, Table, columns_of
+from hystbench.libraries import library
 
 
 def read(path: Path) -> Table:
@@ -35,12 +36,12 @@ def read(path: Path) -> Table:
 
 def _frame(path: Path) -> Any:
     if find_spec("pyarrow") is not None:
-        parquet = library("pyarrow.parquet", "pyarrow", path)
+        parquet = library("pyarrow.parquet", "pyarrow", path, "formats")
         with told(path, "Parquet file"):
             frame = parquet.read_table(path).to_pandas()
     else:
         # A tenth of the size; pandas no longer takes it as an engine of its own.
-        parquet = library("fastparquet", "fastparquet", path)
+        parquet = library("fastparquet", "fastparquet", path, "formats")
         with told(path, "Parquet file"), path.open("rb") as stream:
             frame = parquet.ParquetFile(stream).to_pandas()
     # An index with a name is a column, as a rule the time.

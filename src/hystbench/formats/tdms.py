@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hystbench.formats.library import library, told
+from hystbench.formats.damaged import told
 from hystbench.formats.table import Column, Table, columns_of
+from hystbench.libraries import library
 
 UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit")
 
 
 def read(path: Path) -> Table:
     """Read all channels, as ``group/channel``, with unit and sampling frequency."""
-    nptdms = library("nptdms", "nptdms", path)
+    nptdms = library("nptdms", "nptdms", path, "formats")
     columns: list[Column] = []
     notes: list[str] = []
     with told(path, "TDMS file"):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench.formats.library import told
+from hystbench.formats.damaged import told
 from hystbench.formats.table import Column, FloatArray, Table
 
 
