@@ -20,6 +20,8 @@ COMMANDS = {
     "signal": "Make an excitation signal.",
     "measure": "Simulate a model on a signal and record it.",
     "simulate": "Run a model on one record.",
+    "init": "Propose a dataset.yaml for files of measurements.",
+    "check": "Say what records are like and which effects they can reveal.",
     "export": "Write a model as C, a Python module or an FMU.",
     "invert": "Find the input that makes a model's output follow a reference.",
     "tracking": "Follow references on the twin with and without the inverse.",

@@ -1,20 +1,20 @@
-"""Measured records: a folder with dataset.yaml and one CSV file a record."""
+"""Measured records: a dataset.yaml and the files of measurements that it names."""
 
 from __future__ import annotations
 
-import csv
+import hashlib
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from hystbench.errors import InputError, nearest, short
+from hystbench.formats import SUFFIXES, Column, Table, read_table
 from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.schema import check_against_schema
-from hystbench.text_files import read_text
 from hystbench.units import check_known, check_same_unit, plain, seconds
 from hystbench.written import reads
 from hystbench.yaml_files import load_yaml
@@ -47,7 +47,7 @@ _CHANNEL = {
 
 SCHEMA: dict[str, Any] = {
     "type": "object",
-    "required": ["name", "time", "input", "output", "records"],
+    "required": ["name", "input", "output", "records"],
     "additionalProperties": False,
     "properties": {
         "name": {"type": "string", "pattern": r"^[A-Za-z0-9][A-Za-z0-9._-]*$"},
@@ -81,6 +81,7 @@ SCHEMA: dict[str, Any] = {
                 "meant": {"type": "boolean"},
             },
         },
+        "sampling_frequency_hz": {"type": "number", "exclusiveMinimum": 0},
         "noise_rms": {"type": "number", "exclusiveMinimum": 0},
         "identification": {"type": "string"},
         "records": {
@@ -92,6 +93,17 @@ SCHEMA: dict[str, Any] = {
                 "additionalProperties": False,
                 "properties": {
                     "file": {"type": "string"},
+                    "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
+                    "name": {"type": "string"},
+                    "group": {"type": "string"},
+                    "rows": {
+                        "type": "array",
+                        "items": {"type": "integer", "minimum": 1},
+                        "minItems": 2,
+                        "maxItems": 2,
+                    },
+                    "sampling_frequency_hz": {"type": "number", "exclusiveMinimum": 0},
+                    "missing": {"enum": ["interpolate"]},
                     "use": {"enum": ["fit", "hold-out"]},
                     "period_samples": {"type": "integer", "minimum": 2},
                     "stands_still": {
@@ -131,26 +143,28 @@ class Dataset:
 
     @property
     def record_files(self) -> dict[str, Path]:
-        """File of each record, by the record's name (the file's stem)."""
-        files = [self.path.parent / entry["file"] for entry in self.about["records"]]
-        return {file.stem: file for file in files}
+        """File of each record, by the record's name: the one given, or the stem."""
+        return {
+            _record_name(entry): self.path.parent / entry["file"]
+            for entry in self.about["records"]
+        }
 
     def use(self, name: str) -> Use:
         """Tell what a record may be used for."""
-        use: Use = self._entry(name).get("use", "fit")
+        use: Use = self.entry(name).get("use", "fit")
         return use
 
     def stands_still(self, name: str) -> tuple[str, ...]:
         """Tell which channels of a record, input or output, really stand still."""
-        return tuple(self._entry(name).get("stands_still", ()))
+        return tuple(self.entry(name).get("stands_still", ()))
 
     def meant(self, name: str) -> tuple[str, ...]:
         """Tell what of a record is meant as it is, and no longer warned of."""
-        return tuple(self._entry(name).get("meant", ()))
+        return tuple(self.entry(name).get("meant", ()))
 
-    def _entry(self, name: str) -> Mapping[str, Any]:
+    def entry(self, name: str) -> Mapping[str, Any]:
         """Give what dataset.yaml says of a record."""
-        entries = {Path(entry["file"]).stem: entry for entry in self.about["records"]}
+        entries = {_record_name(entry): entry for entry in self.about["records"]}
         entry: Mapping[str, Any] = entries[name]
         return entry
 
@@ -163,22 +177,35 @@ class Dataset:
             If a column is missing, a cell is no finite number, time does not
             increase uniformly, or a channel does not move.
         """
-        file = self.record_files[name]
-        time_about = self.about["time"]
+        file, entry = self.record_files[name], self.entry(name)
+        time_about = self.about.get("time")
         channels = [self.about["input"], self.about["output"]]
-        columns = [time_about["column"], *(item["column"] for item in channels)]
+        abouts = [*channels]
+        if time_about is not None:
+            abouts.insert(0, time_about)
         if self.simulated_column is not None:
-            columns.append(self.simulated_column)
-        time, u, y, *others = _read_columns(file, columns)
-        dt = _sampling_interval(
-            file,
-            time * seconds(f"{self.path}: time: unit", time_about["unit"]),
-            time_about.get("tolerance", UNIFORM_TOLERANCE),
-        )
+            abouts.append(self.about["simulated"])
+        _check_digest(self.path, file, entry)
+        table = read_table(file, [item["column"] for item in abouts])
+        columns = [table.column(x["column"], entry.get("group", "")) for x in abouts]
+        for about, column in zip(abouts, columns, strict=True):
+            _check_unit(file, about, column)
+        rows = _rows(self.path, table, entry, columns)
+        signals = [
+            _whole(table, column, rows, entry.get("missing")) for column in columns
+        ]
+        if time_about is not None:
+            unit = seconds(f"{self.path}: time: unit", time_about["unit"])
+            tolerance = time_about.get("tolerance", UNIFORM_TOLERANCE)
+            time = signals.pop(0) * unit
+            dt = _sampling_interval(table, time, tolerance, rows.start)
+        else:
+            dt = 1.0 / self._sampling_frequency(table, columns, entry)
+        u, y, *others = signals
         for item, values in zip(channels, (u, y), strict=True):
             _check_moves(file, item, values)
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
-        period = self._entry(name).get("period_samples")
+        period = entry.get("period_samples")
         if period is not None:
             _check_period(f"{self.path}: records: {file.name}", period, u)
         return Record(
@@ -193,6 +220,21 @@ class Dataset:
             period,
             others[0] if others else None,
         )
+
+    def _sampling_frequency(
+        self, table: Table, columns: Sequence[Column], entry: Mapping[str, Any]
+    ) -> float:
+        """Give the sampling frequency in Hz of a record without a column of time."""
+        for about in (entry, self.about):
+            if "sampling_frequency_hz" in about:
+                return float(about["sampling_frequency_hz"])
+        told = table.sampling_frequency(columns)
+        if told is None:
+            raise InputError(
+                f"{self.path}: no 'time' and no 'sampling_frequency_hz', and "
+                f"{table.path.name} tells none; expected one of them"
+            )
+        return told
 
     @property
     def simulated_column(self) -> str | None:
@@ -238,7 +280,7 @@ def load_dataset(path: str | Path) -> Dataset:
     check_against_schema(about, SCHEMA, str(file))
     dataset = Dataset(file, about["name"], about)
     files = dataset.record_files
-    _check_files(file, [entry["file"] for entry in about["records"]])
+    _check_files(file, about["records"])
     named = about.get("identification")
     if named is not None and named not in files:
         raise InputError(
@@ -259,7 +301,8 @@ def load_dataset(path: str | Path) -> Dataset:
         check_same_unit(f"{file}: simulated: unit", ours, "the output", measured)
     for channel in ("input", "output"):
         check_known(f"{file}: {channel}: unit", about[channel]["unit"])
-    seconds(f"{file}: time: unit", about["time"]["unit"])
+    if "time" in about:
+        seconds(f"{file}: time: unit", about["time"]["unit"])
     return dataset
 
 
@@ -283,29 +326,40 @@ def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
     InputError
         If a column is missing, a cell is no finite number, or sampling is not uniform.
     """
-    time, u = _read_columns(file, ["time_s", column])
-    return _sampling_interval(file, time, UNIFORM_TOLERANCE), u
+    table = read_table(file, ["time_s", column])
+    columns = [table.column(name) for name in ("time_s", column)]
+    rows = _rows(file, table, {}, columns)
+    time, u = (_whole(table, each, rows, None) for each in columns)
+    return _sampling_interval(table, time, UNIFORM_TOLERANCE, 0), u
 
 
-def _check_files(about: Path, names: Sequence[str]) -> None:
+def _record_name(entry: Mapping[str, Any]) -> str:
+    """Give the name of a record: the one given, or its file's stem."""
+    return str(entry.get("name", Path(entry["file"]).stem))
+
+
+def _check_files(about: Path, entries: Sequence[Mapping[str, Any]]) -> None:
     """Refuse a record whose file is none, and two records of one name."""
     seen: dict[str, str] = {}
-    for name in names:
+    for entry in entries:
+        name, record = entry["file"], _record_name(entry)
         place, file = f"{about}: records", about.parent / name
-        if not _NAME.fullmatch(file.stem):
+        if not _NAME.fullmatch(record):
             raise InputError(
-                f"{place}: {short(name)} names results as well; expected a name that "
-                "begins with a letter or digit and has none of {}*?\\"
+                f"{place}: {short(record if 'name' in entry else name)} names results "
+                "as well; expected a name that begins with a letter or digit and has "
+                "none of {}*?\\"
             )
-        if file.stem in seen:
-            also = seen[file.stem]
+        if record in seen:
+            also = seen[record]
             raise InputError(
-                f"{place}: {name!r} stands there twice; expected each once"
+                f"{place}: {name!r} stands there twice; expected each once, or a "
+                "'name' each where they are parts of one file"
                 if also == name
-                else f"{place}: {also!r} and {name!r} are both named {file.stem!r}; "
+                else f"{place}: {also!r} and {name!r} are both named {record!r}; "
                 "expected a name each, as it names its results"
             )
-        seen[file.stem] = name
+        seen[record] = name
         if file.is_dir():
             raise InputError(f"{place}: {name!r} is a folder; expected a CSV file")
         if not _is_file(file):
@@ -325,93 +379,112 @@ def _other_file(about: Path, name: str) -> str:
     folder = (about.parent / name).parent
     if not folder.is_dir():
         return f"there is no folder {str(folder)!r}"
-    there = sorted(item.name for item in folder.glob("*.csv") if item.is_file())
+    there = sorted(
+        item.name
+        for item in folder.iterdir()
+        if item.suffix.lower() in SUFFIXES and item.is_file()
+    )
     if not there:
         return f"expected a CSV file; the folder {str(folder)!r} has none"
     before = Path(name).parent
     return nearest(name, [str(before / item) for item in there])
 
 
-def _read_columns(file: Path, columns: list[str]) -> tuple[FloatArray, ...]:
-    """Read named columns of a CSV file as numbers."""
-    lines = read_text(file, "a CSV file").splitlines()
-    if not lines:
-        raise InputError(
-            f"{file}: empty: no column {columns[0]!r}; expected a header and rows"
-        )
-    header = [name.strip() for name in next(csv.reader(lines[:1]), [])]
-    _check_separator(file, lines, header, columns)
-    for column in columns:
-        if column not in header:
-            raise InputError(
-                f"{file}: no column {column!r}; {nearest(column, header or ['time_s'])}"
-            )
-        if header.count(column) > 1:
-            raise InputError(
-                f"{file}: {header.count(column)} columns {column!r}; expected one"
-            )
-    _check_decimals(file, lines, len(header))
-    places = [header.index(column) for column in columns]
-    rows = [line for line in lines[1:] if line.strip()]
-    if len(rows) < 2:
-        raise InputError(f"{file}: {len(rows)} rows; expected at least 2 samples")
-    try:
-        table = np.loadtxt(rows, delimiter=",", usecols=places, comments=None)
-    except ValueError:
-        # NumPy's own message counts rows in two ways.
-        raise InputError(f"{file}: {_first_bad_cell(lines, header, places)}") from None
-    bad = np.argwhere(~np.isfinite(table))
-    if len(bad):
-        raise InputError(f"{file}: {_first_bad_cell(lines, header, places)}")
-    return tuple(np.ascontiguousarray(column) for column in table.T)
-
-
-def _check_separator(
-    file: Path, lines: list[str], header: list[str], columns: list[str]
-) -> None:
-    """Tell which other separator a file has."""
-    if any(column in header for column in columns):
+def _check_digest(about: Path, file: Path, entry: Mapping[str, Any]) -> None:
+    """Refuse a file that is not the one that was described."""
+    if "sha256" not in entry:
         return
-    for separator, name in ((";", "semicolons"), ("\t", "tabs"), ("|", "bars")):
-        cells = [cell.strip().strip('"') for cell in lines[0].split(separator)]
-        if not any(column in cells for column in columns):
-            continue
-        commas = any("," in line for line in lines[1:3])
-        also = " and points in numbers, not decimal commas" * commas
+    try:
+        with file.open("rb") as stream:
+            found = hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError:
+        return  # who reads it says so
+    if found != entry["sha256"]:
         raise InputError(
-            f"{file}: row 1: columns separated by {name} ({separator!r}); expected "
-            f"commas between columns{also}"
+            f"{about}: records: {entry['file']!r} is not the file that was "
+            f"described: its SHA-256 begins {found[:12]}, not {entry['sha256'][:12]}; "
+            "run 'hystbench init' again, or take 'sha256' away"
         )
 
 
-def _check_decimals(file: Path, lines: list[str], columns: int) -> None:
-    """Refuse rows of more cells than the header: decimal commas, or a lost line end."""
-    for number, line in enumerate(lines[1:], start=2):
-        if line.count(",") < columns or '"' in line:
-            continue
-        cells = line.rstrip(", \t").count(",") + 1
-        if cells > columns:
-            raise InputError(
-                f"{file}: row {number}: {cells} cells where the header has {columns}; "
-                "expected as many, and points in numbers, not decimal commas"
-            )
+def _check_unit(file: Path, about: Mapping[str, Any], column: Column) -> None:
+    """Refuse a column whose file tells another unit, unless that is meant."""
+    if column.unit is None or about.get("meant"):
+        return
+    try:
+        check_known("", column.unit)
+    except InputError:
+        return  # words of an instrument, not a unit
+    check_same_unit(
+        f"dataset.yaml: {about['column']!r}: unit",
+        about["unit"],
+        f"{file.name} itself",
+        column.unit,
+    )
 
 
-def _first_bad_cell(lines: list[str], header: list[str], places: list[int]) -> str:
-    """Find the first cell that is no finite number; rows count from 1 as in editors."""
-    for number, cells in enumerate(csv.reader(lines[1:]), start=2):
-        for place in places if cells else []:
-            cell = cells[place].strip() if place < len(cells) else ""
-            try:
-                finite = "_" not in cell and bool(np.isfinite(float(cell)))
-            except ValueError:
-                finite = False
-            if not finite:
-                return (
-                    f"row {number}: column {header[place]!r} is {cell or 'empty'!r}; "
-                    "expected a finite number"
-                )
-    return "expected rows of numbers, separated by commas"
+def _rows(
+    about: Path, table: Table, entry: Mapping[str, Any], columns: Sequence[Column]
+) -> slice:
+    """Give the samples of a record, counted from 0.
+
+    Raises
+    ------
+    InputError
+        If columns differ in length, or there are no two samples.
+    """
+    lengths = [len(column.values) for column in columns]
+    if len(set(lengths)) > 1:
+        told = ", ".join(f"{column.name!r} {len(column.values)}" for column in columns)
+        raise InputError(
+            f"{table.path}: columns of different lengths ({told}); expected one length"
+        )
+    if lengths[0] < 2:
+        raise InputError(
+            f"{table.path}: {lengths[0]} rows; expected at least 2 samples"
+        )
+    first, last = entry.get("rows", (1, lengths[0]))
+    if not first < last <= lengths[0]:
+        raise InputError(
+            f"{about}: records: {_record_name(entry)}: rows: [{first}, {last}]; "
+            f"expected the first and the last of its {lengths[0]} samples, from 1 on"
+        )
+    return slice(first - 1, last)
+
+
+def _whole(
+    table: Table, column: Column, rows: slice, missing: str | None
+) -> FloatArray:
+    """Give the samples of a column, all finite.
+
+    Raises
+    ------
+    InputError
+        If one is missing, and it is not said that it may be interpolated; or the first
+        or last one is.
+    """
+    values = column.values[rows]
+    lost = np.flatnonzero(~np.isfinite(values))
+    if not len(lost):
+        return cast(FloatArray, np.ascontiguousarray(values))
+    ends = {0, len(values) - 1} & set(lost.tolist())
+    if missing is None or ends or not np.isnan(values[lost]).all():
+        at = int(min(ends) if missing is not None and ends else lost[0])
+        hint = (
+            "; at an end nothing can be interpolated: give 'rows' without it"
+            if missing is not None and ends
+            else " (for lone ones say 'missing: interpolate' of this record)"
+        )
+        raise InputError(
+            f"{table.path}: {table.place(rows.start + at)}: column {column.name!r} is "
+            f"{_shown(values[at])}; expected a finite number{hint}"
+        )
+    there = np.flatnonzero(np.isfinite(values))
+    return cast(FloatArray, np.interp(np.arange(len(values)), there, values[there]))
+
+
+def _shown(value: float) -> str:
+    return "'nan' or empty" if np.isnan(value) else repr(str(value))
 
 
 def _check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None:
@@ -449,15 +522,17 @@ def _check_period(place: str, period: int, u: FloatArray) -> None:
         )
 
 
-def _sampling_interval(file: Path, time: FloatArray, tolerance: float) -> float:
+def _sampling_interval(
+    table: Table, time: FloatArray, tolerance: float, first: int
+) -> float:
     """Mean step of a time column that increases uniformly within a tolerance."""
     steps = np.diff(time)
     backward = np.flatnonzero(steps <= 0)
     if len(backward):
         row = int(backward[0])
         raise InputError(
-            f"{file}: row {row + 3}: time goes from {time[row]:g} s to "
-            f"{time[row + 1]:g} s; expected it to increase"
+            f"{table.path}: {table.place(first + row + 1)}: time goes from "
+            f"{time[row]:g} s to {time[row + 1]:g} s; expected it to increase"
         )
     dt = float(time[-1] - time[0]) / len(steps)
     # Printed times are rounded: what counts is the distance from the uniform grid.
@@ -466,9 +541,9 @@ def _sampling_interval(file: Path, time: FloatArray, tolerance: float) -> float:
     row = int(np.argmax(step_error))
     if step_error[row] > tolerance * dt or away.max() > max(tolerance, 0.5) * dt:
         raise InputError(
-            f"{file}: row {row + 3}: a step of {steps[row]:g} s where the mean is "
-            f"{dt:g} s; expected uniform sampling within {tolerance:.3g} of a step "
-            "(time: tolerance)"
+            f"{table.path}: {table.place(first + row + 1)}: a step of {steps[row]:g} s "
+            f"where the mean is {dt:g} s; expected uniform sampling within "
+            f"{tolerance:.3g} of a step (time: tolerance)"
         )
     return dt
 

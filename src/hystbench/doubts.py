@@ -117,7 +117,7 @@ def _other_columns(dataset: Dataset) -> Iterator[str]:
 
 def _strange_time(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
     """Tell of times that no test of an actuator has, and of the unit that is likely."""
-    about = dataset.about["time"]
+    about = dataset.about.get("time", {"meant": True})
     if about.get("meant") or not records:
         return
     if named_otherwise(about["column"], about["unit"]) is not None:

@@ -27,15 +27,7 @@ def read_text(path: str | Path, expected: str) -> str:
         If there is no such file, it cannot be read, or it is no text in UTF-8.
     """
     path = Path(path)
-    if path.is_dir():
-        raise InputError(f"{path}: a folder; expected {expected}")
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file; {_beside(path, expected)}") from None
-    except (OSError, ValueError) as error:
-        said = getattr(error, "strerror", None) or error
-        raise InputError(f"{path}: {said}; expected {expected}") from error
+    content = _content(path, expected)
     if content.startswith(_UTF_16) or _looks_like_utf_16(content):
         raise InputError(
             f"{path}: text in UTF-16; expected text in UTF-8: save it as UTF-8 "
@@ -56,6 +48,67 @@ def read_text(path: str | Path, expected: str) -> str:
             f"{path}: row {line}: the byte 0x{content[error.start]:02x} is no text in "
             "UTF-8; expected text in UTF-8: save it as UTF-8"
         ) from error
+
+
+def decoded(path: str | Path, expected: str) -> tuple[str, str]:
+    """Read a text file of an instrument: UTF-8, UTF-16 or Windows-1252.
+
+    Parameters
+    ----------
+    path : str or Path
+    expected : str
+        What the file should be, for messages.
+
+    Returns
+    -------
+    text : str
+    encoding : str
+        ``UTF-8``, ``UTF-16`` or ``Windows-1252``. The last is taken where the bytes
+        are neither of the others.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it cannot be read, or it holds binary data.
+    """
+    path = Path(path)
+    content = _content(path, expected)
+    if content.startswith(_UTF_16) or _looks_like_utf_16(content):
+        mark = content.startswith(_UTF_16)
+        low_first = content[1::2][:_SOME].count(0) > content[::2][:_SOME].count(0)
+        name = "utf-16" if mark else "utf-16-le" if low_first else "utf-16-be"
+        try:
+            return content.decode(name), "UTF-16"
+        except UnicodeDecodeError as error:
+            raise InputError(
+                f"{path}: begins as text in UTF-16 and is cut off or damaged at byte "
+                f"{error.start}; expected {expected}"
+            ) from error
+    if content.startswith(_ARCHIVE):
+        raise InputError(
+            f"{path}: a workbook or another archive; expected {expected}: save the "
+            "sheet as 'CSV UTF-8'"
+        )
+    if b"\0" in content[:_SOME]:
+        raise InputError(f"{path}: binary data; expected {expected}")
+    try:
+        return content.decode("utf-8-sig"), "UTF-8"
+    except UnicodeDecodeError:
+        # Every byte is a letter there; what has none becomes a mark.
+        return content.decode("cp1252", errors="replace"), "Windows-1252"
+
+
+def _content(path: Path, expected: str) -> bytes:
+    """Read the bytes of a file, or say why not."""
+    if path.is_dir():
+        raise InputError(f"{path}: a folder; expected {expected}")
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file; {_beside(path, expected)}") from None
+    except (OSError, ValueError) as error:
+        said = getattr(error, "strerror", None) or error
+        raise InputError(f"{path}: {said}; expected {expected}") from error
 
 
 def _looks_like_utf_16(content: bytes) -> bool:

@@ -3,17 +3,21 @@
 A new block needs a line here; the contract test says so.
 """
 
+from pathlib import Path
+
 EXAMPLES = {
     "asymmetry": {"coefficient": 0.02},
     "backlash": {"half_width": 0.1},
     "butterfly": {"coefficient": 0.4, "threshold": 0.1},
     "calibration-error": {"gain": 1.05, "offset": 0.1},
+    "command": {"command": "cut -d, -f2"},
     "creep": {"magnitudes": [0.05, 0.03], "time_constants_s": [0.2, 2.0]},
     "dead-zone": {"half_width": 0.05},
     "drift": {"slope": 0.5, "path": [0.1, -0.2, 0.05]},
     "drive-lag": {"time_constant_s": 0.002},
     "drive-saturation": {"limit": 0.5},
     "eddy-diffusion": {"time_constant_s": 0.003},
+    "fmu": {"file": "lag.fmu"},
     "friction": {"coulomb": 2.0, "velocity_scale": 5.0},
     "gain": {"value": 12.0, "offset": 0.5},
     "gpi": {
@@ -46,6 +50,7 @@ EXAMPLES = {
         "amplitudes": [0.1, 0.02],
         "phases": [0.5, -1.0],
     },
+    "onnx": {"file": str(Path(__file__).with_name("files") / "rnn.onnx")},
     "prandtl-ishlinskii": {
         "thresholds": [0.0, 0.1, 0.3],
         "weights": [-0.1, 0.3, -0.05],

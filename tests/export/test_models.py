@@ -228,7 +228,7 @@ def test_a_simulator_of_ones_own_is_one_line(tmp_path):
     )
     assert done.returncode == 2
     assert done.stderr == (
-        f"hystbench: {file}: chain: block 1: external: a Python function of somebody's "
+        f"hystbench: {file}: chain: block 1: external: a simulator of somebody's own "
         "cannot be turned into code\n"
     )
     assert not (tmp_path / "c").exists()

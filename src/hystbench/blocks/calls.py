@@ -94,7 +94,14 @@ class Calls:
         """What a call took, in the mean."""
         return self.seconds / max(self.made, 1)
 
-    def output(self, name: str, z: FloatArray, dt: float, call: Call) -> FloatArray:
+    def output(
+        self,
+        name: str,
+        z: FloatArray,
+        dt: float,
+        call: Call,
+        source: Callable[[], str],
+    ) -> FloatArray:
         """Give what a function gives for samples, or what it gave for them before.
 
         The first input of each function is called in any case, and what the disk has
@@ -103,12 +110,14 @@ class Calls:
         Parameters
         ----------
         name : str
-            ``package.module:function``.
+            ``package.module:function``, or what else names a simulator.
         z : ndarray, shape (n,)
         dt : float
             Sampling interval in seconds.
         call : callable
             ``call(name, z, dt)`` calls the function and checks what it gives.
+        source : callable
+            Gives a digest of what the function is made of, once it was called.
 
         Returns
         -------
@@ -123,7 +132,7 @@ class Calls:
         """
         key = (name, blake2b(z.tobytes(), digest_size=16).digest(), len(z), dt)
         if key not in self._memory:
-            self._remember(key, self._found_or_made(name, z, dt, call))
+            self._remember(key, self._found_or_made(name, z, dt, call, source))
         return self._memory[key].copy()
 
     def fresh(self, name: str, z: FloatArray, dt: float, call: Call) -> FloatArray:
@@ -147,7 +156,12 @@ class Calls:
         self.reserve = 0
 
     def _found_or_made(
-        self, name: str, z: FloatArray, dt: float, call: Call
+        self,
+        name: str,
+        z: FloatArray,
+        dt: float,
+        call: Call,
+        source: Callable[[], str],
     ) -> FloatArray:
         kept, first = self.kept, name not in self._begun
         if kept is not None and not first:
@@ -159,7 +173,7 @@ class Calls:
         known = None
         if kept is not None and first:
             # Only now is all imported that the function is made of.
-            kept.open(name)
+            kept.open(name, source())
             known = kept.get(name, z, dt)
             if known is not None and not np.array_equal(known, y):
                 self.say(

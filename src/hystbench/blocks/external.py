@@ -13,9 +13,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from hystbench.blocks.base import Block
-from hystbench.blocks.calls import current
+from hystbench.blocks.kept_outputs import source_digest
 from hystbench.blocks.parameter import text
+from hystbench.blocks.simulator import Simulator, called_with, checked
 from hystbench.errors import InputError, nearest
 from hystbench.record import FloatArray
 
@@ -24,7 +24,7 @@ FORM = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
 
 
 @dataclass(frozen=True)
-class External(Block):
+class External(Simulator):
     """A Python function ``y = function(u, dt)`` as a block.
 
     ``u`` is a copy of the samples that enter, shape (n,), ``dt`` the sampling interval
@@ -39,10 +39,6 @@ class External(Block):
     """
 
     name: ClassVar = "external"
-    place: ClassVar = "base"
-    reference: ClassVar = "by definition"
-    seen: ClassVar = False
-    no_step: ClassVar = "a Python function of somebody's cannot be turned into code"
 
     function: str = text("package.module:function of u and dt, which gives y")
 
@@ -53,16 +49,18 @@ class External(Block):
                 f"function: expected package.module:function, got {self.function!r}"
             )
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Call the function, or give what it gave for the same samples before.
+    @property
+    def label(self) -> str:
+        """The function's name."""
+        return self.function
 
-        Raises
-        ------
-        InputError
-            If it cannot be imported, raises, or gives anything but n finite numbers; or
-            the calls that a user allows are used up.
-        """
-        return current().output(self.function, z, dt, called)
+    def call(self, z: FloatArray, dt: float) -> FloatArray:
+        """Call the function once."""
+        return called(self.function, z, dt)
+
+    def source(self) -> str:
+        """Digest of the modules that the function is made of."""
+        return source_digest(self.function)
 
 
 def called(name: str, z: FloatArray, dt: float) -> FloatArray:
@@ -73,7 +71,7 @@ def called(name: str, z: FloatArray, dt: float) -> FloatArray:
     InputError
         If it cannot be imported, raises, or gives anything but n finite numbers.
     """
-    call = f"{name}: called with {len(z)} samples and dt = {dt:g} s"
+    call = called_with(name, z, dt)
     function = imported(name)
     try:
         given = function(np.array(z), dt)
@@ -81,24 +79,7 @@ def called(name: str, z: FloatArray, dt: float) -> FloatArray:
         # Whatever a user's program raises is to be told in one line.
         said = " ".join(f"{type(error).__name__}: {error}".split())
         raise InputError(f"{call}, it raised {said}") from error
-    if np.iscomplexobj(given):  # NumPy would drop the imaginary part
-        raise InputError(f"{call}, it gave complex numbers; expected real ones")
-    try:
-        y = np.array(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(
-            f"{call}, it gave {type(given).__name__}; expected {len(z)} numbers"
-        ) from None
-    if y.shape != z.shape:
-        raise InputError(
-            f"{call}, it gave an array of shape {y.shape}; expected ({len(z)},)"
-        )
-    lost = np.flatnonzero(~np.isfinite(y))
-    if len(lost):
-        raise InputError(
-            f"{call}, it gave {y[lost[0]]} at sample {lost[0]}; expected finite numbers"
-        )
-    return y
+    return checked(call, z, given)
 
 
 @cache

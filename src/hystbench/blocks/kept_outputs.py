@@ -60,9 +60,9 @@ class KeptOutputs:
             self._say_once(f"{folder}: {error.strerror}; outputs are not kept")
         self._size = sum(self._older.values())
 
-    def open(self, name: str) -> None:
-        """Find the place of a function, once all that it is made of is imported."""
-        self._places[name] = self.folder / source_digest(name)
+    def open(self, name: str, source: str) -> None:
+        """Find the place of a function by the digest of what it is made of."""
+        self._places[name] = self.folder / source
 
     def get(self, name: str, z: FloatArray, dt: float) -> FloatArray | None:
         """Give the output for an input; None where there is none to be read."""

@@ -64,7 +64,7 @@ class Parameter:
                 )
             return str(value)
         if self.kind == "text":
-            if not isinstance(value, str) or not value.strip():
+            if not isinstance(value, str) or not (value.strip() or self.may_be_empty):
                 raise InputError(f"{name}: expected {self.meaning}, got {short(value)}")
             return value
         if self.kind == "number":
@@ -142,9 +142,10 @@ def choice(meaning: str, options: tuple[str, ...], default: str) -> Any:
     return _declare(Parameter("choice", "-", meaning, options=options), default)
 
 
-def text(meaning: str) -> Any:
-    """Declare a parameter that is any text."""
-    return _declare(Parameter("text", "-", meaning), MISSING)
+def text(meaning: str, default: object = MISSING) -> Any:
+    """Declare a parameter that is any text; one with a default may be empty."""
+    empty = default is not MISSING
+    return _declare(Parameter("text", "-", meaning, may_be_empty=empty), default)
 
 
 def _declare(parameter: Parameter, default: object) -> Any:

@@ -1,4 +1,4 @@
-"""What ``--model`` may be: a model file, a word, or the name of a function.
+"""What ``--model`` may be: a model file, a word, or a simulator by its name.
 
 Read before any work is paid; it imports no more than a model file needs.
 """
@@ -20,7 +20,10 @@ IDENTIFIED = ("gpi", "linear")
 WORDS = (*IDENTIFIED, "column")
 """What may stand in the place of a model file."""
 
-Kind = Literal["word", "file", "function"]
+Kind = Literal["word", "file", "function", "command", "fmu", "onnx"]
+
+COMMAND = "command:"
+"""What stands before the command line of a simulator."""
 
 
 def kind_of_base(text: str) -> Kind:
@@ -33,6 +36,12 @@ def kind_of_base(text: str) -> Kind:
     """
     if text in WORDS:
         return "word"
+    if text.startswith(COMMAND):
+        return "command"
+    if text.endswith(".fmu"):
+        return "fmu"
+    if text.endswith(".onnx"):
+        return "onnx"
     if text.endswith(".py") or ".py:" in text:
         raise InputError(_name_of_function(text))
     if Path(text).is_file() or text.endswith((".yaml", ".yml")):
@@ -43,8 +52,9 @@ def kind_of_base(text: str) -> Kind:
         raise InputError(f"--model: {text!r} is a folder; expected a model file in it")
     files = [str(item) for item in Path(text).parent.glob("*.y*ml")]
     raise InputError(
-        f"--model: {text!r} is no model file, none of {', '.join(WORDS)}, and no "
-        f"package.module:function; {nearest(text, [*WORDS, *files])}"
+        f"--model: {text!r} is no model file, .fmu or .onnx, none of "
+        f"{', '.join(WORDS)}, no package.module:function and no 'command: ...'; "
+        f"{nearest(text, [*WORDS, *files])}"
     )
 
 

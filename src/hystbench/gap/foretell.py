@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hystbench.blocks.calls import PATIENCE, current, minutes
-from hystbench.blocks.external import External
+from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Declined, Variant
@@ -36,7 +36,7 @@ def calls_of_a_round(state: State) -> int:
     int
         0 where the model has no function, or none can be put behind an effect.
     """
-    places = [k for k, x in enumerate(state.chain) if isinstance(x, External)]
+    places = [k for k, x in enumerate(state.chain) if isinstance(x, Simulator)]
     if not places:
         return 0
     count = len(state.records)

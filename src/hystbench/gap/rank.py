@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
-from hystbench.blocks.external import External
+from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap import work
 from hystbench.gap.change import at_end
@@ -181,7 +181,7 @@ def _not_cut_short(item: Candidate, state: State) -> Candidate:
     """
     if not current().refused() or not item.variants or item.declined:
         return item
-    places = [k for k, x in enumerate(state.chain) if isinstance(x, External)]
+    places = [k for k, x in enumerate(state.chain) if isinstance(x, Simulator)]
     position = item.variants[0].position
     if not places or position is None or position > places[-1]:
         return item

@@ -9,12 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench.blocks.calls import current
-from hystbench.blocks.external import External, called
+from hystbench.blocks.command import Command
+from hystbench.blocks.external import External
+from hystbench.blocks.fmu import Fmu
+from hystbench.blocks.onnx import Onnx
 from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.asked import IDENTIFIED, kind_of_base
+from hystbench.gap.asked import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.linear import Linear, identified_linear
@@ -25,12 +28,12 @@ from hystbench.model import Model, load_model
 
 __all__ = [
     "Linear",
-    "function_base",
     "given_base",
     "identified_gpi",
     "identified_linear",
     "load_base",
     "simulated_column",
+    "simulator_base",
     "written_base",
 ]
 
@@ -42,8 +45,8 @@ def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
     ----------
     text : str or Model
         A model file; ``gpi`` or ``linear`` to identify one from the fit records;
-        ``column`` for the simulated output beside them; ``package.module:function``;
-        or a model itself.
+        ``column`` for the simulated output beside them; a simulator by its name, as
+        for :func:`simulator_base`; or a model itself.
     evidence : Evidence
 
     Returns
@@ -126,7 +129,7 @@ def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
     if kind_of_base(text) == "file":
         model = written_base(Path(text), evidence)
         return model, f"base {model.name} from {text}"
-    return function_base(text, evidence)
+    return simulator_base(text, evidence)
 
 
 def written_base(path: Path, evidence: Evidence) -> Model:
@@ -186,34 +189,44 @@ def _check_bounded(model: Model, evidence: Evidence, place: str) -> None:
             )
 
 
-def function_base(function: str, evidence: Evidence) -> tuple[Model, str]:
-    """Take a Python function as the base, and try it on the fit records.
+def simulator_base(text: str, evidence: Evidence) -> tuple[Model, str]:
+    """Take a simulator as the base, and try it on the fit records.
 
     Parameters
     ----------
-    function : str
-        ``package.module:function``, called as ``function(u, dt)``, which gives y.
+    text : str
+        ``package.module:function``, ``command: ...``, or a file .fmu or .onnx.
     evidence : Evidence
-        Its units are taken to be the function's.
+        Its units are taken to be the simulator's.
 
     Returns
     -------
     Model
-        One ``external`` block.
+        One block that is the simulator.
     str
         One sentence.
 
     Raises
     ------
     InputError
-        If it cannot be imported, raises, gives anything but finite numbers, one a
-        sample, or something else when it is called again.
+        If it cannot be run, gives anything but finite numbers, one a sample, or
+        something else when it is called again.
     """
-    block = External(function=function)
-    model = Model(function, evidence.input, evidence.output, (block,))
+    kind = kind_of_base(text)
+    block: Simulator
+    if kind == "command":
+        text = text.removeprefix(COMMAND).strip()
+        block = Command(command=text)
+    elif kind == "fmu":
+        block = Fmu(file=text)
+    elif kind == "onnx":
+        block = Onnx(file=text)
+    else:
+        block = External(function=text)
+    model = Model(text, evidence.input, evidence.output, (block,))
     check_repeats(model, evidence)
     units = f"from {evidence.input.unit} to {evidence.output.unit}"
-    return model, f"base {function}, taken to be {units}"
+    return model, f"base {text}, taken to be {units}"
 
 
 def check_repeats(model: Model, evidence: Evidence) -> None:
@@ -235,7 +248,7 @@ def check_repeats(model: Model, evidence: Evidence) -> None:
     """
     first = evidence.fit[0]
     for k, block in enumerate(model.chain):
-        if not isinstance(block, External):
+        if not isinstance(block, Simulator):
             continue
         inputs = [
             Scene(model.chain[:k], (item,), evidence.hold).output[0] if k else item.u
@@ -243,10 +256,10 @@ def check_repeats(model: Model, evidence: Evidence) -> None:
         ]
         pairs = zip(inputs, evidence.fit, strict=True)
         outputs = [block.simulate(z, item.u, item.dt) for z, item in pairs]
-        again = current().fresh(block.function, inputs[0], first.dt, called)
+        again = block.again(inputs[0], first.dt)
         if not np.array_equal(again, outputs[0]):
             raise InputError(
-                f"{block.function}: called again with record {first.name} it gave "
+                f"{block.label}: called again with record {first.name} it gave "
                 "another output; expected the same one every time, with no state kept "
                 "from call to call and nothing drawn at random"
             )

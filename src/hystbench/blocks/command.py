@@ -1,0 +1,168 @@
+"""Block ``command``: a simulator that is a program of its own, in any language."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench.blocks.parameter import number, text
+from hystbench.blocks.simulator import Simulator, called_with, checked, digest_of
+from hystbench.errors import InputError, short
+from hystbench.record import FloatArray
+
+INPUT, OUTPUT, STEP = "{input}", "{output}", "{dt}"
+"""What stands in a command line for the files that it reads and writes, and for dt."""
+HEADER = "time_s,u"
+
+
+@dataclass(frozen=True)
+class Command(Simulator):
+    """A command line that reads u and writes y: ``y = program(u)``.
+
+    It gets a CSV table with the columns time_s and u and a row a sample, on its
+    standard input or as the file that ``{input}`` stands for. It writes a row a sample,
+    the last cell of which is y, to its standard output or to the file ``{output}``; a
+    header is passed over. ``{dt}`` stands for the sampling interval in seconds. It is
+    started from the folder that hystbench was started in, without a shell.
+
+    References
+    ----------
+    By definition.
+    """
+
+    name: ClassVar = "command"
+
+    command: str = text("command line of a program that reads u and writes y")
+    timeout_s: float = number("s", "longest run", 1e-3, 1e6, 600.0)
+
+    def check(self) -> None:
+        """Refuse what is no command line."""
+        try:
+            words = shlex.split(self.command)
+        except ValueError as error:
+            raise InputError(
+                f"command: {short(self.command)}: {error}; expected a command line"
+            ) from None
+        if not words:
+            raise InputError("command: expected a command line, got nothing")
+
+    @property
+    def label(self) -> str:
+        """The command line."""
+        return self.command
+
+    def source(self) -> str:
+        """Digest of the line, of the program and of all files that are named in it."""
+        words = shlex.split(self.command)
+        program = shutil.which(words[0])
+        files = [Path(word) for word in words[1:] if Path(word).is_file()]
+        if program is not None:
+            files.insert(0, Path(program))
+        return digest_of(self.command, *files)
+
+    def call(self, z: FloatArray, dt: float) -> FloatArray:
+        """Start the program once."""
+        call = called_with(self.command, z, dt)
+        time = np.arange(len(z)) * dt
+        rows = zip(time.tolist(), z.tolist(), strict=True)
+        table = "\n".join([HEADER, *(f"{t!r},{u!r}" for t, u in rows)]) + "\n"
+        with tempfile.TemporaryDirectory() as folder:
+            given, gives = Path(folder, "input.csv"), Path(folder, "output.csv")
+            by_file = INPUT in self.command
+            if by_file:
+                given.write_text(table)
+            stands = {INPUT: str(given), OUTPUT: str(gives), STEP: repr(dt)}
+            words = [_filled(word, stands) for word in shlex.split(self.command)]
+            said = self._run(call, words, "" if by_file else table)
+            if OUTPUT in self.command:
+                if not gives.is_file():
+                    raise InputError(f"{call}, it wrote no file {OUTPUT}")
+                said = gives.read_text(errors="replace")
+        return checked(call, z, _numbers(call, said, len(z)))
+
+    def _run(self, call: str, words: list[str], table: str) -> str:
+        """Run a program to its end and give what it wrote to its standard output."""
+        try:
+            # Never through a shell; the line stands in the user's own model file.
+            process = subprocess.Popen(  # noqa: S603
+                words,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                errors="replace",
+                start_new_session=True,
+            )
+        except OSError as error:
+            raise InputError(
+                f"{self.command}: cannot start {words[0]!r} ({error.strerror}); "
+                f"expected a program, looked for from {Path.cwd()}"
+            ) from error
+        with process:
+            try:
+                said, wrong = process.communicate(table, timeout=self.timeout_s)
+            except subprocess.TimeoutExpired:
+                _end(process)
+                raise InputError(
+                    f"{call}, it ran for more than {self.timeout_s:g} s (timeout_s)"
+                ) from None
+            except BaseException:
+                _end(process)
+                raise
+        if process.returncode:
+            last = (wrong.strip().splitlines() or ["no message"])[-1]
+            raise InputError(
+                f"{call}, it ended with status {process.returncode}: {short(last)}"
+            )
+        return said
+
+
+def _end(process: subprocess.Popen[str]) -> None:
+    """End a program and all that it started."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def _filled(word: str, stands: dict[str, str]) -> str:
+    for mark, value in stands.items():
+        word = word.replace(mark, value)
+    return word
+
+
+def _numbers(call: str, said: str, count: int) -> list[float]:
+    """Read the last cell of each row; one header is passed over."""
+    rows = [line for line in said.splitlines() if line.strip()]
+    if len(rows) == count + 1 and not _is_number(_last(rows[0])):
+        rows = rows[1:]
+    if len(rows) != count:
+        first = f", the first {short(rows[0])}" if rows else ""
+        raise InputError(
+            f"{call}, it wrote {len(rows)} rows{first}; expected {count}, one a sample"
+        )
+    for k, row in enumerate(rows, start=1):
+        if not _is_number(_last(row)):
+            raise InputError(f"{call}, it wrote {short(row)} as row {k}; expected y")
+    return [float(_last(row)) for row in rows]
+
+
+def _last(row: str) -> str:
+    return row.replace(",", " ").replace(";", " ").split()[-1]
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True

@@ -1,0 +1,139 @@
+"""Block ``fmu``: a Functional Mock-up Unit for co-simulation."""
+
+from __future__ import annotations
+
+import atexit
+import shutil
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from hystbench.blocks.parameter import text
+from hystbench.blocks.simulator import (
+    Simulator,
+    called_with,
+    checked,
+    digest_of,
+    file_of,
+    same_file,
+)
+from hystbench.errors import InputError, nearest
+from hystbench.libraries import library
+from hystbench.record import FloatArray
+
+EXPECTED = "a Functional Mock-up Unit (.fmu)"
+
+
+@dataclass(frozen=True)
+class Fmu(Simulator):
+    """A Functional Mock-up Unit (FMI 1 to 3) in co-simulation, run by FMPy.
+
+    One step of communication is one sampling interval. The input is set at the
+    beginning of a step and stands through it; the first output is that of time zero.
+
+    References
+    ----------
+    .. [1] Functional Mock-up Interface Specification, version 3.0, Section 4
+       (co-simulation).
+    """
+
+    name: ClassVar = "fmu"
+
+    file: str = text(EXPECTED)
+    input: str = text("variable that is the input; its only input by default", "")
+    output: str = text("variable that is the output; its only output by default", "")
+
+    @property
+    def label(self) -> str:
+        """The file, with the variables that are named."""
+        named = ":".join(filter(None, (self.input, self.output)))
+        return f"{self.file}:{named}" if named else self.file
+
+    def source(self) -> str:
+        """Digest of the unit and the names."""
+        return digest_of(self.label, file_of(self.label, self.file, EXPECTED))
+
+    def call(self, z: FloatArray, dt: float) -> FloatArray:
+        """Run the unit once, from its start."""
+        path = file_of(self.label, self.file, EXPECTED)
+        call = called_with(self.label, z, dt)
+        fmpy = library("fmpy", "fmpy", self.label, "simulators")
+        unit = _unpacked(fmpy, self.label, *same_file(path))
+        given = _variable(unit, self.label, "input", self.input)
+        gives = _variable(unit, self.label, "output", self.output)
+        table = np.zeros(len(z), dtype=[("time", float), (given, float)])
+        table["time"], table[given] = np.arange(len(z)) * dt, z
+        try:
+            found = fmpy.simulate_fmu(
+                unit.folder,
+                model_description=unit.description,
+                fmi_type="CoSimulation",
+                start_time=0.0,
+                stop_time=(len(z) - 1) * dt,
+                output_interval=dt,
+                input=table,
+                output=[gives],
+                validate=False,
+            )
+        except Exception as error:
+            # A unit, and FMPy of it, may raise anything.
+            said = " ".join(f"{type(error).__name__}: {error}".split())
+            raise InputError(f"{call}, it failed: {said}") from error
+        return checked(call, z, found[gives])
+
+
+@dataclass(frozen=True)
+class _Unit:
+    """A unit in a folder, and what it says of itself."""
+
+    folder: str
+    description: Any
+
+
+@lru_cache(maxsize=8)
+def _unpacked(fmpy: Any, label: str, path: str, changed: int, size: int) -> _Unit:
+    """Unpack a unit once; the folder goes when the program ends."""
+    try:
+        description = fmpy.read_model_description(path, validate=False)
+        folder = fmpy.extract(path)
+    except Exception as error:
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        raise InputError(f"{label}: no readable {EXPECTED} ({said})") from error
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    if description.coSimulation is None:
+        raise InputError(
+            f"{label}: a unit for model exchange; expected one for co-simulation"
+        )
+    platform = (
+        fmpy.platform_tuple if description.fmiVersion[0] == "3" else (fmpy.platform)
+    )
+    if not Path(folder, "binaries", platform).is_dir():
+        there = sorted(item.name for item in Path(folder, "binaries").glob("*"))
+        raise InputError(
+            f"{label}: no binary for {platform}; it has {', '.join(there) or 'none'}"
+        )
+    return _Unit(folder, description)
+
+
+def _variable(unit: _Unit, label: str, causality: str, asked: str) -> str:
+    """Name the variable that was asked for, or the only one there is."""
+    names = [
+        v.name for v in unit.description.modelVariables if v.causality == causality
+    ]
+    if asked:
+        if asked not in names:
+            raise InputError(
+                f"{label}: {causality}: no {causality} {asked!r}; "
+                f"{nearest(asked, names)}"
+            )
+        return asked
+    if len(names) != 1:
+        raise InputError(
+            f"{label}: {len(names)} variables are {causality}s "
+            f"({', '.join(names[:6]) or 'none'}); expected the name of one, "
+            f"'{causality}: NAME', in a model file"
+        )
+    return str(names[0])

@@ -1,0 +1,158 @@
+"""What all simulators of somebody's own have in common, in whatever form they come."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from hashlib import blake2b
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hystbench.blocks.base import Block, Place
+from hystbench.blocks.calls import current
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+
+class Simulator(Block):
+    """A whole simulator as a block: called with samples, it gives as many.
+
+    Calls are counted, bounded and kept (:mod:`hystbench.blocks.calls`). It must give
+    the same output every time. Files that it names are looked for from the folder that
+    the program was started in. A model file with a simulator is a program: run only
+    those that you trust.
+
+    References
+    ----------
+    By definition.
+    """
+
+    place: ClassVar[Place] = "base"
+    reference: ClassVar[str] = "by definition"
+    seen: ClassVar[bool] = False
+    no_step: ClassVar[str] = "a simulator of somebody's own cannot be turned into code"
+
+    @property
+    @abstractmethod
+    def label(self) -> str:
+        """What messages call it, and by which its outputs are known."""
+
+    @abstractmethod
+    def call(self, z: FloatArray, dt: float) -> FloatArray:
+        """Run the simulator once.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+        dt : float
+            Sampling interval in seconds.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+
+        Raises
+        ------
+        InputError
+            If it cannot be run, fails, or gives anything but n finite numbers.
+        """
+
+    @abstractmethod
+    def source(self) -> str:
+        """Digest of all that it is made of, so far as that is known."""
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Run the simulator, or give what it gave for the same samples before.
+
+        Raises
+        ------
+        InputError
+            As :meth:`call` does; or the calls that a user allows are used up.
+        """
+        return current().output(
+            self.label, z, dt, lambda _, z, dt: self.call(z, dt), self.source
+        )
+
+    def again(self, z: FloatArray, dt: float) -> FloatArray:
+        """Run the simulator, whatever it gave before.
+
+        Raises
+        ------
+        InputError
+            As :meth:`call` does; or the calls that a user allows are used up.
+        """
+        return current().fresh(self.label, z, dt, lambda _, z, dt: self.call(z, dt))
+
+
+def checked(call: str, z: FloatArray, given: ArrayLike) -> FloatArray:
+    """Check what a simulator gave: as many finite real numbers as samples.
+
+    Parameters
+    ----------
+    call : str
+        Who was called with what, for the message.
+    z : ndarray, shape (n,)
+    given : array_like
+
+    Raises
+    ------
+    InputError
+        If it is anything else.
+    """
+    if np.iscomplexobj(given):  # NumPy would drop the imaginary part
+        raise InputError(f"{call}, it gave complex numbers; expected real ones")
+    try:
+        y = np.array(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{call}, it gave {type(given).__name__}; expected {len(z)} numbers"
+        ) from None
+    if y.shape != z.shape:
+        raise InputError(
+            f"{call}, it gave an array of shape {y.shape}; expected ({len(z)},)"
+        )
+    lost = np.flatnonzero(~np.isfinite(y))
+    if len(lost):
+        raise InputError(
+            f"{call}, it gave {y[lost[0]]} at sample {lost[0]}; expected finite numbers"
+        )
+    return y
+
+
+def called_with(label: str, z: FloatArray, dt: float) -> str:
+    """Say who was called with what."""
+    return f"{label}: called with {len(z)} samples and dt = {dt:g} s"
+
+
+def digest_of(text: str, *files: Path) -> str:
+    """Digest of a text and of the content of files."""
+    whole = blake2b(text.encode(), digest_size=16)
+    for file in files:
+        content = file.read_bytes()
+        whole.update(f"\n{file.name} {len(content)}\n".encode() + content)
+    return whole.hexdigest()
+
+
+def file_of(label: str, path: str, expected: str) -> Path:
+    """Give a file that a simulator names.
+
+    Raises
+    ------
+    InputError
+        If there is none.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise InputError(
+            f"{label}: no file {path!r}, looked for from {Path.cwd()}; expected "
+            f"{expected}"
+        )
+    return file
+
+
+def same_file(path: Path) -> tuple[str, int, int]:
+    """Give what tells a file from a later one of its name."""
+    about = path.stat()
+    return str(path.resolve()), about.st_mtime_ns, about.st_size

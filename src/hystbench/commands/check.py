@@ -1,0 +1,33 @@
+"""``hystbench check``: what records are like, and which effects they can reveal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.dataset import load_dataset
+from hystbench.files import write_text
+from hystbench.inspection import words
+from hystbench.inspection.check import check as look
+
+
+@click.command()
+@click.argument("dataset", type=options.DATASET)
+@click.option("--out", type=options.NEW_FILE, help="Write a page (HTML) too.")
+def check(dataset: Path, out: Path | None) -> None:
+    """Say what the records of DATASET are like and which effects they can reveal.
+
+    Prints one screen: rates, jitter, periods, stuck channels, missing samples, delays,
+    noise, bands and levels; what is wrong, with the line for dataset.yaml that mends
+    it; and how strong each effect must be to be seen, and told from the others.
+    """
+    found = look(load_dataset(dataset))
+    for line in words.text(found):
+        click.echo(line)
+    if out is not None:
+        from hystbench.inspection.page import page  # late: it draws
+
+        write_text(out, page(found))
+        click.echo(f"{out}: the same as a page")

@@ -1,0 +1,139 @@
+"""``hystbench init``: propose a dataset.yaml for files of measurements."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.errors import InputError
+from hystbench.files import write_text
+from hystbench.inspection.draft import Draft, Given, draft
+from hystbench.inspection.writing import yaml_text
+from hystbench.written import writes
+
+PLACE = "dataset.yaml"
+
+
+@click.command()
+@click.argument("files", type=options.FILE, nargs=-1, required=True)
+@click.option("--input", "input_", help="Column of the input.")
+@click.option("--output", help="Column of the output.")
+@click.option("--time", "time_", help="Column of time.")
+@click.option("--input-unit", help="Its unit, such as A; '-' for none.")
+@click.option("--output-unit", help="Its unit, such as um; '-' for none.")
+@click.option("--time-unit", help="Its unit; seconds where the file tells none.")
+@click.option(
+    "--sampling-frequency",
+    type=click.FloatRange(min=0, min_open=True),
+    help="In Hz, where no column is time.",
+)
+@click.option("--hold-out", multiple=True, help="Name of a record to hold out.")
+@click.option(
+    "--missing",
+    type=click.Choice(["interpolate", "split"]),
+    help="What to do where samples are missing.",
+)
+@click.option("--name", help="Name of the dataset; by default that of its folder.")
+@click.option(
+    "--out",
+    type=options.NEW_FILE,
+    help="The dataset.yaml to write; by default beside the first file.",
+)
+def init(
+    files: Sequence[Path],
+    input_: str | None,
+    output: str | None,
+    time_: str | None,
+    input_unit: str | None,
+    output_unit: str | None,
+    time_unit: str | None,
+    sampling_frequency: float | None,
+    hold_out: tuple[str, ...],
+    missing: str | None,
+    name: str | None,
+    out: Path | None,
+) -> None:
+    """Propose a dataset.yaml for FILES: CSV, MATLAB, HDF5, Parquet, TDMS, .npz, WAV.
+
+    Columns, units, periods and roles are found; what cannot be found is asked, or has
+    to be said by an option where nobody is there to be asked.
+    """
+    place = out or files[0].parent / PLACE
+    if out is None:
+        writes(place)  # refuses, before work is paid
+    given = Given(
+        name,
+        time_,
+        input_,
+        output,
+        time_unit,
+        input_unit,
+        output_unit,
+        sampling_frequency,
+        hold_out,
+        missing,
+    )
+    found = draft(files, place, given, _asker())
+    write_text(place, yaml_text(found.dataset.about))
+    for line in _said(place, found):
+        click.echo(line)
+    options.warn(found.warnings)
+
+
+class _Nobody:
+    """Refuses what would have to be asked; units alone have a word for unknown."""
+
+    def __call__(self, question: str, choices: Sequence[str], flag: str) -> str:
+        if flag.endswith("-unit"):
+            return "-"
+        told = f"; expected one of {', '.join(choices)}" if choices else ""
+        raise InputError(f"{question}: not told; say {flag}{told}")
+
+
+class _Terminal:
+    """Asks on the terminal."""
+
+    def __call__(self, question: str, choices: Sequence[str], flag: str) -> str:
+        kind = click.Choice(list(choices)) if choices else None
+        default = "-" if flag.endswith("-unit") else None
+        answer: str = click.prompt(question, type=kind, default=default, err=True)
+        return answer
+
+
+def _asker() -> _Nobody | _Terminal:
+    return _Terminal() if sys.stdin.isatty() and sys.stdout.isatty() else _Nobody()
+
+
+def _said(place: Path, found: Draft) -> list[str]:
+    """Tell what was written, and what to do next."""
+    about = found.dataset.about
+    lines = [
+        f"{place}: {len(found.records)} records of {found.dataset.name}",
+        *(
+            f"  {key}: {about[key]['column']} ({about[key]['unit']})"
+            for key in ("time", "input", "output", "simulated")
+            if key in about
+        ),
+    ]
+    width = max(len(record.name) for record in found.records)
+    for record in found.records:
+        item = found.inputs[record.name]
+        period = record.period_samples
+        lines.append(
+            f"  {record.name:{width}}  {record.use:8}  {len(record)} samples at "
+            f"{1 / record.dt:.6g} Hz, {item.kind}, "
+            + (f"period_samples: {period}" if period else "no period")
+        )
+    lines += [f"  note: {note}" for note in found.notes]
+    base = "column" if "simulated" in about else "linear"
+    folder = place.parent
+    lines += [
+        "Next:",
+        f"  hystbench check {place} --out {folder / 'check.html'}",
+        f"  hystbench gap {place} --model {base} --out {folder / 'gap'}",
+    ]
+    return lines

@@ -1,0 +1,24 @@
+"""What libraries raise of damaged files, in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hystbench.errors import InputError
+
+
+@contextmanager
+def told(path: Path, kind: str) -> Iterator[None]:
+    """Turn what a library raises of a damaged file into one line."""
+    try:
+        yield
+    except InputError:
+        raise
+    except MemoryError as error:
+        raise InputError(f"{path}: more than fits into memory") from error
+    except Exception as error:
+        # Libraries raise anything of what is damaged.
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        raise InputError(f"{path}: no readable {kind} ({said})") from error

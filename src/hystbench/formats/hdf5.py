@@ -1,0 +1,74 @@
+"""HDF5 files, by h5py: each numeric dataset is a column, or a matrix of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.formats.damaged import told
+from hystbench.formats.table import FREQUENCIES, INTERVALS, Column, Table, columns_of
+from hystbench.libraries import library
+
+UNITS = ("units", "unit", "Units", "Unit", "unit_string")
+
+
+def read(path: Path) -> Table:
+    """Read all datasets that hold numbers, named by their path in the file."""
+    h5py = library("h5py", "h5py", path, "formats")
+    columns: list[Column] = []
+    numbers: dict[str, float] = {}
+    notes: list[str] = []
+
+    def take(name: str, item: Any) -> None:
+        numbers.update(_numbers(name, item.attrs))
+        if not isinstance(item, h5py.Dataset):
+            return
+        unit = unit_of(item.attrs)
+        own = _numbers("", item.attrs)
+        frequency = Table(path, (), own).sampling_frequency()
+        parts = (
+            {f"{name}/{key}": item[key] for key in item.dtype.names}
+            if item.dtype.names
+            else {name: item}
+        )
+        for each, part in parts.items():
+            kind = part.dtype.kind
+            if kind not in "fiubMm" or part.shape is None or 0 in part.shape:
+                notes.append(f"{each}: no numbers; left out")
+                continue
+            found = columns_of(each, part[()], unit, frequency)
+            columns.extend(found[0])
+            numbers.update(found[1])
+            notes.extend(found[2])
+
+    with told(path, "HDF5 file"), h5py.File(path, "r") as content:
+        numbers.update(_numbers("", content.attrs))
+        content.visititems(take)
+    return Table(path, tuple(columns), numbers, tuple(notes))
+
+
+def unit_of(attributes: Mapping[str, Any]) -> str | None:
+    """Give the unit that attributes tell."""
+    for key in UNITS:
+        value = attributes.get(key)
+        if isinstance(value, np.ndarray) and value.size == 1:
+            value = value.reshape(-1)[0]
+        if isinstance(value, bytes):
+            value = value.decode("utf-8", "replace")
+        if isinstance(value, str) and value.strip():
+            return value.strip()
+    return None
+
+
+def _numbers(name: str, attributes: Mapping[str, Any]) -> dict[str, float]:
+    """Give a sampling frequency or interval that attributes tell."""
+    found = {}
+    for key, value in attributes.items():
+        single = np.asarray(value)
+        known = key.lower() in FREQUENCIES | INTERVALS
+        if known and single.size == 1 and single.dtype.kind in "fiu":
+            found[f"{name}/{key}".lstrip("/")] = float(single.reshape(-1)[0])
+    return found

@@ -1,0 +1,142 @@
+"""MATLAB files: up to v7 by scipy, v7.3 (which is HDF5) by h5py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hystbench.formats.damaged import told
+from hystbench.formats.table import Column, Table, columns_of
+from hystbench.libraries import library
+
+_HDF5 = b"\x89HDF"
+"""What HDF5 begins with; MATLAB writes 512 bytes of its own before it."""
+_OBJECT = (
+    "{}: a MATLAB object such as a table or timeseries; left out: save its columns as "
+    "plain arrays or as fields of a struct"
+)
+DEEPEST = 8
+"""Levels of structs inside structs that are looked at."""
+
+
+def read(path: Path) -> Table:
+    """Read all numeric variables; fields of structs are named ``struct/field``.
+
+    The elements of an array of structs are groups ``runs(1)``, ``runs(2)`` and so on,
+    and so are those of a cell array.
+    """
+    with path.open("rb") as stream:
+        start = stream.read(512 + len(_HDF5))
+    columns: list[Column] = []
+    numbers: dict[str, float] = {}
+    notes: list[str] = []
+    is_hdf5 = _HDF5 in (start[: len(_HDF5)], start[512:])
+    variables = _version_73(path) if is_hdf5 else _version_5(path)
+    for name, values in variables:
+        if values is None:
+            notes.append(_OBJECT.format(name))
+            continue
+        found = columns_of(name, values)
+        columns += found[0]
+        numbers |= found[1]
+        notes += found[2]
+    return Table(path, tuple(columns), numbers, tuple(notes))
+
+
+def _version_5(path: Path) -> Iterator[tuple[str, Any]]:
+    with told(path, "MATLAB file"):
+        from scipy.io import loadmat  # late: scipy
+        from scipy.io.matlab import MatlabOpaque
+
+        content = loadmat(path, squeeze_me=False, struct_as_record=True)
+        for name, value in content.items():
+            if name.startswith("__"):
+                continue
+            if isinstance(value, MatlabOpaque):
+                yield name, None
+            else:
+                yield from _inside(name, value, 0)
+
+
+def _inside(name: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
+    """Give the arrays in a variable of scipy's: structs and cells are arrays too."""
+    array = np.asarray(value)
+    if depth > DEEPEST or not array.size:
+        return
+    if array.dtype.names:
+        for element, where in _elements(array, name):
+            for key in array.dtype.names:
+                yield from _inside(f"{where}/{key}", element[key], depth + 1)
+    elif array.dtype.kind == "O":
+        for element, where in _elements(array, name):
+            yield from _inside(where, element, depth + 1)
+    else:
+        yield name, array
+
+
+def _elements(array: np.ndarray, name: str) -> Iterator[tuple[Any, str]]:
+    flat = array.ravel(order="F")
+    for k, element in enumerate(flat, start=1):
+        yield element, name if len(flat) == 1 else f"{name}({k})"
+
+
+def _version_73(path: Path) -> Iterator[tuple[str, Any]]:
+    h5py = library("h5py", "h5py", path, "formats")
+    with told(path, "MATLAB file"), h5py.File(path, "r") as content:
+        for name in content:
+            if not name.startswith("#"):  # where MATLAB keeps what is referred to
+                yield from _inside_73(h5py, content, name, content[name], 0)
+
+
+def _inside_73(
+    h5py: Any, content: Any, name: str, item: Any, depth: int
+) -> Iterator[tuple[str, Any]]:
+    if depth > DEEPEST:
+        return
+    if "MATLAB_object_decode" in item.attrs:
+        yield name, None
+        return
+    if isinstance(item, h5py.Group):
+        fields = {key: item[key] for key in item}
+        arrays = {
+            key: part[()]
+            for key, part in fields.items()
+            if _refers(h5py, part) and "MATLAB_class" not in part.attrs
+        }
+        # Each field of an array of structs is an array of references.
+        counts = {array.size for array in arrays.values()}
+        for key, part in fields.items():
+            if key in arrays and len(counts) == 1:
+                references = arrays[key].ravel()
+                for k, reference in enumerate(references, start=1):
+                    where = name if len(references) == 1 else f"{name}({k})"
+                    target = content[reference]
+                    yield from _inside_73(
+                        h5py, content, f"{where}/{key}", target, depth + 1
+                    )
+            else:
+                yield from _inside_73(h5py, content, f"{name}/{key}", part, depth + 1)
+        return
+    if item.attrs.get("MATLAB_empty") or item.shape is None or 0 in item.shape:
+        return
+    if _refers(h5py, item):  # a cell array
+        references = item[()].ravel()
+        for k, reference in enumerate(references, start=1):
+            where = name if len(references) == 1 else f"{name}({k})"
+            yield from _inside_73(h5py, content, where, content[reference], depth + 1)
+        return
+    kind = item.attrs.get("MATLAB_class", b"")
+    if kind in (b"char", "char"):
+        return
+    if item.dtype.names == ("real", "imag"):
+        parts = item[()]
+        yield name, (parts["real"] + 1j * parts["imag"]).T
+        return
+    yield name, item[()].T  # MATLAB counts down columns, HDF5 along rows
+
+
+def _refers(h5py: Any, item: Any) -> bool:
+    return isinstance(item, h5py.Dataset) and item.dtype == h5py.ref_dtype

@@ -1,0 +1,228 @@
+"""What a file of measurements holds: named columns of numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.errors import InputError, nearest
+
+FloatArray = NDArray[np.float64]
+
+#: Names of numbers that tell a sampling frequency in Hz, in small letters.
+FREQUENCIES = frozenset(
+    {
+        *("fs", "f_s", "fsamp", "fsample", "fsampling", "abtastrate"),
+        *("samplerate", "sample_rate", "samplingrate", "sampling_rate"),
+        *("samplingfrequency", "sampling_frequency", "sampling_frequency_hz"),
+    }
+)
+#: Names of numbers that tell a sampling interval in seconds.
+INTERVALS = frozenset(
+    {"dt", "ts", "tsample", "sampling_interval", "sampling_time", "wf_increment"}
+)
+
+
+@dataclass(frozen=True, repr=False)
+class Column:
+    """One column of a file.
+
+    Parameters
+    ----------
+    name : str
+        As dataset.yaml names it. What lies in a group of the file has the group before
+        a slash.
+    values : ndarray, shape (n,)
+        NaN where the file has no number.
+    unit : str, optional
+        As the file tells it.
+    sampling_frequency_hz : float, optional
+        Of this column alone, as the file tells it.
+    """
+
+    name: str
+    values: FloatArray
+    unit: str | None = None
+    sampling_frequency_hz: float | None = None
+
+    @property
+    def group(self) -> str:
+        """The group that it lies in, empty at the top."""
+        return self.name.rpartition("/")[0]
+
+    @property
+    def short(self) -> str:
+        """Its name inside its group."""
+        return self.name.rpartition("/")[2]
+
+
+@dataclass(frozen=True, repr=False)
+class Table:
+    """Columns of one file; they may differ in length.
+
+    Parameters
+    ----------
+    path : Path
+    columns : tuple of Column
+    numbers : mapping of str to float
+        Lone numbers of the file, such as a sampling frequency, by name.
+    notes : tuple of str
+        What a reader should know: what was left out, what was taken for what.
+    rows : sequence of int, optional
+        The row of each sample, where the file is a text: as editors count.
+    others : tuple of str
+        Names of columns that were not read.
+    """
+
+    path: Path
+    columns: tuple[Column, ...]
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    rows: Sequence[int] | None = None
+    others: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the columns, in the file's order."""
+        return [column.name for column in self.columns]
+
+    def column(self, name: str, group: str = "") -> Column:
+        """Give a column by its name, in a group of the file or beside all groups.
+
+        A group may also be a column of each matrix: ``(:,2)``.
+
+        Raises
+        ------
+        InputError
+            If there is none, with the nearest name, or several.
+        """
+        wanted = [f"{group}/{name}", f"{name}{group}", name] if group else [name]
+        for each in dict.fromkeys(wanted):
+            found = [column for column in self.columns if column.name == each]
+            if len(found) > 1:
+                raise InputError(
+                    f"{self.path}: {len(found)} columns {each!r}; expected one"
+                )
+            if found:
+                return found[0]
+        where = f" in the group {group!r}" if group else ""
+        raise InputError(
+            f"{self.path}: no column {name!r}{where}; "
+            f"{nearest(wanted[0], [*self.names, *self.others] or ['time_s'])}"
+        )
+
+    def place(self, sample: int) -> str:
+        """Name the place of a sample, counted from 0, as a reader finds it."""
+        if self.rows is not None and 0 <= sample < len(self.rows):
+            return f"row {self.rows[sample]}"
+        return f"sample {sample + 1}"
+
+    def sampling_frequency(self, columns: Iterable[Column] = ()) -> float | None:
+        """Give the sampling frequency in Hz that the file tells, if it tells one.
+
+        Parameters
+        ----------
+        columns : iterable of Column
+            Whose own frequency counts first; a lone number of the file counts next.
+
+        Raises
+        ------
+        InputError
+            If columns differ in it.
+        """
+        own = {c.sampling_frequency_hz for c in columns} - {None}
+        if len(own) > 1:
+            told = ", ".join(f"{value:g}" for value in sorted(filter(None, own)))
+            raise InputError(
+                f"{self.path}: columns sampled at {told} Hz; expected one sampling "
+                "frequency for time, input and output"
+            )
+        if own:
+            return own.pop()
+        # A number of a group stands for what lies in it.
+        for name, value in self.numbers.items():
+            known = name.rpartition("/")[2].lower()
+            if known in FREQUENCIES and value > 0:
+                return value
+            if known in INTERVALS and value > 0:
+                return 1.0 / value
+        return None
+
+
+def as_numbers(values: object) -> FloatArray | None:
+    """Give an array as float64, times as seconds; None where it has no real numbers."""
+    array = np.ma.filled(np.ma.asarray(values), np.nan) if _masked(values) else values
+    array = np.asarray(array)
+    if array.dtype.kind == "M":
+        lost = np.isnat(array)
+        first = array[~lost][0] if (~lost).any() else np.datetime64("NaT")
+        seconds = (array - first) / np.timedelta64(1, "ns") * 1e-9
+        return np.where(lost, np.nan, seconds).astype(np.float64)
+    if array.dtype.kind == "m":
+        return np.asarray(array / np.timedelta64(1, "ns") * 1e-9, dtype=np.float64)
+    if array.dtype.kind == "c":
+        if np.any(array.imag):
+            return None
+        array = array.real
+    if array.dtype.kind not in "fiub":
+        return None
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _masked(values: object) -> bool:
+    return isinstance(values, np.ma.MaskedArray) and values.dtype.kind == "f"
+
+
+def columns_of(
+    name: str,
+    values: object,
+    unit: str | None = None,
+    frequency: float | None = None,
+) -> tuple[list[Column], dict[str, float], list[str]]:
+    """Take an array apart into columns: a matrix gives several, a lone number none.
+
+    Parameters
+    ----------
+    name : str
+    values : array_like
+        Of any shape.
+    unit : str, optional
+    frequency : float, optional
+        Sampling frequency in Hz.
+
+    Returns
+    -------
+    columns : list of Column
+        Those of a matrix are named ``name(:,1)`` and so on; its longer side is time.
+    numbers : dict of str to float
+    notes : list of str
+        Why it is left out, where it is.
+    """
+    array = as_numbers(values)
+    if array is None:
+        is_complex = np.asarray(values).dtype.kind == "c"
+        return [], {}, [f"{name}: complex numbers; left out"] * is_complex
+    shape = array.shape
+    array = np.squeeze(array)
+    if array.ndim == 0:
+        return [], {name: float(array)}, []
+    if array.ndim == 1:
+        return [Column(name, array, unit, frequency)], {}, []
+    if array.ndim == 2:
+        rows = array if array.shape[0] >= array.shape[1] else array.T
+        if rows.shape[1] > MOST_COLUMNS:
+            return [], {}, [f"{name}: a matrix of {shape}; left out, as no few columns"]
+        columns = [
+            Column(f"{name}(:,{k})", np.ascontiguousarray(part), unit, frequency)
+            for k, part in enumerate(rows.T, start=1)
+        ]
+        return columns, {}, []
+    return [], {}, [f"{name}: an array of {array.ndim} dimensions; left out"]
+
+
+#: Of a matrix: wider ones are pictures or tables of something else.
+MOST_COLUMNS = 256

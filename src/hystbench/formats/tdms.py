@@ -1,0 +1,39 @@
+"""TDMS files of LabVIEW, by nptdms: each group is a record, each channel a column."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hystbench.formats.damaged import told
+from hystbench.formats.table import Column, Table, columns_of
+from hystbench.libraries import library
+
+UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit")
+
+
+def read(path: Path) -> Table:
+    """Read all channels, as ``group/channel``, with unit and sampling frequency."""
+    nptdms = library("nptdms", "nptdms", path, "formats")
+    columns: list[Column] = []
+    notes: list[str] = []
+    with told(path, "TDMS file"):
+        content = nptdms.TdmsFile.read(path)
+        for group in content.groups():
+            for channel in group.channels():
+                name = f"{group.name}/{channel.name}"
+                unit = next(
+                    (
+                        str(channel.properties[key])
+                        for key in UNITS
+                        if channel.properties.get(key)
+                    ),
+                    None,
+                )
+                step = channel.properties.get("wf_increment")
+                frequency = 1.0 / float(step) if step and float(step) > 0 else None
+                found = columns_of(name, channel[:], unit, frequency)
+                if not found[0] and len(channel):
+                    notes.append(f"{name}: no numbers; left out")
+                columns += found[0]
+                notes += found[2]
+    return Table(path, tuple(columns), {}, tuple(notes))

@@ -1,0 +1,1 @@
+"""Looking at records: what they are, what is wrong with them, what they can show."""

@@ -1,0 +1,122 @@
+"""What kind of input a record has, how fast and how large it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from hystbench.record import FloatArray
+
+Kind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
+
+STANDS = 0.8
+"""Share of samples at which the input stands still, of steps."""
+STRAIGHT = 0.25
+"""Spread of the slope's size over its mean, of ramps; a sine has 0.48."""
+LINES = 0.95
+"""Share of the power that the lines of a sine, or of a sum of sines, have."""
+MOST_LINES = 20
+PARTS = 16
+"""That a record is cut into, to see how its frequency goes."""
+IN_BAND = 0.99
+"""Share of the input's power in its band."""
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """An input in a few numbers.
+
+    Parameters
+    ----------
+    kind : str
+    low_hz, high_hz : float
+        Band that holds 99 % of the power of its changes about the mean.
+    low, high : float
+        Range, in the input's unit.
+    rate : float
+        Rms of its rate, in its unit a second.
+    fastest : float
+        Largest rate.
+    """
+
+    kind: Kind
+    low_hz: float
+    high_hz: float
+    low: float
+    high: float
+    rate: float
+    fastest: float
+
+    @property
+    def span(self) -> float:
+        """Peak to peak, in the input's unit."""
+        return self.high - self.low
+
+    @property
+    def relative_rate(self) -> float:
+        """Rms of the rate over half of the range, in 1/s."""
+        return 2 * self.rate / self.span
+
+
+def excitation_of(u: FloatArray, dt: float) -> Excitation:
+    """Describe an input.
+
+    Parameters
+    ----------
+    u : ndarray, shape (n,)
+    dt : float
+        Sampling interval in seconds.
+    """
+    power = np.square(np.abs(np.fft.rfft((u - u.mean()) * np.hanning(len(u)))))
+    total = np.cumsum(power)
+    edges = ((1 - IN_BAND) / 2 * total[-1], (1 + IN_BAND) / 2 * total[-1])
+    low, high = np.searchsorted(total, edges) / (len(u) * dt)
+    slopes = np.diff(u) / dt
+    return Excitation(
+        _kind(u, power),
+        max(float(low), 1 / (len(u) * dt)),
+        max(float(high), 1 / (len(u) * dt)),
+        float(u.min()),
+        float(u.max()),
+        float(np.sqrt(np.mean(slopes**2))),
+        float(np.abs(slopes).max()),
+    )
+
+
+def _kind(u: FloatArray, power: FloatArray) -> Kind:
+    steps = np.abs(np.diff(u))
+    reach = float(np.ptp(u))
+    if np.mean(steps < 1e-6 * reach) > STANDS:
+        return "steps"
+    if np.std(steps) < STRAIGHT * steps.mean():
+        return "ramps"
+    lines = _lines(power)
+    if lines == 1:
+        return "sine"
+    if _sweeps(u):
+        return "sweep"
+    return "sum of sines" if lines <= MOST_LINES else "broadband"
+
+
+def _lines(power: FloatArray) -> int:
+    """Count the lines that hold nearly all of the power, each three bins wide."""
+    left, total, count = power.copy(), float(power.sum()), 0
+    while count <= MOST_LINES and left.sum() > (1 - LINES) * total:
+        top = int(np.argmax(left))
+        left[max(top - 2, 0) : top + 3] = 0.0
+        count += 1
+    return count
+
+
+def _sweeps(u: FloatArray) -> bool:
+    """Tell whether the frequency goes one way through the record, by crossings."""
+    above = u > u.mean()
+    crossings = np.flatnonzero(above[1:] != above[:-1])
+    if len(crossings) < PARTS:
+        return False
+    gaps = np.array([part.mean() for part in np.array_split(np.diff(crossings), 8)])
+    ways = np.sign(np.diff(gaps))
+    one_way = np.count_nonzero(ways == ways[0]) >= len(ways) - 1
+    return bool(one_way and gaps.max() > 2 * gaps.min())

@@ -1,0 +1,214 @@
+"""What each record is like: rate, jitter, period, clipping, delay, noise, levels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.dataset import Dataset
+from hystbench.errors import InputError
+from hystbench.formats import read_table
+from hystbench.gap.compared import Compared
+from hystbench.gap.usable import REAL, check_usable
+from hystbench.inspection.excitation import Excitation, excitation_of
+from hystbench.periods import find_period
+from hystbench.record import FloatArray, Record, Use
+from hystbench.units import seconds
+
+LATE = 1.0
+"""Samples by which a record is late against the others, worth telling."""
+MOST = 0.5
+"""Of what the loop leaves of a record: the delay is then what is wrong with it."""
+SURE = 3.0
+"""Standard errors of that difference."""
+NORMAL = 0.6745
+"""Median size of a normal variable, in standard deviations."""
+OTHERS = 4
+"""Records at least that the one is held against."""
+INDEPENDENT = 20
+"""Stretches of a record whose delays are compared: model error is not white."""
+
+
+@dataclass(frozen=True)
+class Facts:
+    """One record in a few numbers.
+
+    Parameters
+    ----------
+    name : str
+    use : {"fit", "hold-out"}
+    samples : int
+    dt : float
+        Sampling interval in seconds.
+    jitter : float or None
+        Rms of the steps of time about their mean, as a share of it; None without a
+        column of time.
+    period : int or None
+        Samples, as the dataset says or as it was found.
+    declared : bool
+        Whether the dataset says it.
+    excitation : Excitation
+    low, high : float
+        Range of the output.
+    stuck : str
+        What looks stuck or clipped, in words; empty where nothing does.
+    missing : int
+        Samples that were interpolated.
+    delay_s, delay_error_s : float
+        By how much the output is behind a loop that does not depend on the rate, and
+        the standard error of that.
+    delay_share : float
+        Share of the power that the loop leaves which goes with the delay.
+    """
+
+    name: str
+    use: Use
+    samples: int
+    dt: float
+    jitter: float | None
+    period: int | None
+    declared: bool
+    excitation: Excitation
+    low: float
+    high: float
+    stuck: str
+    missing: int
+    delay_s: float
+    delay_error_s: float
+    delay_share: float
+
+    @property
+    def periods(self) -> float:
+        """Periods in the record; 0 where it has none."""
+        return self.samples / self.period if self.period else 0.0
+
+
+def facts_of(dataset: Dataset, item: Compared) -> Facts:
+    """Look at one record.
+
+    Parameters
+    ----------
+    dataset : Dataset
+    item : Compared
+        The record beside a loop of play operators.
+    """
+    record = item.record
+    file = dataset.record_files[record.name]
+    found = find_period(record.u) if record.period_samples is None else None
+    delay, error, share = delay_of(item)
+    jitter, missing = _clock_and_missing(dataset, record)
+    return Facts(
+        record.name,
+        record.use,
+        len(record),
+        record.dt,
+        jitter,
+        record.period_samples or found,
+        record.period_samples is not None,
+        excitation_of(record.u, record.dt),
+        float(record.y.min()),
+        float(record.y.max()),
+        _stuck(file, record, dataset.stands_still(record.name)),
+        missing,
+        delay,
+        error,
+        share,
+    )
+
+
+def delay_of(item: Compared) -> tuple[float, float, float]:
+    """Give by how much an output is behind a simulation, to first order, in seconds.
+
+    ``d = -<r, s'> / <s', s'>`` with the residual r and the slope s' of the simulation.
+
+    Returns
+    -------
+    delay : float
+    error : float
+        Standard error, from how it differs between stretches of the record.
+    share : float
+        Of the residual's power, that goes with it.
+    """
+    slope = np.gradient(item.simulated, item.record.dt)
+    residual = item.residual - item.residual.mean()
+    top = np.array([float(part.sum()) for part in _parts(residual * slope)])
+    bottom = np.array([float(part.sum()) for part in _parts(slope**2)])
+    total = float(bottom.sum())
+    if not total > 0:
+        return 0.0, float("inf"), 0.0
+    delay = -float(top.sum()) / total
+    spread = (top + delay * bottom) / total
+    share = float(top.sum()) ** 2 / total / max(float(residual @ residual), 1e-300)
+    return delay, float(np.sqrt(np.sum(spread**2))), share
+
+
+def _parts(values: FloatArray) -> list[FloatArray]:
+    return np.array_split(values, INDEPENDENT)
+
+
+def late(facts: Sequence[Facts]) -> list[Facts]:
+    """Give the records that are late or early against what the others foretell.
+
+    A loop of the wrong width is a phase that is the same at all rates, and a lag is one
+    that grows with the rate: each record's phase, its delay times its rate, is held
+    against a straight line over the rate through those of the others.
+    """
+    rates = np.array([item.excitation.relative_rate for item in facts])
+    phases = rates * [item.delay_s for item in facts]
+    found = []
+    for k, item in enumerate(facts):
+        others = np.arange(len(facts)) != k
+        if np.count_nonzero(others) < OTHERS:
+            continue
+        line = _middle_line(rates[others], phases[others])
+        away = abs(phases[k] - np.polyval(line, rates[k])) / rates[k]
+        usual = np.median(np.abs(phases[others] - np.polyval(line, rates[others])))
+        doubt = SURE * np.hypot(item.delay_error_s, usual / NORMAL / rates[k])
+        if away > max(LATE * item.dt, doubt) and item.delay_share > MOST:
+            found.append(item)
+    return found
+
+
+def _middle_line(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Give the line of medians of Theil and Sen, which shrugs off a few far points."""
+    i, j = np.triu_indices(len(x), 1)
+    apart = np.abs(x[i] - x[j]) > 1e-3 * x.max()
+    slopes = (y[i] - y[j])[apart] / (x[i] - x[j])[apart]
+    slope = float(np.median(slopes)) if len(slopes) else 0.0
+    return np.array([slope, float(np.median(y - slope * x))])
+
+
+def _clock_and_missing(dataset: Dataset, record: Record) -> tuple[float | None, int]:
+    """Give the jitter of a record's clock, and how many samples were interpolated."""
+    about, entry = dataset.about.get("time"), dataset.entry(record.name)
+    wanted = [dataset.about[key]["column"] for key in ("input", "output")]
+    if about is not None:
+        wanted.append(about["column"])
+    elif "missing" not in entry:
+        return None, 0
+    table = read_table(dataset.record_files[record.name], wanted)
+    first, last = entry.get("rows", (1, None))
+    columns = [
+        table.column(name, entry.get("group", "")).values[first - 1 : last]
+        for name in wanted
+    ]
+    missing = int(np.count_nonzero(~np.all(np.isfinite(columns), axis=0)))
+    if about is None:
+        return None, missing
+    steps = np.diff(columns[-1]) * seconds("time: unit", about["unit"])
+    return float(np.nanstd(steps)) / record.dt, missing
+
+
+def _stuck(file: Path, record: Record, stands_still: Sequence[str]) -> str:
+    """Say which channel looks stuck or clipped."""
+    try:
+        check_usable(file, record, stands_still)
+    except InputError as error:
+        said = str(error).removeprefix(f"{file}: ")
+        for channel in ("input", "output"):
+            said = said.removesuffix(REAL.format(channel))
+        return said
+    return ""

@@ -1,0 +1,130 @@
+"""What the names of columns tell: which is time, input or output, and in which unit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from hystbench.errors import InputError
+from hystbench.units import PREFIXES, SYMBOLS, check_known, plain, seconds
+
+#: Words of a name, in small letters. Of compounds the end counts: ``spulenstrom``.
+TIME = ("time", "t", "zeit", "temps", "tiempo", "tempo", "timestamp", "timestamps")
+INPUT = (
+    *("u", "in", "input", "eingang", "command", "cmd", "drive", "excitation", "i"),
+    *("voltage", "spannung", "tension", "current", "strom", "courant", "pump", "v"),
+    *("control", "actuation", "field", "feld"),
+)
+OUTPUT = (
+    *("y", "out", "output", "ausgang", "displacement", "position", "pos", "disp"),
+    *("stroke", "hub", "weg", "auslenkung", "strain", "dehnung", "deflection", "x"),
+    *("response", "measured", "level", "acceleration", "beschleunigung", "velocity"),
+    *("deplacement", "déplacement", "polarization", "flux", "torque", "moment"),
+)
+SIMULATED = ("simulated", "simulation", "sim", "simuliert", "model", "modell")
+#: Units that tell an input from an output where names do not.
+DRIVEN_BY = ("A", "V")
+ANSWERED_IN = ("m", "N", "g", "Pa", "rad", "T")
+
+_BRACKET = re.compile(r"^(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
+_SLASH = re.compile(r"^(?P<name>.*?)\s+(?:/|in)\s+(?P<unit>\S+)\s*$")
+_COMMA = re.compile(r"^(?P<name>.*?),\s*(?P<unit>\S+)\s*$")
+_SUFFIX = re.compile(r"^(?P<name>.*[^_])_(?P<unit>[^\W_]+)$")
+
+
+def split_unit(name: str) -> tuple[str, str | None]:
+    """Split a column's name from the unit that it ends with.
+
+    ``Zeit [s]``, ``force (N)``, ``U / V``, ``stroke, um`` and ``time_s`` are known.
+
+    Returns
+    -------
+    name : str
+    unit : str or None
+        None where it ends with none that is known.
+    """
+    for form in (_BRACKET, _SLASH, _COMMA):
+        found = form.match(name)
+        if found and _is_known(found["unit"]):
+            return found["name"].strip(), plain(found["unit"])
+    found = _SUFFIX.match(name)
+    if found and _is_simple(plain(found["unit"])):
+        return found["name"].replace("_", " ").strip(), plain(found["unit"])
+    return name.replace("_", " ").strip(), None
+
+
+def _is_known(unit: str) -> bool:
+    try:
+        check_known("", unit)
+    except InputError:
+        return False
+    return True
+
+
+def _is_simple(unit: str) -> bool:
+    """Tell whether letters are a symbol with a prefix: nothing else ends a name."""
+    named = "|".join(SYMBOLS)
+    return bool(re.fullmatch(f"[{''.join(PREFIXES)}]?({named})", unit))
+
+
+def is_time(name: str, unit: str | None) -> bool:
+    """Tell whether a column is called time, and its unit, if it has one, is of time."""
+    if not _has(name, TIME) and name.strip().lower() != "x value":
+        return False
+    try:
+        return unit is None or seconds("", unit) > 0
+    except InputError:
+        return False
+
+
+def is_simulated(name: str) -> bool:
+    """Tell whether a column is called an output of a simulator."""
+    return _has(name, SIMULATED)
+
+
+def leaning(name: str, unit: str | None) -> int:
+    """Tell whether a column looks like an input (above zero) or an output (below).
+
+    The words of its name count twice, its unit once.
+    """
+    words = 2 * (_has(name, INPUT) - _has(name, OUTPUT))
+    symbol = plain(unit or "").lstrip("".join(PREFIXES)) or plain(unit or "")
+    units = (symbol in DRIVEN_BY) - (symbol in ANSWERED_IN or plain(unit or "") == "m")
+    return words + units
+
+
+def choose(
+    columns: Sequence[tuple[str, str | None]],
+) -> tuple[int | None, int | None]:
+    """Choose input and output by what names and units tell.
+
+    Parameters
+    ----------
+    columns : sequence of (str, str or None)
+        Name without unit, and unit.
+
+    Returns
+    -------
+    tuple of (int or None, int or None)
+        Places of input and output; None where they are not told.
+    """
+    leans = [leaning(name, unit) for name, unit in columns]
+    found: list[int | None] = []
+    for wanted in (1, -1):
+        best = max((wanted * lean for lean in leans), default=0)
+        places = [k for k, lean in enumerate(leans) if wanted * lean == best > 0]
+        found.append(places[0] if len(places) == 1 else None)
+    if len(columns) == 2:
+        if found == [None, 0] or found == [0, None]:
+            found = [1 if at is None else at for at in found]
+        elif found == [None, 1] or found == [1, None]:
+            found = [0 if at is None else at for at in found]
+    return found[0], found[1]
+
+
+def _has(name: str, known: Sequence[str]) -> bool:
+    words = re.findall(r"[^\W\d_]+", name.lower())
+    return any(
+        word in known or any(len(end) > 3 and word.endswith(end) for end in known)
+        for word in words
+    )

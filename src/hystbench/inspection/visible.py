@@ -1,0 +1,373 @@
+"""Which effects records can reveal: how strong each must be to be seen, and told.
+
+Each effect is simulated on the records' own inputs. What the base could do as well (its
+offset, its gain, another shape of its hysteresis) is taken off what it adds; the rest
+has to stand out of the noise as far as the search for names asks. What is left then of
+it beside a rival's best fit has to do so too, before one can be told from the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from hystbench.blocks import registry
+from hystbench.errors import InputError
+from hystbench.gap.reshape import orthonormal, products, reshapings
+from hystbench.gap.sample import Sample
+from hystbench.gap.scene import Scene
+from hystbench.gap.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
+from hystbench.gap.state import State
+from hystbench.gap.thresholds import PAYS
+from hystbench.inspection.shapes import Shape, shapes_of
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+
+TENTH = 0.1
+"""Of the output's rms: an effect that must be larger to be seen is not revealed."""
+NOTHING = 1e-9
+"""Share of the power of what an effect does that is rounding."""
+TAKEN = 0.99
+"""Share of what an effect does that the base could do, worth telling."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """How strong an effect must be on these records.
+
+    Parameters
+    ----------
+    effect, place : str
+    seen_from : float
+        The rms that it must add for the search to pay for it, as a share of the
+        output's rms about its mean; infinite where nothing it does stands out.
+    value : float
+        The number that says how strong it then is; NaN where none does.
+    number, unit : str
+        That number's name and unit in the block, U and Y for those of the signals.
+    form : str
+        In which it is seen first, with the other numbers of that.
+    absorbed : float
+        Share of the power of what it adds that the base could do as well.
+    rivals : tuple of (str, float)
+        What it can be mistaken for, with the share from which on it can be told;
+        infinite where never. The nearest first.
+    why : str
+        Why it is not revealed; empty where it is.
+    """
+
+    effect: str
+    place: str
+    seen_from: float
+    value: float
+    number: str
+    unit: str
+    form: str
+    absorbed: float
+    rivals: tuple[tuple[str, float], ...]
+    why: str
+
+    @property
+    def revealed(self) -> bool:
+        """Whether it shows before it is a tenth of the output."""
+        return self.seen_from <= TENTH
+
+    @property
+    def told_from(self) -> float:
+        """Share of the output from which on it can be told from every rival."""
+        return max((share for _, share in self.rivals), default=self.seen_from)
+
+
+def seen_effects(
+    base: Model, records: Sequence[Record], floor: float, hold: str = "band-limited"
+) -> tuple[Seen, ...]:
+    """Find how strong each effect must be to be seen and told on records.
+
+    Parameters
+    ----------
+    base : Model
+        Beside which effects are simulated.
+    records : sequence of Record
+        Those that are fitted.
+    floor : float
+        RMS of the noise, in the output's unit, above zero.
+    hold : {"zero-order", "linear", "band-limited"}
+
+    Returns
+    -------
+    tuple of Seen
+        All effects of the vocabulary, by what it takes to see them.
+
+    Raises
+    ------
+    InputError
+        If the base does not run on the records.
+    """
+    sample = Sample.of(records)
+    state = State(base.chain, tuple(records), sample, hold=hold)  # type: ignore[arg-type]
+    shapes, declined = shapes_of(state)
+    own = _own(state)
+    if "hysteresis" in declined:
+        more = _hysteresis(state)
+        shapes += more
+        if more:
+            del declined["hysteresis"]
+    reach = float(np.sqrt(np.mean([np.var(record.y) for record in records])))
+    judge = _Judge(state, own, floor, reach)
+    measured = [judge.measured(shape) for shape in shapes]
+    found = []
+    for name in dict.fromkeys(shape.effect for shape in shapes):
+        mine = [item for item in measured if item.shape.effect == name]
+        rest = [item for item in measured if item.shape.effect != name]
+        found.append(judge.seen(mine, rest))
+    for name, why in declined.items():
+        found.append(
+            Seen(name, "", np.inf, np.nan, "", "", "", 0.0, (), f"not tried: {why}")
+        )
+    return tuple(sorted(found, key=lambda item: (item.seen_from, item.effect)))
+
+
+def _own(state: State) -> FloatArray:
+    """Give an orthonormal basis of what the base could do as well."""
+    scene, sample = state.scene, state.sample
+    one = np.ones((len(sample), 1))
+    output = sample.take(scene.output)[:, None]
+    return orthonormal(
+        np.hstack([one, output, reshapings(scene, sample), products(scene, sample)])
+    )
+
+
+def _hysteresis(state: State) -> list[Shape]:
+    """Give the hysteresis of the base itself, as what stands beside a gain alone."""
+    scene, sample = state.scene, state.sample
+    place = scene.hysteresis
+    if place is None:
+        return []
+    block = scene.chain[place]
+    gain = registry()["gain"].from_mapping({"value": 1.0})
+    straight = scene.run((gain, *scene.chain[place + 1 :]), scene.before[place])
+    plain = sample.take(straight)
+    line = np.column_stack([np.ones(len(sample)), plain])
+    loop = sample.take(scene.output)
+    loop = loop - line @ np.linalg.lstsq(line, loop, rcond=None)[0]
+    if not loop.any():
+        return []
+    return [Shape("hysteresis", "", "material", {}, "", block, loop[:, None], 1.0, 8.0)]
+
+
+@dataclass(frozen=True)
+class _Measured:
+    """A shape, what is left of it beside the base, and how large it is.
+
+    ``size`` is the rms of what it adds, ``needed`` the size at which it would stand
+    out, both as shares of the output's rms.
+    """
+
+    shape: Shape
+    left: FloatArray
+    basis: FloatArray
+    size: float
+    needed: float
+    absorbed: float
+
+
+class _Found(NamedTuple):
+    """Where an effect stands out: its size and number there, and a shape near it."""
+
+    share: float
+    value: float
+    item: _Measured
+
+
+class _Judge:
+    """What it takes for a shape to stand out, on some records over some noise."""
+
+    def __init__(
+        self, state: State, own: FloatArray, floor: float, reach: float
+    ) -> None:
+        self.state, self.own, self.floor, self.reach = state, own, floor, reach
+        self.slices = state.sample.slices
+        self.weight = max(RECORD_WEIGHT, LEAST_WEIGHT / len(self.slices))
+
+    def measured(self, shape: Shape) -> _Measured:
+        """Take off what the base could do, and see how much of the rest it takes."""
+        columns = shape.columns
+        left = columns
+        if shape.effect != "hysteresis":  # that is the base's own, beside a line
+            left = columns - self.own @ (self.own.T @ columns)
+        total, rest = float(np.sum(columns**2)), float(np.sum(left**2))
+        if rest < NOTHING * total:
+            left, rest = np.zeros_like(left), 0.0
+        size = float(np.sqrt(total / len(columns))) / self.reach
+        needed = size * self._factor(left, shape.charge)
+        basis = orthonormal(left[:, np.any(left != 0, axis=0)])
+        return _Measured(
+            shape, left, basis, size, needed, 1 - rest / max(total, 1e-300)
+        )
+
+    def _factor(self, left: FloatArray, charge: float) -> float:
+        """Give the factor on a shape at which the search for names pays for it."""
+        powers = np.array(
+            [float(np.sum(left[part] ** 2)) / len(left[part]) for part in self.slices]
+        )
+        powers = powers / self.floor**2
+        asked = PAYS + PARAMETER * charge
+        if not powers.max() > 0:
+            return float("inf")
+
+        def lacks(logarithm: float) -> float:
+            gain = self.weight * np.sum(np.log1p(np.exp(2 * logarithm) * powers))
+            return float(gain) - asked
+
+        start = -0.5 * np.log(powers.max())
+        return float(np.exp(brentq(lacks, start - 30, start + 30)))
+
+    def seen(self, mine: Sequence[_Measured], rest: Sequence[_Measured]) -> Seen:
+        """Give what it takes to see an effect, in the form in which it shows first."""
+        found = [*_scaled(mine), *_graded(mine)]
+        first = min(found, key=lambda each: each.share, default=None)
+        item = min(mine, key=lambda each: each.needed) if first is None else first.item
+        share = float("inf") if first is None else first.share
+        shape = item.shape
+        number, unit = _number(shape)
+        return Seen(
+            shape.effect,
+            shape.place,
+            share,
+            float("nan") if first is None else first.value,
+            number,
+            unit,
+            _words(shape),
+            item.absorbed,
+            () if first is None else self._rivals(item, share, rest),
+            self._why(item, share),
+        )
+
+    def _rivals(
+        self, first: _Measured, share: float, rest: Sequence[_Measured]
+    ) -> tuple[tuple[str, float], ...]:
+        """Give the shares from which on an effect is told from each other one."""
+        powers = np.sum(first.left**2, axis=0)
+        power, column = float(powers.max()), int(np.argmax(powers))
+        left = first.left[:, column : column + 1]
+        told: dict[str, float] = {}
+        for other in rest:
+            basis = other.basis
+            if not basis.shape[1]:
+                continue
+            stays = float(np.sum((left - basis @ (basis.T @ left)) ** 2)) / power
+            name = other.shape.effect
+            told[name] = min(told.get(name, np.inf), max(stays, 0.0))
+        found = {
+            name: share / np.sqrt(stays) if stays > 1e-12 else float("inf")
+            for name, stays in told.items()
+        }
+        near = {name: value for name, value in found.items() if value > 2 * share}
+        ordered = sorted(near.items(), key=lambda item: -item[1])
+        return tuple((name, float(value)) for name, value in ordered)
+
+    def _why(self, item: _Measured, share: float) -> str:
+        if share <= TENTH:
+            return ""
+        if item.absorbed > TAKEN:
+            return (
+                f"{100 * item.absorbed:.4g} % of what it does is what another gain, "
+                "offset or shape of the hysteresis does too"
+            )
+        noise = f"the noise ({100 * self.floor / self.reach:.2g} % of the output)"
+        if not np.isfinite(share):
+            return f"nowhere in the range that these inputs allow is it above {noise}"
+        return (
+            f"it stands out of {noise} only from {100 * share:.2g} % of the output on"
+        )
+
+
+def _scaled(mine: Sequence[_Measured]) -> list[_Found]:
+    """Give where shapes stand out that are proportional to a number."""
+    return [
+        _Found(item.needed, item.shape.unit * item.needed / item.size, item)
+        for item in mine
+        if (item.shape.scaled or item.shape.block is None)
+        and np.isfinite(item.needed)
+        and item.size > 0
+    ]
+
+
+def _graded(mine: Sequence[_Measured]) -> list[_Found]:
+    """Give where shapes stand out of which another number says how strong they are.
+
+    Between two points of its range the logarithms are taken to go straight.
+    """
+    rows: dict[tuple[str, ...], list[_Measured]] = {}
+    for item in mine:
+        shape = item.shape
+        if not shape.scaled and shape.block is not None and item.size > 0:
+            others = [f"{k}={v}" for k, v in list(shape.values.items())[1:]]
+            rows.setdefault((shape.form, *others), []).append(item)
+    found = []
+    for row in rows.values():
+        row.sort(key=lambda item: item.size)
+        stands = [item.needed <= item.size for item in row]
+        if not any(stands):
+            continue
+        k = stands.index(True)
+        item = row[k]
+        value = next(iter(item.shape.values.values()), float("nan"))
+        share = item.needed
+        value *= item.needed / item.size if not k else 1.0
+        if k and np.isfinite(row[k - 1].needed):
+            before = row[k - 1]
+            low = np.log(before.size / before.needed)
+            high = np.log(item.size / item.needed)
+            part = float(-low / (high - low)) if high > low else 1.0
+            share = float(before.size ** (1 - part) * item.size**part)
+            old = next(iter(before.shape.values.values()), value)
+            if value * old > 0:
+                value = float(
+                    np.sign(value) * abs(old) ** (1 - part) * abs(value) ** part
+                )
+        found.append(_Found(share, value, item))
+    return found
+
+
+def _number(shape: Shape) -> tuple[str, str]:
+    """Give the name and unit of the number that says how strong a shape is."""
+    name = shape.scaled or next(iter(shape.values), "")
+    if shape.block is None or not name:
+        return "", ""
+    about = shape.block.parameters()
+    plain = name.rpartition(" ")[0] + "s" if name[-1].isdigit() else name
+    known = name if name in about else plain
+    if known not in about:  # a bias is the offset of a gain
+        return name, ""
+    return name, about[known].unit
+
+
+def _words(shape: Shape) -> str:
+    """Give the form of a shape with the numbers that it has there."""
+    parts = [shape.form] if shape.form else []
+    if shape.scaled:
+        parts += [f"{name} {value:.3g}" for name, value in shape.values.items()]
+    return ", ".join(parts)
+
+
+def runs(base: Model, records: Sequence[Record], hold: str) -> tuple[FloatArray, ...]:
+    """Simulate a base on records.
+
+    Raises
+    ------
+    InputError
+        If an output is not finite.
+    """
+    outputs = Scene(base.chain, tuple(records), hold).output  # type: ignore[arg-type]
+    for record, output in zip(records, outputs, strict=True):
+        if not np.isfinite(output).all():
+            raise InputError(
+                f"{base.name}: its output on {record.name} is not finite; expected a "
+                "base that stays bounded"
+            )
+    return outputs

@@ -1,0 +1,133 @@
+"""What a check says, in words: on the terminal and on its page."""
+
+from __future__ import annotations
+
+import math
+
+from hystbench.figures.style import unit_text
+from hystbench.gap.units import written
+from hystbench.inspection.check import Check
+from hystbench.inspection.facts import Facts
+from hystbench.inspection.visible import Seen
+
+FLOORS = {
+    "repeats": "measured by repeats",
+    "declared": "declared",
+    "upper-bound": "an upper bound, as nothing repeats",
+}
+KINDS = {"wrong": "refused by 'hystbench gap'", "missing": "to add", "note": "note"}
+NAMED = 2
+"""Rivals that are named."""
+EVEN = 1e-6
+"""Of a step: a clock that is as even as that."""
+WIDTH = 96
+"""Letters of a line on the terminal."""
+
+
+def percent(share: float) -> str:
+    """Write a share in percent with two digits."""
+    return "never" if math.isinf(share) else f"{100 * share:.2g} %"
+
+
+def strength(item: Seen, of_input: str, of_output: str) -> str:
+    """Write the number at which an effect is seen first, with its unit."""
+    if math.isnan(item.value):
+        return ""
+    unit = written(item.unit, of_input, of_output)
+    shown = "" if unit in ("-", "") else f" {unit_text(unit)}"
+    name = item.number.replace("_", " ").removesuffix(" s").removesuffix(" hz")
+    return f"{name} {item.value:.3g}{shown}"
+
+
+def mistaken(item: Seen) -> str:
+    """Say what an effect may be mistaken for until it is how large."""
+    near = item.rivals[:NAMED]
+    if not near:
+        return ""
+    told = [
+        f"{name} (never told)" if share > 1 else f"{name} (up to {percent(share)})"
+        for name, share in near
+    ]
+    more = len(item.rivals) - len(near)
+    return ", ".join(told) + (f" and {more} more" if more else "")
+
+
+def headline(found: Check) -> str:
+    """Say in one sentence what is to be done, or that nothing is."""
+    wrong = sum(item.kind == "wrong" for item in found.findings)
+    missing = sum(item.kind == "missing" for item in found.findings)
+    seen, every = len(found.revealed), len(found.effects)
+    can = f"the records to fit can reveal {seen} of {every} effects"
+    if wrong:
+        things = "thing is" if wrong == 1 else "things are"
+        return f"{wrong} {things} wrong, which 'hystbench gap' refuses; {can}."
+    if missing:
+        return f"Usable, with {missing} to add; {can}."
+    return f"Usable as it is; {can}."
+
+
+def level(facts: Facts, unit: str) -> str:
+    """Write the range of an input."""
+    item = facts.excitation
+    return f"{item.low:.3g} to {item.high:.3g} {unit_text(unit)}"
+
+
+def band(facts: Facts) -> str:
+    """Write the band of an input."""
+    item = facts.excitation
+    return f"{item.low_hz:.3g} to {item.high_hz:.3g} Hz"
+
+
+def jitter_text(jitter: float) -> str:
+    """Write a jitter in percent of a step; what is rounding is none."""
+    return "0 %" if jitter < EVEN else f"{100 * jitter:.1g} %"
+
+
+def text(found: Check) -> list[str]:
+    """Give the lines for the terminal: one screen where little is wrong."""
+    record = found.records[0]
+    lines = [
+        f"{found.dataset.path}: {headline(found)}",
+        f"  {record.input.label} to {record.output.label}; noise "
+        f"{found.floor.rms:.3g} {record.output.unit} rms "
+        f"({FLOORS[found.floor.method]}); a loop that does not depend on the rate "
+        f"leaves {found.left:.3g} {record.output.unit}",
+    ]
+    width = max(len(item.name) for item in found.facts)
+    for item in found.facts:
+        period = f"{item.periods:.3g} periods" if item.period else "no period"
+        jitter = "" if item.jitter is None else f", jitter {jitter_text(item.jitter)}"
+        lines.append(
+            f"  {item.name:{width}} {item.use:8} {item.samples} at {1 / item.dt:.5g} Hz"
+            f"{jitter}, {item.excitation.kind}, {period}, {band(item)}, "
+            f"{level(item, record.input.unit)}"
+        )
+    for each in found.findings:
+        lines.append(f"  {KINDS[each.kind]}: {each.text}")
+        lines += [f"      {line}" for line in each.paste]
+    lines.append("  Seen from this share of the output on (rms):")
+    lines += _wrapped(f"{x.effect} {percent(x.seen_from)}" for x in found.revealed)
+    alike = [x for x in found.revealed if x.rivals]
+    if alike:
+        lines.append("  Not told apart, up to this share of the output:")
+        lines += _wrapped(
+            f"{x.effect} from {x.rivals[0][0]} {_up_to(x.rivals[0][1])}" for x in alike
+        )
+    lines.append("  Not revealed:")
+    lines += [f"    {x.effect}: {x.why}" for x in found.hidden]
+    return lines
+
+
+def _up_to(share: float) -> str:
+    return "ever" if share > 1 else percent(share)
+
+
+def _wrapped(parts: object) -> list[str]:
+    """Put parts behind each other in lines of the terminal's width."""
+    lines = [""]
+    for part in list(parts):  # type: ignore[call-overload]
+        if lines[-1] and len(lines[-1]) + len(part) + 2 > WIDTH:
+            lines[-1] += ","
+            lines.append("")
+        lines[-1] += part if not lines[-1] else f", {part}"
+    return [f"    {line}" for line in lines if line]

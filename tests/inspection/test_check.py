@@ -1,0 +1,191 @@
+"""What is said of records whose faults are known."""
+
+import numpy as np
+import pytest
+
+from hystbench.dataset import load_dataset
+from hystbench.inspection import words
+from hystbench.inspection.check import check
+from hystbench.inspection.page import page
+from tests.inspection.made import COUNT, DT, loop, sine, write
+
+NOISE = 0.01
+
+
+def noisy(y, seed=0, rms=NOISE):
+    return y + rms * np.random.default_rng(seed).standard_normal(len(y))
+
+
+def records(frequencies=(5, 10, 20, 40), **changes):
+    made = {}
+    for k, hz in enumerate(frequencies):
+        u = sine(hz, 0.6 + 0.3 * (k % 2))
+        made[f"sine-{hz}"] = (u, noisy(loop(u), k))
+    return made | changes
+
+
+HELD = {"sine-10": "hold-out"}
+
+
+def of_kind(found, kind):
+    return [item for item in found.findings if item.kind == kind]
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    place = write(tmp_path_factory.mktemp("plain"), records(), roles=HELD)
+    return check(load_dataset(place))
+
+
+def test_the_period_is_found_and_its_line_can_be_pasted(plain, tmp_path):
+    (missing,) = of_kind(plain, "missing")
+    assert "- {file: sine-5.csv, use: fit, period_samples: 200}" in missing.paste
+    about = tmp_path / "dataset.yaml"
+    place = write(tmp_path, records(), roles=HELD)
+    head = place.read_text().partition("records:\n")[0]
+    about.write_text(head + "records:\n" + "\n".join(missing.paste) + "\n")
+    again = check(load_dataset(about))
+    assert not of_kind(again, "missing")
+    assert [item.period for item in again.facts] == [200, 100, 50, 25]
+
+
+def test_the_noise_is_measured_by_the_repeats_that_were_found(plain):
+    assert plain.floor.method == "repeats"
+    assert plain.floor.rms == pytest.approx(NOISE, rel=0.15)
+
+
+def test_rates_bands_and_levels(plain):
+    fast = plain.facts[3]
+    assert (fast.name, fast.samples) == ("sine-40", COUNT)
+    assert fast.dt == pytest.approx(DT)
+    assert fast.excitation.low_hz <= 40 <= fast.excitation.high_hz < 45
+    assert fast.excitation.span == pytest.approx(1.8, rel=0.01)
+    # rms rate of a sine: 2 pi f A / sqrt 2
+    assert fast.excitation.rate == pytest.approx(
+        2 * np.pi * 40 * 0.9 / np.sqrt(2), rel=0.02
+    )
+    assert fast.jitter == pytest.approx(0, abs=1e-6)
+
+
+def test_a_late_trigger_is_told_and_no_other(tmp_path):
+    shift = 6
+    u, y = records()["sine-20"]
+    late = np.roll(y, shift)
+    made = records(frequencies=(4, 5, 8, 10, 16, 25, 32, 40))
+    place = write(tmp_path, made | {"late": (u, late)}, roles=HELD)
+    told = [f.text for f in check(load_dataset(place)).findings if "trigger" in f.text]
+    assert len(told) == 1
+    assert told[0].startswith("late:")
+
+
+def test_a_clipped_output_is_wrong(tmp_path):
+    made = records()
+    u, y = made["sine-20"]
+    made["sine-20"] = (u, np.minimum(y, 0.6 * y.max()))
+    place = write(tmp_path, made, roles=HELD)
+    (wrong,) = of_kind(check(load_dataset(place)), "wrong")
+    assert "sine-20" in wrong.text
+    assert "clipped" in wrong.text
+    assert wrong.paste == ("- {file: sine-20.csv, use: fit, stands_still: [output]}",)
+
+
+def test_missing_samples_are_counted(tmp_path):
+    made = records()
+    made["sine-20"][1][[100, 101, 500]] = np.nan
+    entries = {"sine-20": ", missing: interpolate"}
+    place = write(tmp_path, made, roles=HELD, entries=entries)
+    found = check(load_dataset(place))
+    assert found.facts[2].missing == 3
+    assert any("3 of 1200 samples are missing" in f.text for f in found.findings)
+
+
+def test_an_uneven_clock_is_told(tmp_path):
+    place = write(tmp_path, records(), roles=HELD)
+    file = tmp_path / "sine-5.csv"
+    head, *rows = file.read_text().splitlines()
+    rng = np.random.default_rng(1)
+    cells = [row.split(",") for row in rows]
+    moved = [
+        f"{float(t) + 0.05 * DT * rng.uniform(-1, 1):.9g},{a},{b}" for t, a, b in cells
+    ]
+    file.write_text("\n".join([head, *moved]) + "\n")
+    text = place.read_text().replace("unit: s}", "unit: s, tolerance: 0.2}")
+    place.write_text(text)
+    found = check(load_dataset(place))
+    # The difference of two uniform deviations: 0.05 / sqrt 3 * sqrt 2 of a step.
+    assert found.facts[0].jitter == pytest.approx(0.05 * np.sqrt(2 / 3), rel=0.1)
+    assert any("steps of time differ by" in f.text for f in found.findings)
+
+
+def test_records_that_never_repeat_have_no_measured_noise(tmp_path):
+    time = DT * np.arange(COUNT)
+    made = {}
+    for k, top in enumerate((10, 20, 30)):
+        u = np.sin(2 * np.pi * (1 + top * time / 2) * time)
+        made[f"chirp-{top}"] = (u, noisy(loop(u), k))
+    place = write(tmp_path, made, roles={"chirp-20": "hold-out"})
+    found = check(load_dataset(place))
+    assert any("upper bound" in item.text for item in of_kind(found, "missing"))
+    assert "noise_rms" in of_kind(found, "missing")[0].paste[0]
+
+
+def seen(found, name):
+    return next(item for item in found.effects if item.effect == name)
+
+
+def test_noise_hides_effects_in_proportion(plain, tmp_path):
+    about = f"noise_rms: {2 * plain.floor.rms!r}\n"
+    place = write(tmp_path, records(), about, roles=HELD)
+    louder = check(load_dataset(place))
+    for name in ("creep", "asymmetry", "friction"):
+        assert seen(louder, name).seen_from == pytest.approx(
+            2 * seen(plain, name).seen_from, rel=1e-6
+        )
+
+
+def test_slow_records_hide_what_is_fast(plain, tmp_path):
+    # The same loops a hundred times as slow.
+    slow = write(
+        tmp_path,
+        {name: (u, y) for name, (u, y) in records().items()},
+        roles=HELD,
+        dt=100 * DT,
+    )
+    found = check(load_dataset(slow))
+    for name in ("sensor-lag", "input-delay"):
+        now, then = seen(plain, name), seen(found, name)
+        assert then.value == pytest.approx(100 * now.value, rel=0.02)
+    assert not seen(plain, "calibration-error").revealed
+    assert "gain" in seen(plain, "calibration-error").why
+
+
+def test_what_is_simulated_at_the_strength_said_is_there(plain):
+    """The block at the number that is told adds the share that is told."""
+    from hystbench.blocks import registry
+
+    item = seen(plain, "sensor-nonlinearity")
+    values = {"quadratic": 0.0, "cubic": 0.0, item.number: item.value}
+    block = registry()["sensor-nonlinearity"].from_mapping(values)
+    fit = [record for record in plain.records if record.use == "fit"]
+    outputs = [plain.base.simulate(record.u, record.dt) for record in fit]
+    adds = [block.simulate(y, y, DT) - y for y in outputs]
+    share = np.sqrt(np.mean(np.concatenate(adds) ** 2))
+    share /= np.sqrt(np.mean([np.var(record.y) for record in fit]))
+    assert share == pytest.approx(item.seen_from, rel=0.05)
+
+
+def test_lags_are_mistaken_for_each_other(plain):
+    names = [name for name, _ in seen(plain, "sensor-lag").rivals]
+    assert set(names) & {"drive-lag", "eddy-diffusion", "input-delay"}
+
+
+def test_the_text_is_one_screen_and_the_page_says_the_same(plain):
+    lines = words.text(plain)
+    assert len(lines) < 50
+    assert lines[0].endswith("effects.")
+    made = page(plain)
+    for item in plain.effects:
+        assert item.effect in made
+        assert any(item.effect in line for line in lines)
+    assert "period_samples: 200" in made
+    assert 'src="http' not in made

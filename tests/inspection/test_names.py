@@ -1,0 +1,47 @@
+import pytest
+
+from hystbench.inspection.names import choose, is_time, split_unit
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "unit"),
+    [
+        ("Zeit [s]", "Zeit", "s"),
+        ("Spulenstrom [mA]", "Spulenstrom", "mA"),
+        ("Weg [µm]", "Weg", "um"),
+        ("force (N)", "force", "N"),
+        ("U / V", "U", "V"),
+        ("Zeit in s", "Zeit", "s"),
+        ("stroke, um", "stroke", "um"),
+        ("coil_current_A", "coil current", "A"),
+        ("run_two", "run two", None),
+        ("flow [furlongs per blink]", "flow [furlongs per blink]", None),
+        ("y", "y", None),
+    ],
+)
+def test_units_in_names(name, words, unit):
+    assert split_unit(name) == (words, unit)
+
+
+@pytest.mark.parametrize(
+    ("columns", "expected"),
+    [
+        ([("current", "A"), ("stroke", "um")], (0, 1)),
+        ([("Weg", "um"), ("Spulenstrom", "mA")], (1, 0)),
+        ([("channel 1", "V"), ("channel 2", "um")], (0, 1)),
+        ([("y", None), ("u", None)], (1, 0)),
+        ([("foo", None), ("u", None)], (1, 0)),
+        ([("channel 1", None), ("channel 2", None)], (None, None)),
+        ([("voltage", "V"), ("current", "A"), ("stroke", "um")], (None, 2)),
+        ([("pump", "V"), ("level", "V")], (0, 1)),
+    ],
+)
+def test_input_and_output_by_name_and_unit(columns, expected):
+    assert choose(columns) == expected
+
+
+def test_time_has_a_unit_of_time_or_none():
+    assert is_time("Zeit", "s")
+    assert is_time("t", None)
+    assert not is_time("time", "V")
+    assert not is_time("current", "s")

@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+
+from hystbench.inspection.excitation import excitation_of
+from hystbench.inspection.roles import propose
+
+DT = 1e-3
+T = np.arange(4000) * DT
+SINES = {f"sine-{hz}": np.sin(2 * np.pi * hz * T) for hz in (2, 5, 10, 20, 50)}
+CHIRP = np.sin(2 * np.pi * (2 * T + 5 * T**2))
+TRIANGLE = np.abs((T % 0.5) - 0.25)
+NOISE = np.random.default_rng(0).standard_normal(4000)
+
+
+def kinds(signals):
+    return {name: excitation_of(u, DT) for name, u in signals.items()}
+
+
+def test_kinds_of_input():
+    steps = np.repeat([0.0, 1.0, 0.5, -1.0], 1000)
+    multi = np.sin(2 * np.pi * 3 * T) + np.sin(2 * np.pi * 7 * T)
+    found = kinds(
+        {
+            "a": SINES["sine-5"],
+            "b": CHIRP,
+            "c": TRIANGLE,
+            "d": NOISE,
+            "e": steps,
+            "f": multi,
+        }
+    )
+    assert [item.kind for item in found.values()] == [
+        "sine",
+        "sweep",
+        "ramps",
+        "broadband",
+        "steps",
+        "sum of sines",
+    ]
+
+
+def test_a_band_holds_the_frequency():
+    found = excitation_of(SINES["sine-20"], DT)
+    assert found.low_hz <= 20 <= found.high_hz < 22
+    assert (found.low, found.high) == pytest.approx((-1, 1), abs=0.01)
+
+
+def test_another_kind_is_held_out():
+    held, why = propose(kinds({**SINES, "chirp": CHIRP}))
+    assert held == ("chirp",)
+    assert "another kind (sweep)" in why
+
+
+def test_a_kind_that_reaches_beyond_the_others_is_not():
+    held, _ = propose(kinds({**SINES, "chirp": 3 * CHIRP, "noise": 0.3 * NOISE}))
+    assert held == ("noise",)
+
+
+def test_of_one_kind_the_middle_of_the_rates_is_held_out():
+    held, why = propose(kinds(SINES))
+    assert held == ("sine-10",)
+    assert "one kind (sine)" in why
+
+
+def test_something_is_left_to_fit():
+    held, _ = propose(kinds({"a": SINES["sine-2"], "b": CHIRP}))
+    assert len(held) == 1
