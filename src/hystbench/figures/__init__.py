@@ -37,6 +37,7 @@ NAMES = (
     "blind-power",
     "blind-reliability",
     "blind-where",
+    "tracking-errors",
 )
 
 
