@@ -33,7 +33,7 @@ if TWIN:
             " --augmented {input.augmented:q} --settings {params.settings:q}"
             " --out {params.folder:q} 2> {log:q}"
 
-    rule draw_tracking:
+    rule draw_tracking_errors:
         input:
             table=rules.tracking.output.table,
             raster=rules.tracking.output.raster,
@@ -53,6 +53,6 @@ if TWIN:
 
 rule inverse:
     input:
-        [*rules.tracking.output, *rules.draw_tracking.output] if TWIN else [],
+        [*rules.tracking.output, *rules.draw_tracking_errors.output] if TWIN else [],
     message:
         f"{INVERSE} is up to date"

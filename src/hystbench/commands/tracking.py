@@ -95,6 +95,6 @@ def _part(rows: list[Tracked], reference: Reference) -> dict[str, FloatArray]:
     """Give a part of a reference in time, and what the plant does with each drive."""
     middle = len(reference.y) // 2
     part = slice(middle, middle + round(SHOWN_S / reference.dt))
-    time = np.arange(len(reference.y[part])) * reference.dt
+    time = np.arange(len(reference.y[part]), dtype=np.float64) * reference.dt
     own = {row.drive: row.y[part] for row in rows if row.reference is reference}
     return {"time_s": time, "reference": reference.y[part], **own}
