@@ -12,6 +12,7 @@ from hystbench.compare.edges import Edge, write_edges
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.files import write_json
 from hystbench.identification import identify
+from hystbench.inverse.tracking import DRIVES
 from hystbench.record import Channel, FloatArray, Record
 from hystbench.results import run_result, save_run
 
@@ -186,6 +187,26 @@ def _write(path: Path, header: list[str], rows: list[list[object]]) -> None:
         writer.writerows(rows)
 
 
+def write_tracking(folder: Path) -> None:
+    """Tracking errors of two references, and a raster scan beside them."""
+    rows = [
+        (name, drive, 10.0 / 3**n, UNIT)
+        for name in ("sine-010hz", "raster-20-lines-a-second")
+        for n, drive in enumerate(DRIVES)
+    ]
+    with (folder / "tracking.csv").open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["reference", "drive", "rms_percent", "unit"])
+        writer.writerows(rows)
+    time = np.arange(300) * 1e-3
+    wanted = np.abs((time * 20) % 1 - 0.5)
+    with (folder / "raster.csv").open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["time_s", "reference", *DRIVES])
+        each = [wanted * (1 + 0.1 / 3**n) for n in range(len(DRIVES))]
+        writer.writerows(zip(time, wanted, *each, strict=True))
+
+
 class Inputs:
     """All files that figures take, below a folder."""
 
@@ -206,6 +227,7 @@ class Inputs:
         write_contest(folder / "contest.csv")
         write_blind(folder / "blind")
         write_gap(folder / "gap", self.records[SIGNALS[0]])
+        write_tracking(folder)
         write_identified(folder / "identified.json", self.records[SIGNALS[0]])
 
     def record(self, *names: str) -> list[Path]:
@@ -247,6 +269,7 @@ class Inputs:
             "blind-power": {"table": self.folder / "blind" / "power.csv"},
             "blind-reliability": {"table": self.folder / "blind" / "reliability.csv"},
             "blind-where": {"table": self.folder / "blind" / "effects.csv"},
+            "tracking-errors": {"table": self.folder / "tracking.csv"},
             "loops": everything | {"records": self.record(*SIGNALS)},
             "errors-by-record": everything,
         }[figure]

@@ -26,6 +26,7 @@ from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
 from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E402
 from hystbench.envelope import Envelope  # noqa: E402
 from hystbench.filters import FILTERS, run_many  # noqa: E402
+from hystbench.inverse.plays import Plays  # noqa: E402
 
 DT = 1e-4
 SAMPLES = 33_000  # more than the filters take at a time
@@ -103,6 +104,8 @@ def models(x):
     yield "growing Prandtl-Ishlinskii", (growing,)
     yield "state space", o.state_space(a, few, some, 0.1, x)
     yield "modes", (o.modes(few, some, some, 0.1, x, np.zeros(11)),)
+    plays = Plays(1.0, (), few, np.vstack([some, 0.1 * some, 0.1 * some]), False)
+    yield "inverse of plays", (plays.invert(x)[0],)
 
 
 def blocks(x):

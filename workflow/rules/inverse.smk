@@ -15,14 +15,13 @@ if TWIN:
             code=code("hystbench.commands.tracking"),
         output:
             table=f"{INVERSE}/tracking.csv",
+            raster=f"{INVERSE}/raster.csv",
             page=f"{INVERSE}/tracking.md",
             verdict=f"{INVERSE}/verdict.md",
-            png=f"{INVERSE}/tracking.png",
-            svg=f"{INVERSE}/tracking.svg",
         log:
-            f"{RESULTS}/logs/inverse.log",
+            f"{RESULTS}/logs/inverse/tracking.log",
         benchmark:
-            f"{RESULTS}/logs/benchmarks/inverse.tsv"
+            f"{RESULTS}/logs/benchmarks/tracking.tsv"
         params:
             settings=settings_text(SETTINGS.tracking_job),
             folder=subpath(output.table, parent=True),
@@ -34,9 +33,26 @@ if TWIN:
             " --augmented {input.augmented:q} --settings {params.settings:q}"
             " --out {params.folder:q} 2> {log:q}"
 
+    rule draw_tracking_errors:
+        input:
+            table=rules.tracking.output.table,
+            raster=rules.tracking.output.raster,
+            code=code("hystbench.commands.figure", "hystbench.figures.tracking_errors"),
+            style=PACKAGE / "figures" / "hystbench.mplstyle",
+        output:
+            png=f"{INVERSE}/tracking-errors.png",
+            svg=f"{INVERSE}/tracking-errors.svg",
+        log:
+            f"{RESULTS}/logs/inverse/figure.log",
+        message:
+            "figure tracking-errors"
+        shell:
+            "hystbench figure tracking-errors --table {input.table:q}"
+            " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
+
 
 rule inverse:
     input:
-        rules.tracking.output if TWIN else [],
+        [*rules.tracking.output, *rules.draw_tracking_errors.output] if TWIN else [],
     message:
         f"{INVERSE} is up to date"

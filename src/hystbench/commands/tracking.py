@@ -9,7 +9,6 @@ import click
 import numpy as np
 
 from hystbench import options
-from hystbench.figures import style, tracking_errors
 from hystbench.files import whole_folder, write_csv, write_text
 from hystbench.inverse.told import table, verdict
 from hystbench.inverse.tracking import (
@@ -17,14 +16,18 @@ from hystbench.inverse.tracking import (
     WITH,
     WITHOUT,
     Line,
+    Reference,
     Tracked,
     references,
     track,
 )
 from hystbench.model import load_model
+from hystbench.record import FloatArray
 from hystbench.signals import load_signal
 
-WRITTEN = ("tracking.csv", "tracking.md", "verdict.md", "tracking.png", "tracking.svg")
+SHOWN_S = 0.15
+"""Time of the last reference that is kept, for the figure."""
+WRITTEN = ("tracking.csv", "raster.csv", "tracking.md", "verdict.md")
 
 
 @click.command()
@@ -61,26 +64,37 @@ def tracking(
     wanted = references(given, settings["highest_hz"], line, rest)
     rows = track(twin, settings["input_zero_error"], models, line, wanted)
     with whole_folder(out, WRITTEN) as fresh:
-        write_csv(fresh / "tracking.csv", list(_cells(rows[0])), map(_values, rows))
+        cells = [_cells(row, twin.output.unit) for row in rows]
+        values = (list(each.values()) for each in cells)
+        write_csv(fresh / "tracking.csv", list(cells[0]), values)
+        scan = _part(rows, wanted[-1])
+        write_csv(fresh / "raster.csv", list(scan), _lines(scan))
         write_text(fresh / "tracking.md", table(rows, twin.output.unit))
         write_text(fresh / "verdict.md", verdict(rows))
-        with style.in_style():
-            figure = tracking_errors.draw(rows, twin.output)
-            for suffix in (".png", ".svg"):
-                style.save(figure, fresh / f"tracking{suffix}")
 
 
-def _cells(row: Tracked) -> dict[str, str]:
+def _cells(row: Tracked, unit: str) -> dict[str, str]:
     return {
         "reference": row.reference.name,
         "highest_hz": f"{row.reference.highest_hz:g}",
         "drive": row.drive,
         "stroke": f"{row.stroke:.4g}",
+        "unit": unit,
         "rms_percent": f"{100 * row.rms:.3g}",
         "largest_percent": f"{100 * row.largest:.3g}",
         "largest_input": f"{np.abs(row.u).max():.4g}",
     }
 
 
-def _values(row: Tracked) -> list[str]:
-    return list(_cells(row).values())
+def _lines(columns: dict[str, FloatArray]) -> list[list[str]]:
+    together = zip(*columns.values(), strict=True)
+    return [[f"{value:.9g}" for value in line] for line in together]
+
+
+def _part(rows: list[Tracked], reference: Reference) -> dict[str, FloatArray]:
+    """Give a part of a reference in time, and what the plant does with each drive."""
+    middle = len(reference.y) // 2
+    part = slice(middle, middle + round(SHOWN_S / reference.dt))
+    time = np.arange(len(reference.y[part]), dtype=np.float64) * reference.dt
+    own = {row.drive: row.y[part] for row in rows if row.reference is reference}
+    return {"time_s": time, "reference": reference.y[part], **own}

@@ -38,6 +38,7 @@ NAMES = (
     "blind-power",
     "blind-reliability",
     "blind-where",
+    "tracking-errors",
 )
 
 

@@ -127,9 +127,9 @@ def feedforward(
     found = _corrected(model, start, response, x, reference, dt, band)
     if found.clipped and limits == Limits():
         raise InputError(
-            f"reference: {found.clipped} of {len(reference)} samples lie beyond what "
-            f"'{found.exact}' gives for any input; expected a smaller or slower "
-            "reference, or --limit-low and --limit-high, at which the input then stays"
+            f"reference: the input runs away at {found.clipped} of {len(reference)} "
+            f"samples, as '{found.exact}' does not reach what is asked of it; expected "
+            "a smaller or slower reference, or --limit-low and --limit-high"
         )
     return found
 

@@ -116,21 +116,34 @@ def _averaged(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _scaled(map_: Map, u: FloatArray, size: float) -> float:
-    """Find a factor on an input for which the output is about of a size."""
-    scale, known = 1.0, 0.0
+    """Find a factor on an input for which the output is about of a size.
+
+    Where the output jumps over that size, it is the factor that comes nearest.
+    """
+    scale, low, high, best = 1.0, 0.0, np.inf, (np.inf, 1.0)
     for _ in range(TRIES):
         reached = float(np.ptp(map_(np.tile(scale * u, 2))[len(u) :]))
-        if not np.isfinite(reached) or reached == 0:
-            scale *= 0.1 if reached else 10.0
-            continue
-        known = max(known, reached)
-        factor = size / reached
-        if 0.8 < factor < 1.25:
-            return scale
-        scale *= min(max(factor, 0.1), 10.0)
-    raise InputError(
-        f"reference: a stroke of {size:g}; the model makes at most {known:.4g}"
-    )
+        off = abs(np.log(reached / size)) if 0 < reached < np.inf else np.inf
+        best = min(best, (off, scale))
+        if off < 0.2:
+            break
+        if reached < size:
+            low = max(low, scale)
+        else:  # too large, or no number
+            high = min(high, scale)
+        step = min(max(size / reached, 0.1), 10.0) if off < np.inf else 10.0
+        if low and high < np.inf:
+            scale = float(np.sqrt(low * high))
+        else:
+            scale *= step if reached < size else min(step, 0.5)
+        if high / max(low, 1e-300) < 1.01:
+            break
+    if best[0] == np.inf or (high == np.inf and best[0] > 0.2):
+        most = 0.0 if best[0] == np.inf else size * float(np.exp(-best[0]))
+        raise InputError(
+            f"reference: a stroke of {size:g}; the model makes at most {most:.4g}"
+        )
+    return best[1]
 
 
 def without(
