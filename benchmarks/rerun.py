@@ -1,20 +1,22 @@
-"""Searching again with other effects: what is kept of the first search saves.
+"""Searching again with other effects: what is kept of an earlier search saves.
 
-The first case of the development set of the blind contest, with its model file
-and with a linear base that is identified. Seconds of one processor, without the start
-of Python, reading the records and the page. Each row is a process of its own; the first
-of a case begins with an empty cache.
+The first case of the development set of the blind contest, with its model file and with
+a linear base that is identified. Seconds of one processor, without the start of Python,
+reading the records and the page: of a search that keeps nothing, and of the same search
+after the first one of the case was kept. Each search is a process of its own.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from time import process_time
+from typing import Any
 
 from benchmarks.gap import make_cases
 from benchmarks.timing import write_table
@@ -22,7 +24,10 @@ from hystbench.gap.evidence import load_evidence
 from hystbench.interface.gap import find_gap
 
 CASES = 1
-COLUMNS = ("case", "base", "search", "cpu_seconds", "times_quicker", "answer")
+COLUMNS = (
+    *("case", "base", "search", "from_nothing_s", "after_the_first_s"),
+    *("times_quicker", "answer"),
+)
 
 
 def main() -> None:
@@ -40,42 +45,52 @@ def main() -> None:
 def searched(
     case: Path, model: str, base: str, cache: Path
 ) -> list[tuple[object, ...]]:
-    """Search once, the same again, and without the first name: rows of the table."""
-    rows: list[tuple[object, ...]] = []
-    first = 0.0
-    rejected: list[str] = []
-    for search in ("first", "the same again", "without its name"):
-        without = rejected if search == "without its name" else []
-        if search == "without its name" and not rejected:
+    """Search once and keep it; then the same, and without its name."""
+    kept = once(case, model, [], cache)
+    rows = []
+    for search, without in (("the same", []), ("without its name", kept["names"][:1])):
+        if search != "the same" and not without:
             continue
-        found = once(case, model, without, cache)
-        first = first or float(found["cpu_seconds"])
-        rejected = rejected or found["names"][:1]
-        answer = "+".join(found["names"]) or found["verdict"]
-        seconds = float(found["cpu_seconds"])
-        rows.append((case.name, base, search, seconds, first / seconds, answer))
+        cold = once(case, model, without, None)
+        warm = once(case, model, without, cache)
+        seconds = float(cold["cpu_seconds"]), float(warm["cpu_seconds"])
+        answer = "+".join(warm["names"]) or warm["verdict"]
+        rows.append(
+            (case.name, base, search, *seconds, seconds[0] / seconds[1], answer)
+        )
     return rows
 
 
-def once(case: Path, model: str, without: list[str], cache: Path) -> dict[str, object]:
-    """Search in a process of its own."""
-    words = [sys.executable, "-m", "benchmarks.rerun", str(case), model, *without]
-    alone = {
-        **os.environ,
-        "OPENBLAS_NUM_THREADS": "1",
-        "XDG_CACHE_HOME": str(cache),
-    }
-    done = subprocess.run(words, check=True, capture_output=True, text=True, env=alone)
-    found: dict[str, object] = json.loads(done.stdout)
+def once(
+    case: Path, model: str, without: list[str], cache: Path | None
+) -> dict[str, Any]:
+    """Search in a process of its own, in a copy of what was kept."""
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name, "cache")
+        if cache is not None and cache.is_dir():
+            shutil.copytree(cache, place)
+        words = [sys.executable, "-m", "benchmarks.rerun", str(case), model]
+        words += ["keep" if cache is not None else "nothing", *without]
+        alone = {
+            **os.environ,
+            "OPENBLAS_NUM_THREADS": "1",
+            "XDG_CACHE_HOME": str(place),
+        }
+        done = subprocess.run(
+            words, check=True, capture_output=True, text=True, env=alone
+        )
+        if cache is not None and not cache.is_dir():
+            shutil.copytree(place, cache)
+    found: dict[str, Any] = json.loads(done.stdout)
     return found
 
 
-def work(case: str, model: str, without: list[str]) -> dict[str, object]:
+def work(case: str, model: str, keep: bool, without: list[str]) -> dict[str, Any]:
     """Search and tell what it took."""
     data = Path(case, "dataset")
     evidence = load_evidence(data)
     start = process_time()
-    gap = find_gap(data, model, without=without, evidence=evidence)
+    gap = find_gap(data, model, without=without, evidence=evidence, cache=keep)
     return {
         "cpu_seconds": process_time() - start,
         "names": [effect.name for effect in gap.effects],
@@ -84,5 +99,5 @@ def work(case: str, model: str, without: list[str]) -> dict[str, object]:
 
 
 if __name__ == "__main__":
-    case, model, *without = sys.argv[1:]
-    print(json.dumps(work(case, model, without)))
+    case, model, keep, *without = sys.argv[1:]
+    print(json.dumps(work(case, model, keep == "keep", without)))

@@ -8,16 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.gap.change import removable, without_effect
-from hystbench.gap.fit import ENOUGH, finished, score_of
+from hystbench.gap.fit import ENOUGH, score_of
+from hystbench.gap.kept_state import remembered_of
 from hystbench.gap.name import Named, name
 from hystbench.gap.own_values import KINDS, NONE, OwnValues, own_values
 from hystbench.gap.rank import make_score
+from hystbench.gap.remembered import records_digest
 from hystbench.gap.say import Say
 from hystbench.gap.scene import Scene
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS
 from hystbench.gap.verdict import ABOVE
+from hystbench.gap.work import IN_PROCESS
 from hystbench.record import FloatArray, Record
 
 
@@ -112,13 +115,11 @@ def _likely(
     for state in models:
         best: tuple[float, OwnValues] = (np.inf, NONE)
         for _ in range(ROUNDS):
-            own = own_values(
-                start.records, simulated(state), score.floor, kinds_of(start)
-            )
+            own = _own_values(state, start, score.floor)
             if not own.records:
                 break
             bare = own.taken_off(start.records, start.hold)
-            apart, value = finished(on_records(state, bare), score)
+            apart, value = IN_PROCESS.finished(on_records(state, bare), score)
             if value + own.charge >= best[0] - ENOUGH:
                 break
             best = value + own.charge, own
@@ -126,6 +127,18 @@ def _likely(
         if best[1].records:
             found.append(best)
     return sorted(found, key=lambda item: item[0])
+
+
+def _own_values(state: State, start: State, floor: float) -> OwnValues:
+    """Find what records have of their own beside a model, or look it up."""
+    kinds = kinds_of(start)
+    return remembered_of(
+        state,
+        lambda: ["own values", records_digest(start.records), floor, kinds],
+        lambda: own_values(start.records, simulated(state), floor, kinds),
+        OwnValues.plain,
+        OwnValues.of_plain,
+    )
 
 
 def kinds_of(state: State) -> tuple[str, ...]:

@@ -30,7 +30,7 @@ FLOORS = {
 
 def verdict_sentence(gap: dict[str, Any]) -> str:
     """Say the verdict in plain words, what the user put in first."""
-    put_in = gap["asked"]["with"] if gap["asked"] else []
+    put_in = (gap.get("asked") or {"with": []})["with"]
     if not put_in:
         return _verdict(gap)
     names = listed([name.replace("-", " ") for name in put_in])
@@ -45,8 +45,8 @@ def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
     -------
     list of (str, str)
     """
-    place = gap["command"] or {"dataset": "DATASET", "model": "MODEL", "out": "OUT"}
-    asked = gap["asked"] or {"without": [], "with": []}
+    place = gap.get("command") or {"dataset": "DATASET", "model": "MODEL", "out": "OUT"}
+    asked = gap.get("asked") or {"without": [], "with": []}
     named = [effect["name"] for effect in gap["effects"]]
     if gap["withdrawn"]:
         named = gap["withdrawn"]["names"]
