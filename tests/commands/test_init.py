@@ -233,3 +233,20 @@ def test_nothing_usable_is_one_line(run, tmp_path):
     assert status == 2
     assert "no two columns of 20 samples or more" in said
     assert said.count("\n") == 1
+
+
+def test_one_of_several_records_of_a_file_is_simulated_by_its_name(run, tmp_path):
+    pytest.importorskip("h5py", reason="h5py is not installed")
+    shutil.copy(FILES / "pytables.h5", tmp_path)
+    run("init", "pytables.h5")
+    Path("model.yaml").write_text(
+        "name: m\ninput: {name: current, unit: A}\noutput: {name: stroke, unit: um}\n"
+        "chain: [{gain: {value: 2}}]\n"
+    )
+    status, _, said = run("simulate", "model.yaml", "pytables.h5", "--out", "y.csv")
+    assert status == 2
+    assert "holds pytables-fast, pytables-slow" in said
+    assert run("load", "dataset.yaml", "pytables-slow", "--out", "r.npz")[0] == 0
+    assert run("simulate", "model.yaml", "r.npz", "--out", "y.csv")[0] == 0
+    table = np.loadtxt("y.csv", delimiter=",", skiprows=1)
+    np.testing.assert_allclose(table[:, 3], 2 * table[:, 1], rtol=1e-9)
