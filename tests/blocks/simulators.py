@@ -36,7 +36,7 @@ def compiled(folder, text=PROGRAM):
         pytest.skip("no gcc")
     source = folder / "program.c"
     source.write_text(text)
-    subprocess.run(["gcc", "-O2", source, "-o", folder / "program"], check=True)
+    subprocess.run(["gcc", "-O2", source, "-o", folder / "program", "-lm"], check=True)
     return folder / "program"
 
 

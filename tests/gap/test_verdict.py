@@ -10,6 +10,7 @@ from hystbench.gap.thresholds import TIE
 from hystbench.gap.unnamed import CHANGE, LOOSE, Unnamed
 from hystbench.gap.verdict import (
     ABOVE,
+    GIVE,
     LONE,
     SLIGHT,
     SOME,
@@ -20,7 +21,9 @@ from hystbench.gap.verdict import (
     error_of,
     judge,
     what_is_left,
+    what_mends,
 )
+from hystbench.record import Channel, Record
 from tests.gap.small import block, measured, state_of
 
 SIZES = st.floats(-1.0, 1e6)
@@ -226,3 +229,21 @@ def test_what_is_left_of_a_gap_is_counted_in_floors():
     assert abs(found.after) < 0.2
     assert found.before <= found.all_before
     assert found.loose < 0.05
+
+
+def test_periods_that_are_found_are_what_mends_an_upper_bound():
+    time = np.arange(1000)
+    rng = np.random.default_rng(0)
+
+    def made(name, u):
+        channel = Channel("x", "V")
+        return Record(name, 1e-3, u, u + 1.0, channel, channel, "measured")
+
+    repeats = made("r", np.sin(2 * np.pi * time / 125))
+    noise = made("n", rng.standard_normal(1000))
+    told = what_mends([repeats, noise])
+    assert "'period_samples: 125' of record r" in told
+    assert "record n" not in told
+    assert what_mends([noise]) == GIVE
+    _, reason = judge(Left(0, 0, 0, 0, 1), False, 0.0, bound=True, mends=told)
+    assert reason.endswith(told)

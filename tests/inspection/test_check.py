@@ -44,7 +44,7 @@ def test_the_period_is_found_and_its_line_can_be_pasted(plain, tmp_path):
     place = write(tmp_path, records(), roles=HELD)
     head = place.read_text().partition("records:\n")[0]
     about.write_text(head + "records:\n" + "\n".join(missing.paste) + "\n")
-    again = check(load_dataset(about))
+    again = check(load_dataset(about), effects=False)
     assert not of_kind(again, "missing")
     assert [item.period for item in again.facts] == [200, 100, 50, 25]
 
@@ -73,7 +73,11 @@ def test_a_late_trigger_is_told_and_no_other(tmp_path):
     late = np.roll(y, shift)
     made = records(frequencies=(4, 5, 8, 10, 16, 25, 32, 40))
     place = write(tmp_path, made | {"late": (u, late)}, roles=HELD)
-    told = [f.text for f in check(load_dataset(place)).findings if "trigger" in f.text]
+    told = [
+        f.text
+        for f in check(load_dataset(place), False).findings
+        if "trigger" in f.text
+    ]
     assert len(told) == 1
     assert told[0].startswith("late:")
 
@@ -83,7 +87,7 @@ def test_a_clipped_output_is_wrong(tmp_path):
     u, y = made["sine-20"]
     made["sine-20"] = (u, np.minimum(y, 0.6 * y.max()))
     place = write(tmp_path, made, roles=HELD)
-    (wrong,) = of_kind(check(load_dataset(place)), "wrong")
+    (wrong,) = of_kind(check(load_dataset(place), False), "wrong")
     assert "sine-20" in wrong.text
     assert "clipped" in wrong.text
     assert wrong.paste == ("- {file: sine-20.csv, use: fit, stands_still: [output]}",)
@@ -94,7 +98,7 @@ def test_missing_samples_are_counted(tmp_path):
     made["sine-20"][1][[100, 101, 500]] = np.nan
     entries = {"sine-20": ", missing: interpolate"}
     place = write(tmp_path, made, roles=HELD, entries=entries)
-    found = check(load_dataset(place))
+    found = check(load_dataset(place), False)
     assert found.facts[2].missing == 3
     assert any("3 of 1200 samples are missing" in f.text for f in found.findings)
 
@@ -111,7 +115,7 @@ def test_an_uneven_clock_is_told(tmp_path):
     file.write_text("\n".join([head, *moved]) + "\n")
     text = place.read_text().replace("unit: s}", "unit: s, tolerance: 0.2}")
     place.write_text(text)
-    found = check(load_dataset(place))
+    found = check(load_dataset(place), False)
     # The difference of two uniform deviations: 0.05 / sqrt 3 * sqrt 2 of a step.
     assert found.facts[0].jitter == pytest.approx(0.05 * np.sqrt(2 / 3), rel=0.1)
     assert any("steps of time differ by" in f.text for f in found.findings)
@@ -124,7 +128,7 @@ def test_records_that_never_repeat_have_no_measured_noise(tmp_path):
         u = np.sin(2 * np.pi * (1 + top * time / 2) * time)
         made[f"chirp-{top}"] = (u, noisy(loop(u), k))
     place = write(tmp_path, made, roles={"chirp-20": "hold-out"})
-    found = check(load_dataset(place))
+    found = check(load_dataset(place), False)
     assert any("upper bound" in item.text for item in of_kind(found, "missing"))
     assert "noise_rms" in of_kind(found, "missing")[0].paste[0]
 

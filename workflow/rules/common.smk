@@ -124,10 +124,11 @@ def code(*modules):
     As inputs of a rule they make an edited module rerun what depends on it.
     """
     names = set(modules).union(*(GRAPH.find_upstream_modules(name) for name in modules))
-    if "hystbench.blocks" in names:
-        # Blocks are found by name, so that no import tells of them.
-        blocks = GRAPH.find_children("hystbench.blocks")
-        names |= blocks.union(*(GRAPH.find_upstream_modules(name) for name in blocks))
+    for package in ("hystbench.blocks", "hystbench.formats"):
+        if package in names:
+            # Blocks and formats are found by name, so that no import tells of them.
+            own = GRAPH.find_children(package)
+            names |= own.union(*(GRAPH.find_upstream_modules(name) for name in own))
     files = []
     for name in sorted(names):
         path = PACKAGE.joinpath(*name.split(".")[1:])

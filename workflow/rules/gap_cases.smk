@@ -15,8 +15,11 @@ def model_of_case(wildcards):
 
 
 def model_files(model):
-    """Files of a base: a model file, or the module of a function that lies here."""
-    if model.endswith((".yaml", ".yml")):
+    """Files of a base: a model file, a simulator's, or a function's module here."""
+    if model.startswith("command:"):
+        words = shlex.split(model.removeprefix("command:"))
+        return [word for word in words if Path(word).is_file()]
+    if model.endswith((".yaml", ".yml", ".fmu", ".onnx")):
         return [model]
     dotted, function, _ = model.partition(":")
     place = Path(*dotted.split("."))

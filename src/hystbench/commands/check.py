@@ -16,14 +16,19 @@ from hystbench.inspection.check import check as look
 @click.command()
 @click.argument("dataset", type=options.DATASET)
 @click.option("--out", type=options.NEW_FILE, help="Write a page (HTML) too.")
-def check(dataset: Path, out: Path | None) -> None:
+@click.option(
+    "--effects/--no-effects",
+    default=True,
+    help="Whether to simulate effects; long records take minutes.",
+)
+def check(dataset: Path, out: Path | None, effects: bool) -> None:
     """Say what the records of DATASET are like and which effects they can reveal.
 
     Prints one screen: rates, jitter, periods, stuck channels, missing samples, delays,
     noise, bands and levels; what is wrong, with the line for dataset.yaml that mends
     it; and how strong each effect must be to be seen, and told from the others.
     """
-    found = look(load_dataset(dataset))
+    found = look(load_dataset(dataset), effects)
     for line in words.text(found):
         click.echo(line)
     if out is not None:

@@ -52,7 +52,7 @@ def simulate(
 ) -> None:
     """Run MODEL on RECORD and write time, input, measured and simulated output.
 
-    RECORD is a CSV file of a dataset, or an archive (.npz) of a record or a signal; or
+    RECORD is a file of a dataset, or an archive (.npz) of a record or a signal; or
     a CSV file of one's own, with no dataset.yaml beside it, of two columns: time_s and
     the model's input, named with its unit, such as current_A.
     """
@@ -91,7 +91,7 @@ def simulate(
 
 def _read(record: Path, dataset: Path | None, expected: Channel) -> Run:
     if record.suffix != ".npz":
-        return _read_csv(record, dataset, expected)
+        return _read_file(record, dataset, expected)
     if dataset is not None:
         raise InputError(f"{record}: an archive; expected no --dataset with it")
     if _names(record) >= {"name", "dt", "u", "unit"}:
@@ -102,18 +102,28 @@ def _read(record: Path, dataset: Path | None, expected: Channel) -> Run:
     return Run(found.dt, found.u, found.input, found.y, found.output, None, found)
 
 
-def _read_csv(record: Path, dataset: Path | None, expected: Channel) -> Run:
+def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Run:
     beside = record.parent / "dataset.yaml"
     if dataset is None and not beside.is_file():
         dt, u = read_input(record, column_name(expected.name, expected.unit))
         return Run(dt, u, expected, None, None, None)
     about = load_dataset(dataset or beside)
-    for name, file in about.record_files.items():
-        if file.resolve() == record.resolve():
-            found = about.read(name)
-            hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
-            own = found.dt, found.u, found.input, found.y, found.output
-            return Run(*own, hold, found, about.simulated_column)
+    names = [
+        name
+        for name, file in about.record_files.items()
+        if file.resolve() == record.resolve()
+    ]
+    if len(names) > 1:
+        raise InputError(
+            f"{about.path}: records: {record} holds {', '.join(names)}; expected one: "
+            f"take it out with 'hystbench load {about.path} {names[0]} --out "
+            f"{names[0]}.npz' and simulate that"
+        )
+    if names:
+        found = about.read(names[0])
+        hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
+        own = found.dt, found.u, found.input, found.y, found.output
+        return Run(*own, hold, found, about.simulated_column)
     files = [file.name for file in about.record_files.values()]
     raise InputError(
         f"{about.path}: records: {record} is none of them; "

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from hystbench.blocks.held import Hold
-from hystbench.dataset import Dataset, load_dataset
+from hystbench.dataset import load_dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap import folds, nuisance
 from hystbench.gap.usable import check_usable
 from hystbench.model import Model
-from hystbench.periods import find_period
 from hystbench.record import Channel, Record, Use
 from hystbench.units import check_same_unit
 
@@ -117,25 +115,8 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         about.get("noise_rms"),
         named,
         dataset.simulated_column,
-        (*doubts(dataset, records), *_periods(dataset, records)),
+        doubts(dataset, records),
     )
-
-
-def _periods(dataset: Dataset, records: Sequence[Record]) -> Iterator[str]:
-    """Tell of inputs that repeat themselves, where nothing else tells the noise."""
-    if "noise_rms" in dataset.about or any(item.period_samples for item in records):
-        return
-    found = {item.name: find_period(item.u) for item in records if item.use == "fit"}
-    lines = [
-        f"'period_samples: {period}' of {dataset.record_files[name].name}"
-        for name, period in found.items()
-        if period is not None
-    ]
-    if lines:
-        yield (
-            f"{dataset.path}: records: the noise is measured where an input repeats "
-            f"itself, and no record says so; write {', '.join(lines)}"
-        )
 
 
 def _check_length(file: Path, record: Record) -> None:

@@ -45,6 +45,7 @@ from hystbench.gap.verdict import (
     Left,
     judge,
     what_is_left,
+    what_mends,
 )
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
@@ -192,6 +193,7 @@ def decide(
         differs,
         unnamed,
         unnamed_share,
+        what_mends(start.records),
     )
     untried = not_tried(named)
     reason += _untried(untried) if state.added else ""

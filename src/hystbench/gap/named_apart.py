@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from hystbench.gap import work
 from hystbench.gap.change import removable, without_effect
 from hystbench.gap.fit import ENOUGH, score_of
-from hystbench.gap.kept_state import remembered_of
+from hystbench.gap.kept import remembered_of
 from hystbench.gap.name import Named, name
 from hystbench.gap.own_values import KINDS, NONE, OwnValues, own_values
 from hystbench.gap.rank import make_score
@@ -20,7 +21,6 @@ from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS
 from hystbench.gap.verdict import ABOVE
-from hystbench.gap.work import IN_PROCESS
 from hystbench.record import FloatArray, Record
 
 
@@ -119,7 +119,7 @@ def _likely(
             if not own.records:
                 break
             bare = own.taken_off(start.records, start.hold)
-            apart, value = IN_PROCESS.finished(on_records(state, bare), score)
+            apart, value = work.finished(on_records(state, bare), score)
             if value + own.charge >= best[0] - ENOUGH:
                 break
             best = value + own.charge, own

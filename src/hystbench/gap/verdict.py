@@ -14,6 +14,8 @@ from hystbench.gap.rounds import Candidate
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.unnamed import LOOSE, NOTHING, SHARE, Unnamed
+from hystbench.periods import find_period
+from hystbench.record import Record
 
 Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
@@ -45,6 +47,10 @@ DOUBT = 0.02
 """That none of the vocabulary is right though one fits well."""
 SAID = 0.1
 """Share of the gap that a wrong shape of the base could leave, to be told."""
+
+
+GIVE = "give period_samples or noise_rms"
+"""What to write in dataset.yaml where nothing tells the noise."""
 
 
 @dataclass(frozen=True)
@@ -144,6 +150,19 @@ def what_is_left(base: State, state: State, floor_rms: float) -> Left:
     )
 
 
+def what_mends(records: Sequence[Record]) -> str:
+    """Say what to write so that the noise is measured: the periods that are found."""
+    found = [(record.name, find_period(record.u)) for record in records]
+    told = [
+        f"'period_samples: {period}' of record {name}"
+        for name, period in found
+        if period is not None
+    ]
+    if not told:
+        return GIVE
+    return f"the input repeats itself: write {', '.join(told)} in dataset.yaml"
+
+
 def judge(
     left: Left,
     named: bool,
@@ -154,6 +173,7 @@ def judge(
     unrepeated: float | None = None,
     unnamed: Unnamed = NOTHING,
     unnamed_share: float = SHARE,
+    mends: str = GIVE,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
 
@@ -179,6 +199,8 @@ def judge(
         What stays that the named effects cannot own.
     unnamed_share : float
         Share of the power of the gap that may stay so.
+    mends : str
+        What to write so that the noise is measured.
     """
     if not named:
         foreign = _foreign(left, lone, unrepeated)
@@ -192,7 +214,7 @@ def judge(
         if left.slight and bound:
             return "unnamed", (
                 "no effect pays; the floor is only an upper bound, so that there is "
-                "no gap cannot be claimed: give period_samples or noise_rms"
+                f"no gap cannot be claimed: {mends}"
             )
         if left.slight and left.all_after <= ABOVE:
             return "no-gap", "what is left is noise"

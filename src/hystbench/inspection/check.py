@@ -62,6 +62,7 @@ class Check:
         Rms of what it leaves on the fit records, in the output's unit.
     findings : tuple of Finding
     effects : tuple of Seen
+        None where they were not simulated.
     """
 
     dataset: Dataset
@@ -84,12 +85,14 @@ class Check:
         return tuple(item for item in self.effects if not item.revealed)
 
 
-def check(dataset: Dataset) -> Check:
+def check(dataset: Dataset, effects: bool = True) -> Check:
     """Look at all records of a dataset.
 
     Parameters
     ----------
     dataset : Dataset
+    effects : bool
+        Whether to simulate them, which takes most of the time.
 
     Raises
     ------
@@ -118,7 +121,9 @@ def check(dataset: Dataset) -> Check:
         base,
         left,
         tuple(_findings(dataset, records, facts, floor)),
-        seen_effects(base, [item.record for item in to_fit], floor.rms, hold),
+        seen_effects(base, [item.record for item in to_fit], floor.rms, hold)
+        if effects
+        else (),
     )
 
 

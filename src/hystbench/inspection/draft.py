@@ -385,14 +385,14 @@ def _channels(
     likely = choose([told[name] for name in left])
     found = [given.input, given.output]
     for k, place in enumerate(likely):
-        if found[k] is None and len(left) == 1 and found[1 - k] is not None:
-            found[k] = left[0]
-        elif found[k] is None and place is not None:
+        if found[k] is None and place is not None:
             found[k] = left[place]
     for k, key in enumerate(("input", "output")):
         if found[k] is None:
             open_ = [name for name in left if name not in found]
-            found[k] = ask(f"Which column is the {key}", open_, f"--{key}")
+            alone = len(open_) == 1 and found[1 - k] is not None
+            asked = f"Which column is the {key}"
+            found[k] = open_[0] if alone else ask(asked, open_, f"--{key}")
     one, two = found
     if one is None or two is None or one == two:
         raise InputError(

@@ -25,8 +25,9 @@ def page(found: Check) -> str:
         headline=words.headline(found),
         channels=f"{record.input.name} ({unit_text(record.input.unit)}) to "
         f"{record.output.name} ({unit})",
-        noise=f"{found.floor.rms:.3g} {unit} rms, {words.FLOORS[found.floor.method]}",
-        left=f"{found.left:.3g} {unit} rms",
+        noise=f"{words.quantity(found.floor.rms, record.output.unit)} rms, "
+        f"{words.FLOORS[found.floor.method]}",
+        left=f"{words.quantity(found.left, record.output.unit)} rms",
         findings=found.findings,
         kinds=words.KINDS,
         records=_records(found),

@@ -34,9 +34,13 @@ def strength(item: Seen, of_input: str, of_output: str) -> str:
     if math.isnan(item.value):
         return ""
     unit = written(item.unit, of_input, of_output)
-    shown = "" if unit in ("-", "") else f" {unit_text(unit)}"
     name = item.number.replace("_", " ").removesuffix(" s").removesuffix(" hz")
-    return f"{name} {item.value:.3g}{shown}"
+    return f"{name} {quantity(item.value, unit)}"
+
+
+def quantity(value: float, unit: str) -> str:
+    """Write a number with its unit, if it has one."""
+    return f"{value:.3g} {unit_text(unit)}".removesuffix(" -").strip()
 
 
 def mistaken(item: Seen) -> str:
@@ -58,6 +62,8 @@ def headline(found: Check) -> str:
     missing = sum(item.kind == "missing" for item in found.findings)
     seen, every = len(found.revealed), len(found.effects)
     can = f"the records to fit can reveal {seen} of {every} effects"
+    if not every:
+        can = "which effects the records can reveal was not asked"
     if wrong:
         things = "thing is" if wrong == 1 else "things are"
         return f"{wrong} {things} wrong, which 'hystbench gap' refuses; {can}."
@@ -69,7 +75,7 @@ def headline(found: Check) -> str:
 def level(facts: Facts, unit: str) -> str:
     """Write the range of an input."""
     item = facts.excitation
-    return f"{item.low:.3g} to {item.high:.3g} {unit_text(unit)}"
+    return f"{item.low:.3g} to {quantity(item.high, unit)}"
 
 
 def band(facts: Facts) -> str:
@@ -89,9 +95,9 @@ def text(found: Check) -> list[str]:
     lines = [
         f"{found.dataset.path}: {headline(found)}",
         f"  {record.input.label} to {record.output.label}; noise "
-        f"{found.floor.rms:.3g} {record.output.unit} rms "
+        f"{quantity(found.floor.rms, record.output.unit)} rms "
         f"({FLOORS[found.floor.method]}); a loop that does not depend on the rate "
-        f"leaves {found.left:.3g} {record.output.unit}",
+        f"leaves {quantity(found.left, record.output.unit)}",
     ]
     width = max(len(item.name) for item in found.facts)
     for item in found.facts:
@@ -105,6 +111,8 @@ def text(found: Check) -> list[str]:
     for each in found.findings:
         lines.append(f"  {KINDS[each.kind]}: {each.text}")
         lines += [f"      {line}" for line in each.paste]
+    if not found.effects:
+        return lines
     lines.append("  Seen from this share of the output on (rms):")
     lines += _wrapped(f"{x.effect} {percent(x.seen_from)}" for x in found.revealed)
     alike = [x for x in found.revealed if x.rivals]

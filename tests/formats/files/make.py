@@ -58,3 +58,33 @@ soundfile.write("float.wav", np.column_stack([u, y / 4]) / 2, 1000, subtype="DOU
 # CSV, as pandas writes it for a spreadsheet in German.
 german = pd.DataFrame({"Zeit [s]": t, "Spulenstrom [mA]": 1000 * u, "Weg [µm]": y})
 german.to_csv("german.csv", sep=";", decimal=",", index=False, encoding="utf-16")
+
+# A rig as a stranger leaves it: MATLAB v7.3, a struct a run, a rate, no units.
+rng = np.random.default_rng(7)
+n = 800
+tt = np.arange(n) / 1000
+
+
+def rig(drive):
+    """A saturating drive, play of 0.15 in the joint, noise."""
+    z = 5 * np.tanh(drive / 1.2)
+    out, state = np.zeros(n), 0.0
+    for j, value in enumerate(z):
+        state = min(max(state, value - 0.15), value + 0.15)
+        out[j] = state
+    return out + 0.005 * rng.standard_normal(n)
+
+
+drives = {
+    "run01": 1.0 * np.sin(2 * np.pi * 5 * tt),
+    "run02": 0.7 * np.sin(2 * np.pi * 20 * tt),
+    "run03": 1.2 * np.sin(2 * np.pi * 10 * tt),
+    "run04": 0.5 * (np.sin(2 * np.pi * 5 * tt) + np.sin(2 * np.pi * 15 * tt + 1)),
+}
+content = {
+    name: {"current": d[:, None], "position": rig(d)[:, None]}
+    for name, d in drives.items()
+}
+hdf5storage.savemat(
+    "stranger.mat", content | {"Fs": 1000.0}, format="7.3", oned_as="column"
+)

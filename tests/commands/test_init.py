@@ -1,0 +1,252 @@
+"""``hystbench init``: what it writes for files that it does not know beforehand."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from hystbench import cli
+from hystbench.dataset import load_dataset
+from tests.inspection.made import DT, HEADER, loop, sine
+
+FILES = Path(__file__).parents[1] / "formats" / "files"
+
+
+@pytest.fixture
+def run(monkeypatch, capsys, tmp_path):
+    """Run a command in a folder of its own, with nobody at the terminal."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments):
+        monkeypatch.setattr("sys.argv", ["hystbench", *map(str, arguments)])
+        status = cli.run()
+        said = capsys.readouterr()
+        return status, said.out, said.err
+
+    return call
+
+
+def records(folder, header=HEADER, separator=",", decimal=".", encoding="utf-8"):
+    """Write three sines and a chirp."""
+    time = DT * np.arange(1200)
+    inputs = {f"sine-{hz}": sine(hz) for hz in (5, 10, 20)}
+    inputs["chirp"] = np.sin(2 * np.pi * (2 + 10 * time) * time)
+    rng = np.random.default_rng(0)
+    for name, u in inputs.items():
+        y = loop(u) + 0.01 * rng.standard_normal(len(u))
+        rows = [
+            separator.join(f"{x:.9g}".replace(".", decimal) for x in row)
+            for row in zip(time, u, y, strict=True)
+        ]
+        text = "\n".join([header, *rows]) + "\n"
+        (folder / f"{name}.csv").write_text(text, encoding=encoding)
+    return sorted(folder.glob("*.csv"))
+
+
+def written(path="dataset.yaml"):
+    return yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+
+
+def test_columns_units_periods_and_roles_are_found(run, tmp_path):
+    status, said, _ = run("init", *records(tmp_path))
+    assert status == 0
+    about = written()
+    assert about["time"] == {"column": "time_s", "unit": "s"}
+    assert about["input"] == {"column": "current_A", "unit": "A"}
+    assert about["output"] == {"column": "displacement_um", "unit": "um"}
+    found = {Path(each["file"]).stem: each for each in about["records"]}
+    periods = {name: each.get("period_samples") for name, each in found.items()}
+    assert periods == {"chirp": None, "sine-10": 100, "sine-20": 50, "sine-5": 200}
+    assert [name for name, each in found.items() if each["use"] == "hold-out"] == [
+        "chirp"
+    ]
+    assert "hystbench check" in said
+    dataset = load_dataset("dataset.yaml")
+    assert len(dataset.read("chirp")) == 1200
+
+
+def test_a_german_spreadsheet(run, tmp_path):
+    files = records(
+        tmp_path, "Zeit [s];Spulenstrom [mA];Weg [µm]", ";", ",", encoding="utf-16"
+    )
+    assert run("init", *files)[0] == 0
+    about = written()
+    assert about["input"] == {
+        "column": "Spulenstrom [mA]",
+        "unit": "mA",
+        "name": "Spulenstrom",
+    }
+    assert about["output"]["unit"] == "um"
+    record = load_dataset(".").read("sine-5")
+    assert record.dt == pytest.approx(DT)
+    np.testing.assert_allclose(record.u, sine(5), atol=1e-8)
+    assert record.input.label == "Spulenstrom (mA)"
+
+
+def test_flags_say_what_files_do_not(run, tmp_path):
+    files = records(tmp_path, "a,b,c")
+    status, _, said = run("init", *files)
+    assert status == 2
+    assert said.count("\n") == 1
+    assert "say --input; expected one of b, c" in said
+    assert not Path("dataset.yaml").exists()
+    flags = ("--input", "b", "--input-unit", "A", "--output-unit", "um")
+    assert run("init", *files, *flags, "--hold-out", "sine-10", "--name", "rig")[0] == 0
+    about = written()
+    assert (about["name"], about["time"]["column"]) == ("rig", "a")
+    assert (about["input"]["column"], about["output"]["column"]) == ("b", "c")
+    held = [each["file"] for each in about["records"] if each["use"] == "hold-out"]
+    assert held == ["sine-10.csv"]
+
+
+def test_a_terminal_is_asked(run, tmp_path, monkeypatch):
+    files = records(tmp_path, "a,b,c")
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    asked = []
+
+    def prompt(question, **_):
+        asked.append(question)
+        return {"Which column is the input": "b"}.get(question, "um")
+
+    monkeypatch.setattr("click.prompt", prompt)
+    assert run("init", *files)[0] == 0
+    assert asked == [
+        "Which column is the input",
+        "Unit of the input 'b' ('-' for none)",
+        "Unit of the output 'c' ('-' for none)",
+    ]
+    assert written()["input"] == {"column": "b", "unit": "um"}
+
+
+def test_a_file_of_yours_is_never_overwritten(run, tmp_path):
+    files = records(tmp_path)
+    Path("dataset.yaml").write_text("name: mine\n")
+    status, _, said = run("init", *files)
+    assert status == 2
+    assert "not written by hystbench" in said
+    assert Path("dataset.yaml").read_text() == "name: mine\n"
+
+
+def test_a_file_that_changed_is_told(run, tmp_path):
+    run("init", *records(tmp_path))
+    file = tmp_path / "sine-5.csv"
+    file.write_text(file.read_text().replace("0.001,", "0.0010,", 1))
+    status, _, said = run("check", "dataset.yaml")
+    assert status == 2
+    assert "'sine-5.csv' is not the file that was described" in said
+
+
+def test_missing_samples_are_interpolated_or_split_on_request(run, tmp_path):
+    files = records(tmp_path)
+    lines = (tmp_path / "sine-5.csv").read_text().splitlines()
+    for row in (400, 401):
+        lines[row - 1] = lines[row - 1].rpartition(",")[0] + ","
+    (tmp_path / "sine-5.csv").write_text("\n".join(lines) + "\n")
+    status, _, said = run("init", *files)
+    assert status == 2
+    assert "2 of 1200 samples are missing, the first at row 400" in said
+    assert "--missing" in said
+    assert run("init", *files, "--missing", "interpolate")[0] == 0
+    there = load_dataset(".").read("sine-5")
+    assert len(there) == 1200
+    # Rows 399 and 402 stand, samples 397 and 400; a third of the way lies 398.
+    third = (2 * there.y[397] + there.y[400]) / 3
+    assert there.y[398] == pytest.approx(third, rel=1e-9)
+    status, said, _ = run("init", *files, "--missing", "split")
+    assert status == 0
+    assert "split into 2 pieces" in said
+    dataset = load_dataset(".")
+    pieces = [dataset.read(f"sine-5-{k}") for k in (1, 2)]
+    assert [len(piece) for piece in pieces] == [398, 800]
+    np.testing.assert_array_equal(pieces[1].y, there.y[400:])
+
+
+def test_rounded_times_become_a_sampling_frequency(run, tmp_path):
+    files = records(tmp_path)
+    for file in files:
+        head, *rows = file.read_text().splitlines()
+        cells = [row.split(",") for row in rows]
+        rounded = [f"{float(t):.2f},{u},{y}" for t, u, y in cells]
+        file.write_text("\n".join([head, *rounded]) + "\n")
+    status, said, _ = run("init", *files)
+    assert status == 0
+    assert "rounded to more than the sampling interval" in said
+    about = written()
+    assert "time" not in about
+    rate = about["records"][0]["sampling_frequency_hz"]
+    assert rate == pytest.approx(1000, rel=0.01)
+
+
+def test_no_column_of_time_needs_a_sampling_frequency(run, tmp_path):
+    files = records(tmp_path, "t,u,y")
+    for file in files:
+        rows = [line.partition(",")[2] for line in file.read_text().splitlines()]
+        file.write_text("\n".join(rows) + "\n")
+    status, _, said = run("init", *files)
+    assert status == 2
+    assert "say --sampling-frequency" in said
+    assert run("init", *files, "--sampling-frequency", "1000")[0] == 0
+    assert written()["sampling_frequency_hz"] == 1000
+    assert load_dataset(".").read("chirp").dt == pytest.approx(DT)
+
+
+def test_a_lone_record_is_cut_by_whole_periods(run, tmp_path):
+    records(tmp_path)
+    status, said, _ = run("init", tmp_path / "sine-20.csv")
+    assert status == 0
+    assert "one record alone" in said
+    first, second = written()["records"]
+    assert (first["use"], second["use"]) == ("fit", "hold-out")
+    assert first["rows"] == [1, 800]
+    assert second["rows"] == [801, 1200]
+    assert (first["period_samples"], second["period_samples"]) == (50, 50)
+
+
+@pytest.mark.parametrize(
+    ("name", "package", "groups", "units"),
+    [
+        ("stranger.mat", "h5py", ["run01", "run02", "run03", "run04"], ("-", "-")),
+        ("pytables.h5", "h5py", ["fast", "slow"], ("A", "um")),
+        ("rig.tdms", "nptdms", ["slow", "fast"], ("A", "um")),
+        ("octave-runs.mat", "scipy", ["runs(1)", "runs(2)"], ("-", "-")),
+    ],
+)
+def test_groups_of_a_file_are_records(run, tmp_path, name, package, groups, units):
+    pytest.importorskip(package, reason=f"{package} is not installed")
+    shutil.copy(FILES / name, tmp_path)
+    assert run("init", name)[0] == 0
+    about = written()
+    assert [each["group"] for each in about["records"]] == groups
+    assert (about["input"]["unit"], about["output"]["unit"]) == units
+    assert "time" not in about  # the files tell the rate
+    dataset = load_dataset(".")
+    for record in dataset.record_files:
+        assert dataset.read(record).dt == pytest.approx(DT)
+
+
+def test_nothing_usable_is_one_line(run, tmp_path):
+    (tmp_path / "one.csv").write_text("t,u\n0,1\n1,2\n")
+    status, _, said = run("init", tmp_path / "one.csv")
+    assert status == 2
+    assert "no two columns of 20 samples or more" in said
+    assert said.count("\n") == 1
+
+
+def test_one_of_several_records_of_a_file_is_simulated_by_its_name(run, tmp_path):
+    pytest.importorskip("h5py", reason="h5py is not installed")
+    shutil.copy(FILES / "pytables.h5", tmp_path)
+    run("init", "pytables.h5")
+    Path("model.yaml").write_text(
+        "name: m\ninput: {name: current, unit: A}\noutput: {name: stroke, unit: um}\n"
+        "chain: [{gain: {value: 2}}]\n"
+    )
+    status, _, said = run("simulate", "model.yaml", "pytables.h5", "--out", "y.csv")
+    assert status == 2
+    assert "holds pytables-fast, pytables-slow" in said
+    assert run("load", "dataset.yaml", "pytables-slow", "--out", "r.npz")[0] == 0
+    assert run("simulate", "model.yaml", "r.npz", "--out", "y.csv")[0] == 0
+    table = np.loadtxt("y.csv", delimiter=",", skiprows=1)
+    np.testing.assert_allclose(table[:, 3], 2 * table[:, 1], rtol=1e-9)
