@@ -377,7 +377,9 @@ def test_what_has_diverged_does_not_go_on(case, signals):
 @pytest.mark.parametrize("order", [100, 4095])
 def test_high_orders_run(order, signals):
     x, d = signals
-    for case in CASES[:-2]:
+    for case in CASES:
+        if case[0] == "volterra" and order > 100:
+            continue  # seventeen million weights
         adaptive = make(case, order, 0.1, normalized=True)
         result = adaptive.run(x[:50], d[:50])
         # The first prediction is zero; what is learned makes later errors less.

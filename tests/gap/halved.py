@@ -5,11 +5,6 @@ from dataclasses import replace
 
 def first_halves(case):
     """Give the fit records of a case, the first half of each, with their periods."""
-    return first_parts(case, 2)
-
-
-def first_parts(case, parts):
-    """Give the fit records of a case, the first of so many parts of each."""
     return tuple(
         replace(
             item,

@@ -18,6 +18,7 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.input_delay import InputDelay
@@ -277,8 +278,9 @@ def fitted(
     if len(shifts) > COARSE:
         shifts = np.unique(np.linspace(-longest, longest, COARSE).round().astype(int))
         shifts = np.unique([*shifts, *range(-NEAREST, NEAREST + 1)])
-    squares = np.array([at(float(shift))[0] for shift in shifts])
+    squares = _squares(simulated, y, shifts, kinds)
     alike = squares <= squares.min() * np.exp(TIE / RECORD_WEIGHT)
+    alike |= squares <= ROUNDING * np.mean(y**2)
     place = int(np.flatnonzero(alike)[np.argmin(np.abs(shifts[alike]))])
     low, high = shifts[max(place - 1, 0)], shifts[min(place + 1, len(shifts) - 1)]
     from scipy.optimize import minimize_scalar  # late: it takes long to load
@@ -296,6 +298,8 @@ def fitted(
 
 COARSE, NEAREST = 401, 40
 """Delays that are tried first, and samples within which every one is."""
+ROUNDING = 1e-12
+"""Of the output's power: what is below comes from the sums of :func:`_squares`."""
 
 
 def late(signal: FloatArray, samples: float) -> FloatArray:
@@ -307,6 +311,29 @@ def late(signal: FloatArray, samples: float) -> FloatArray:
     from scipy.ndimage import shift  # late: it takes long to load
 
     return np.asarray(shift(signal, samples, order=3, mode="nearest"))
+
+
+def _squares(
+    signal: FloatArray, y: FloatArray, shifts: NDArray[np.intp], kinds: Sequence[str]
+) -> FloatArray:
+    """Mean squares that whole delays leave, each with its best gain and offset.
+
+    By sums over what each delay lays beside ``y``, for all delays at once.
+    """
+    count, reach = len(y), int(np.abs(shifts).max())
+    if "offset" in kinds:
+        signal, y = signal - signal.mean(), y - y.mean()
+    rested = np.pad(signal, reach, mode="edge")
+    at = reach - shifts
+    products = np.correlate(rested, y, "valid")[at]
+    powers = np.correlate(rested**2, np.ones(count), "valid")[at]
+    if "offset" in kinds:
+        powers = powers - np.correlate(rested, np.ones(count), "valid")[at] ** 2 / count
+    gain = np.ones(len(shifts))
+    if "gain" in kinds:
+        np.divide(products, powers, out=gain, where=(powers > 0) & (products > 0))
+    squares = y @ y - 2 * gain * products + gain**2 * powers
+    return np.asarray(np.maximum(squares, 0) / count)
 
 
 def _scaled(x: FloatArray, y: FloatArray, kinds: Sequence[str]) -> tuple[float, float]:
