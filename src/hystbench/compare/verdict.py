@@ -216,12 +216,13 @@ def _first_of_held_out(summary: Mapping[str, Any]) -> list[tuple[str, str, str]]
     near = round(part["within_factor_2"] * cells)
     lines = [
         (
-            "Errors of the paper that no fit has read: ours within a factor of 2",
+            "Filter errors (MSE) on signals that no fit has read: within a factor "
+            "of 2 of the paper's",
             f"{near} of {cells}",
             page,
         ),
         (
-            "Pairs of filters under these signals that stand in the paper's order",
+            "Pairs of filters on these signals in the paper's order",
             f"{order['agree']} of {order['compared']}",
             page,
         ),
@@ -230,7 +231,7 @@ def _first_of_held_out(summary: Mapping[str, Any]) -> list[tuple[str, str, str]]
     stand = sum(each["verdict"] == "reproduced" for each in claims)
     lines.append(
         (
-            "Results of the paper that hold under these signals and all together",
+            "Results of the paper that hold on these and on all signals",
             f"{stand} of {len(claims)}",
             page,
         )
@@ -254,8 +255,8 @@ def _first_of_findings(summary: Mapping[str, Any]) -> list[tuple[str, str, str]]
     if found:
         lines.append(
             (
-                "Convergence factors inside the bound of Eq. 19 keep a filter stable",
-                f"fails in {found['inside']} of {found['edges']} cases",
+                "The bound of Eq. 19 on the convergence factor keeps a filter stable",
+                f"no: {found['inside']} of {found['edges']} filters and signals fail",
                 "[Eq. 19](docs/reproduction.md#eq-19)",
             )
         )
