@@ -2,12 +2,15 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
+from hystbench.blocks import registry
 from hystbench.gap import remembered as module
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import load_evidence
+from hystbench.gap.kept import remembered_of
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.remembered import Remembered, remembered, remembering
 from hystbench.gap.start import start_state
@@ -120,3 +123,29 @@ def test_where_nothing_can_be_written_it_is_said_once(tmp_path):
     assert [one(store, "a", 1), one(store, "b", 2)] == [1, 2]
     (line,) = said
     assert "results are not kept" in line
+
+
+SIMULATORS = {
+    "external": {"function": "rig:run"},
+    "command": {"command": "./rig"},
+    "fmu": {"file": "rig.fmu"},
+    "onnx": {"file": "rig.onnx"},
+}
+
+
+@pytest.mark.parametrize("kind", SIMULATORS)
+def test_what_a_strangers_simulator_gives_is_never_looked_up(kind, tmp_path):
+    """Its file may hold something else the next time; its name is all that is known."""
+    block = registry()[kind].from_mapping(SIMULATORS[kind])
+    store, made = Remembered(tmp_path, silent), []
+    with remembering(store):
+        for n in range(2):
+            given = remembered_of(
+                SimpleNamespace(chain=(block,)),
+                lambda: ["word"],
+                lambda n=n: made.append(n) or n,
+                str,
+                int,
+            )
+            assert given == n
+    assert made == [0, 1]

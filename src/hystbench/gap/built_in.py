@@ -126,12 +126,19 @@ def _with(state: State, score: Score, name: str) -> State:
         )
         raise InputError(f"--with {name}: {why}")
     trials = [work.fine(attempt, trial) for attempt, trial in blocks]
-    return _added(state, min(trials, key=lambda trial: trial.score), score)
+    refused = None
+    for trial in sorted(trials, key=lambda trial: trial.score):
+        try:
+            return _added(state, trial, score)
+        except InputError as error:
+            refused = refused or error  # of the form that scores best
+    raise InputError(f"--with {name}: {refused}")
 
 
 def _added(state: State, trial: Trial, score: Score) -> State:
+    """Add an effect as a trial found it, refitted where the block accepts that."""
+    as_found = with_effect(state, trial.variant, trial.values)
     try:
         return work.added(state, trial, score)[0]
     except InputError:
-        # A refit may leave what a block accepts; the trial itself has not.
-        return with_effect(state, trial.variant, trial.values)
+        return as_found

@@ -17,7 +17,7 @@ import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.blocks.external import External
+from hystbench.blocks.simulator import Simulator
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
 from hystbench.gap.remembered import Result, records_digest, remembered
@@ -101,14 +101,14 @@ def remembered_of(
     Parameters
     ----------
     state : State
-        One with a function of somebody's own is always computed: what it is made of is
+        One with a simulator of somebody's own is always computed: what it is made of is
         not known. Its outputs are kept elsewhere.
     more : callable
         Gives what the result depends on beside it: words and digests.
     compute, write, read : callable
         As for :meth:`hystbench.gap.remembered.Remembered.result`.
     """
-    if any(isinstance(block, External) for block in state.chain):
+    if any(isinstance(block, Simulator) for block in state.chain):
         return compute()
     return remembered(lambda: [*more(), *state_key(state)], compute, write, read)
 

@@ -62,8 +62,7 @@ class Remembered:
         self._usable = True
         self._older: dict[Path, int] = {}
         try:
-            there = sorted((x.stat().st_mtime, x) for x in folder.glob("*.json"))
-            self._older = {file: file.stat().st_size for _, file in there}
+            self._older = _oldest_first(folder)
         except OSError as error:
             self._give_up(error)
         self._size = sum(self._older.values())
@@ -119,7 +118,7 @@ class Remembered:
             return
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(dir=self.folder)
+            handle, name = tempfile.mkstemp(suffix=".json", dir=self.folder)
             try:
                 with os.fdopen(handle, "w", encoding="utf-8") as stream:
                     stream.write(text)
@@ -134,6 +133,16 @@ class Remembered:
     def _give_up(self, error: OSError) -> None:
         self._usable = False
         self.say(f"{self.folder}: {error.strerror}; results are not kept")
+
+
+def _oldest_first(folder: Path) -> dict[Path, int]:
+    """Give the size of every result; one that another run removes is passed over."""
+    found = []
+    for file in folder.glob("*.json"):
+        with suppress(FileNotFoundError):
+            about = file.stat()
+            found.append((about.st_mtime, file, about.st_size))
+    return {file: size for _, file, size in sorted(found)}
 
 
 _current: ContextVar[Remembered | None] = ContextVar("remembered", default=None)
