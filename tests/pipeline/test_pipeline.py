@@ -374,5 +374,5 @@ def test_a_bad_row_of_a_dataset_is_one_line(workflow, write_dataset):
     assert result.returncode != 0
     told = [line for line in result.stderr.splitlines() if "hystbench:" in line]
     assert len(told) == 1
-    assert "slow.csv: row 51: column 'current_A' is 'empty'" in told[0]
+    assert "slow.csv: row 51: column 'current_A' is 'nan' or empty" in told[0]
     assert not (workflow.folder / "results" / "datasets").exists()

@@ -28,7 +28,6 @@ def test_no_job_waits_for_a_limit_on_submissions(workflow):
 
 def test_the_cluster_profile_names_rules_and_groups_that_exist(workflow):
     config = yaml.safe_load((ROOT / "config.yaml").read_text())
-    config["gap"]["jobs"] = "effects"
     workflow.configure(config)
     listed = workflow.snakemake("--list-rules")
     assert listed.returncode == 0, listed.stderr

@@ -93,11 +93,6 @@ def keep_others_files(dag):
     """
     waiting = list(dag.needrun_jobs())
     outputs = {str(file) for job in waiting for file in job.output}
-    # Jobs of later rounds are not known yet.
-    for job in waiting:
-        if job.rule.name == "gap_choose":
-            rounds = Path(str(job.output[0])).parent.glob("round-*")
-            outputs |= {str(path) for path in rounds}
     made = {str(file) for job in dag.jobs for file in job.output}
     inputs = {str(file) for job in waiting for file in job.input} - made
     logs = {}

@@ -94,6 +94,7 @@ def gap(
         evidence=evidence,
     )
     found.save(out, report)
+    say(f"{found.verdict}: {found.content['reason']}")  # once all is written
     if write_experiment is not None:
         finding = found.closed.finding
         click.echo(write_wanted(finding, evidence.input, write_experiment))

@@ -177,7 +177,6 @@ def closed_gap(
         assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
         content = with_built_in(content, built_in, alone)
     shown = replace(shown, content=content)
-    say(f"{content['verdict']}: {content['reason']}")
     return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
 
 
