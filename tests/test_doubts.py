@@ -210,3 +210,22 @@ def test_both_letters_mu_are_one_unit_with_one_spelling(tmp_path, unit):
     evidence = load_evidence(folder)
     assert (evidence.output.name, evidence.output.unit) == ("displacement", "um")
     assert evidence.warnings == ()
+
+
+def test_a_copy_inside_one_file_is_told_by_the_rows_of_the_file(tmp_path):
+    u = np.tile(RNG.standard_normal(400), 3)
+    write_folder(tmp_path, [fit(), fit("run", u, 5 * u)])
+    path = tmp_path / "dataset.yaml"
+    about = yaml.safe_load(path.read_text())
+    entry = next(each for each in about["records"] if each["file"] == "run.csv")
+    about["records"].remove(entry)
+    for name, rows_, use in (
+        ("a-1", [1, 400], "fit"),
+        ("a-2", [801, 1200], "hold-out"),
+    ):
+        about["records"].append({**entry, "name": name, "rows": rows_, "use": use})
+    path.write_text(yaml.safe_dump(about))
+    said = message(lambda: load_evidence(tmp_path))
+    # The header is row 1.
+    assert "400 of 400 samples, from row 802 on, equal those of run.csv" in said
+    assert "from row 2 on" in said

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -31,7 +32,7 @@ SMALLEST = 1e-30
 UNLIKE = 0.2
 
 #: Names of records: they name results, and braces are Snakemake's own.
-_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
+RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
 
 _CHANNEL = {
     "type": "object",
@@ -145,7 +146,7 @@ class Dataset:
     def record_files(self) -> dict[str, Path]:
         """File of each record, by the record's name: the one given, or the stem."""
         return {
-            _record_name(entry): self.path.parent / entry["file"]
+            _record_name(entry): _file_of(self.path, entry)
             for entry in self.about["records"]
         }
 
@@ -277,6 +278,24 @@ def load_dataset(path: str | Path) -> Dataset:
         beside = file.parent / "dataset.yaml"
         hint = f"; did you mean {str(beside)!r}?" if beside.is_file() else ""
         raise InputError(f"{file}: expected a dataset.yaml or its folder{hint}")
+    return dataset_of(file, about)
+
+
+def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
+    """Check what a dataset.yaml says, read or about to be written.
+
+    Parameters
+    ----------
+    file : Path
+        The dataset.yaml; it need not be there yet.
+    about : dict
+        Its content.
+
+    Raises
+    ------
+    InputError
+        If a key or a record's file is missing or wrong.
+    """
     check_against_schema(about, SCHEMA, str(file))
     dataset = Dataset(file, about["name"], about)
     files = dataset.record_files
@@ -338,13 +357,21 @@ def _record_name(entry: Mapping[str, Any]) -> str:
     return str(entry.get("name", Path(entry["file"]).stem))
 
 
+def _file_of(about: Path, entry: Mapping[str, Any]) -> Path:
+    """Give the file of a record, also from a folder that is not there yet."""
+    name: str = entry["file"]
+    if about.parent.is_dir():
+        return about.parent / name
+    return Path(os.path.normpath(about.parent.resolve() / name))
+
+
 def _check_files(about: Path, entries: Sequence[Mapping[str, Any]]) -> None:
     """Refuse a record whose file is none, and two records of one name."""
     seen: dict[str, str] = {}
     for entry in entries:
         name, record = entry["file"], _record_name(entry)
-        place, file = f"{about}: records", about.parent / name
-        if not _NAME.fullmatch(record):
+        place, file = f"{about}: records", _file_of(about, entry)
+        if not RECORD_NAME.fullmatch(record):
             raise InputError(
                 f"{place}: {short(record if 'name' in entry else name)} names results "
                 "as well; expected a name that begins with a letter or digit and has "

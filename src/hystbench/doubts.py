@@ -91,11 +91,14 @@ def _copy(dataset: Dataset, one: Record, two: Record, piece: Piece) -> str:
 
 def _said(dataset: Dataset, one: Record, two: Record, piece: Piece) -> str:
     files = dataset.record_files
+    # One row is the header; a record of some 'rows' begins further down.
+    begins = [dataset.entry(item.name).get("rows", (1,))[0] for item in (one, two)]
+    row, other_row = piece.first + begins[0] + 1, piece.other_first + begins[1] + 1
     where = (
         f"equals {files[two.name].name}"
-        if piece.samples == len(one) == len(two)
-        else f"{piece.samples} of {len(one)} samples, from row {piece.first + 2} on, "
-        f"equal those of {files[two.name].name} from row {piece.other_first + 2} on"
+        if piece.samples == len(one) == len(two) and files[one.name] != files[two.name]
+        else f"{piece.samples} of {len(one)} samples, from row {row} on, "
+        f"equal those of {files[two.name].name} from row {other_row} on"
     )
     return f"{files[one.name]}: {where}{'' if piece.exact else ' up to rounding'}"
 

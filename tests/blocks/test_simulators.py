@@ -3,6 +3,7 @@
 import shutil
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hystbench.blocks.calls import Calls, counted
 from hystbench.blocks.command import Command
 from hystbench.blocks.fmu import Fmu
 from hystbench.blocks.kept_outputs import KeptOutputs
-from hystbench.blocks.onnx import Onnx
+from hystbench.blocks.onnx import Onnx, _shaped
 from tests.blocks.simulators import FILES, RNN, compiled, needs, unit
 from tests.messages import message
 
@@ -148,6 +149,21 @@ def test_a_graph_of_64_bits():
     needs("onnxruntime")
     y = Onnx(file=str(FILES / "polynomial.onnx")).simulate(U, U, DT)
     np.testing.assert_allclose(y, 2 * U + 0.25 * U**2, rtol=1e-14, atol=1e-16)
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"),
+    [
+        (["batch", 400, 1], (1, 400, 1)),
+        ([None, 400], (1, 400)),
+        (["batch", "time", 1], (1, 400, 1)),
+        ([1, 400], (1, 400)),
+    ],
+)
+def test_the_axis_of_time(shape, expected):
+    item = SimpleNamespace(name="u", shape=shape, type="tensor(double)")
+    found = _shaped("label", item, np.arange(400.0))
+    assert found.shape == expected
 
 
 def test_a_bad_graph_is_one_line(tmp_path):

@@ -250,3 +250,108 @@ def test_one_of_several_records_of_a_file_is_simulated_by_its_name(run, tmp_path
     assert run("simulate", "model.yaml", "r.npz", "--out", "y.csv")[0] == 0
     table = np.loadtxt("y.csv", delimiter=",", skiprows=1)
     np.testing.assert_allclose(table[:, 3], 2 * table[:, 1], rtol=1e-9)
+
+
+def lone(folder, name="run.csv", stamps=None, noise=0.01, missing=()):
+    """Write one sine; rows of ``missing`` samples have no output."""
+    u = sine(20)[:1200]
+    y = loop(u) + noise * np.random.default_rng(1).standard_normal(len(u))
+    times = stamps or [f"{DT * k:.3f}" for k in range(len(u))]
+    cells = ["" if k in missing else f"{x:.9g}" for k, x in enumerate(y)]
+    rows = [f"{t},{v:.9g},{x}" for t, v, x in zip(times, u, cells, strict=True)]
+    (folder / name).write_text("\n".join([HEADER, *rows]) + "\n")
+    return folder / name
+
+
+def names():
+    """Names of the records of what was written, read as every command reads it."""
+    return list(load_dataset(".").record_files)
+
+
+def test_pieces_of_a_file_are_not_called_like_another_file(run, tmp_path):
+    files = [lone(tmp_path, missing=(500,)), *records(tmp_path)[:1]]
+    files[1] = files[1].rename(tmp_path / "run-1.csv")
+    assert run("init", *files, "--missing", "split")[0] == 0
+    assert names() == ["run-2", "run-3", "run-1"]
+
+
+@pytest.mark.parametrize("told", ["nan", "inf", "0", "-5", "1e-320"])
+def test_a_sampling_frequency_is_finite_and_above_0(run, tmp_path, monkeypatch, told):
+    file = lone(tmp_path)
+    rows = [line.partition(",")[2] for line in file.read_text().splitlines()]
+    file.write_text("\n".join(rows) + "\n")
+    status, _, said = run("init", file, f"--sampling-frequency={told}")
+    assert (status, said.count("\n")) == (2, 1)
+    assert "--sampling-frequency" in said
+    assert "expected a finite number of Hz above 0" in said
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("click.prompt", lambda *_, **__: told)
+    status, _, said = run("init", file)
+    assert (status, said.count("\n")) == (2, 1)
+    assert "expected a finite number of Hz above 0" in said
+
+
+def test_a_name_that_no_command_takes_is_not_written(run, tmp_path):
+    status, _, said = run("init", *records(tmp_path), "--name", "bad/name")
+    assert (status, said.count("\n")) == (2, 1)
+    assert "name: 'bad/name'" in said
+    assert not Path("dataset.yaml").exists()
+
+
+def test_a_file_whose_name_is_no_name_of_a_record(run, tmp_path):
+    assert run("init", lone(tmp_path, "r{1}.csv"))[0] == 0
+    assert names() == ["r-1-1", "r-1-2"]
+
+
+def test_a_folder_that_is_not_there_yet(run, tmp_path):
+    lone(tmp_path)
+    assert run("init", "run.csv", "--out", "new/folder/dataset.yaml")[0] == 0
+    dataset = load_dataset("new/folder")
+    assert {each["file"] for each in dataset.about["records"]} == {"../../run.csv"}
+    assert len(dataset.read("run-1")) == 800
+
+
+def test_a_folder_that_is_a_link(run, tmp_path):
+    lone(tmp_path)
+    Path("deep/real").mkdir(parents=True)
+    Path("link").symlink_to("deep/real")
+    assert run("init", "run.csv", "--out", "link/dataset.yaml")[0] == 0
+    assert len(load_dataset("link").read("run-1")) == 800
+
+
+def test_a_lone_record_of_equal_periods_has_nothing_to_hold_out(run, tmp_path):
+    status, out, said = run("init", lone(tmp_path, noise=0))
+    assert status == 0
+    assert "hystbench gap" not in out  # it would refuse
+    warned = [line for line in said.splitlines() if "nothing is held out" in line]
+    assert len(warned) == 1
+    assert "add a record of another input" in warned[0]
+    assert names() == ["run"]
+    assert load_dataset(".").use("run") == "fit"
+    assert run("check", "dataset.yaml")[0] == 0
+
+
+def test_a_lone_record_is_cut_beside_missing_samples(run, tmp_path):
+    file = lone(tmp_path, missing=range(795, 805))
+    status, _, said = run("init", file, "--missing", "interpolate")
+    assert (status, said) == (0, "")
+    first, second = written()["records"]
+    assert (first["rows"], second["rows"]) == ([1, 795], [806, 1200])
+    assert [len(load_dataset(".").read(name)) for name in names()] == [795, 395]
+
+
+def test_dates_and_times_are_seconds_from_the_first(run, tmp_path):
+    stamps = [
+        f"2024-02-28 23:59:{59 + k // 1000:02d}.{k % 1000:03d}"
+        if k < 1000
+        else f"2024-02-29 00:00:00.{k - 1000:03d}"
+        for k in range(1200)
+    ]
+    file = lone(tmp_path, stamps=stamps)
+    file.write_text(file.read_text().replace(HEADER, "Timestamp,current_A,stroke_um"))
+    assert run("init", file)[0] == 0
+    assert written()["time"] == {"column": "Timestamp", "unit": "s"}
+    record = load_dataset(".").read("run-1")
+    assert record.dt == pytest.approx(DT, rel=1e-9)
+    assert len(record) == 800

@@ -258,3 +258,55 @@ def test_a_missing_library_is_told_with_what_to_install(monkeypatch):
 def test_the_beginning_of_a_file_tells_its_format(tmp_path, name, content, kind):
     (tmp_path / name).write_bytes(content)
     assert format_of(tmp_path / name) == kind
+
+
+def test_a_row_of_units_may_end_with_an_empty_cell(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("t,u,n\ns,V,\n0,1,2\n1,2,3\n2,3,4\n")
+    assert [c.unit for c in read_table(file).columns] == ["s", "V", None]
+
+
+@pytest.mark.parametrize(
+    "form",
+    ["2024-01-01T10:00:0{}.5Z", "2024-01-01 10:00:0{},5", "2024-01-01 10:0{}+01:00"],
+)
+def test_dates_and_times_in_a_text(tmp_path, form):
+    file = tmp_path / "a.csv"
+    cells = [form.format(k) for k in range(4)]
+    cells[2] = ""
+    file.write_text("when;u;y\n" + "".join(f"{c};1;2\n" for c in cells))
+    step = 60 if "+" in form else 1
+    for wanted in (None, ["when", "u"]):
+        column = read_table(file, wanted).column("when")
+        assert column.unit == "s"
+        np.testing.assert_allclose(column.values, [0, step, np.nan, 3 * step])
+
+
+def test_a_date_that_is_none_is_one_line(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("t,u,y\n" + "2024-02-31 10:00:00,1,2\n" * 3)
+    said = message(lambda: read_table(file, ["t", "u"]))
+    assert "row 2: column 't' is '2024-02-31 10:00:00'" in said
+
+
+@needs_h5py
+def test_a_cell_array_that_holds_itself_is_read_once(tmp_path, monkeypatch):
+    import h5py
+
+    from hystbench.formats import matlab
+
+    file = tmp_path / "a.mat"
+    with h5py.File(file, "w", userblock_size=512) as content:
+        content["#refs#/u"] = U
+        content["c"] = np.empty((4, 1), dtype=h5py.ref_dtype)
+        own = content["c"].ref
+        content["c"][:, 0] = [own, own, own, content["#refs#/u"].ref]
+    calls = []
+    inside = matlab._inside_73
+    monkeypatch.setattr(
+        matlab, "_inside_73", lambda *given: calls.append(given) or inside(*given)
+    )
+    table = read_table(file)
+    np.testing.assert_array_equal(table.column("c(4)").values, U)
+    assert len(table.columns) == 1
+    assert len(calls) == 5  # the cell array and its four references

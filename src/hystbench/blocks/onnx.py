@@ -38,6 +38,7 @@ class Onnx(Simulator):
     Its first input takes all n samples at once: one axis is free and is time, the
     others have length one, such as ``(time,)``, ``(1, time)`` or ``(batch, time, 1)``.
     Of several free axes those called batch are one, and the last of the rest is time.
+    An axis of the fixed length n is time before any free one.
     A second input, if there is one, is the sampling interval in seconds. The first
     output holds n numbers in any shape. Numbers may be of 16, 32 or 64 bits.
 
@@ -114,7 +115,7 @@ def _shaped(label: str, item: Any, z: FloatArray) -> np.ndarray:
     free = [k for k, length in enumerate(item.shape) if not isinstance(length, int)]
     time = [k for k in free if str(item.shape[k]).lower() not in BATCH] or free
     fixed = [length for length in item.shape if isinstance(length, int)]
-    if not free and len(z) in fixed:
+    if len(z) in fixed:
         time = [item.shape.index(len(z))]
         fixed.remove(len(z))
     if not time or any(length != 1 for length in fixed):

@@ -28,7 +28,7 @@ PLACE = "dataset.yaml"
 @click.option("--time-unit", help="Its unit; seconds where the file tells none.")
 @click.option(
     "--sampling-frequency",
-    type=click.FloatRange(min=0, min_open=True),
+    type=float,
     help="In Hz, where no column is time.",
 )
 @click.option("--hold-out", multiple=True, help="Name of a record to hold out.")
@@ -134,6 +134,7 @@ def _said(place: Path, found: Draft) -> list[str]:
     lines += [
         "Next:",
         f"  hystbench check {place} --out {folder / 'check.html'}",
-        f"  hystbench gap {place} --model {base} --out {folder / 'gap'}",
     ]
+    if any(record.use == "hold-out" for record in found.records):  # gap wants one
+        lines.append(f"  hystbench gap {place} --model {base} --out {folder / 'gap'}")
     return lines

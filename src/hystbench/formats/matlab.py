@@ -86,16 +86,23 @@ def _elements(array: np.ndarray, name: str) -> Iterator[tuple[Any, str]]:
 def _version_73(path: Path) -> Iterator[tuple[str, Any]]:
     h5py = library("h5py", "h5py", path, "formats")
     with told(path, "MATLAB file"), h5py.File(path, "r") as content:
+        seen: set[int] = set()
         for name in content:
             if not name.startswith("#"):  # where MATLAB keeps what is referred to
-                yield from _inside_73(h5py, content, name, content[name], 0)
+                yield from _inside_73(h5py, content, name, content[name], 0, seen)
 
 
 def _inside_73(
-    h5py: Any, content: Any, name: str, item: Any, depth: int
+    h5py: Any, content: Any, name: str, item: Any, depth: int, seen: set[int]
 ) -> Iterator[tuple[str, Any]]:
+    """Give the arrays in a variable; each struct and cell array is entered once."""
     if depth > DEEPEST:
         return
+    if isinstance(item, h5py.Group) or _refers(h5py, item):
+        address = h5py.h5o.get_info(item.id).addr
+        if address in seen:
+            return  # it refers to itself, by way of others perhaps
+        seen.add(address)
     if "MATLAB_object_decode" in item.attrs:
         yield name, None
         return
@@ -115,10 +122,12 @@ def _inside_73(
                     where = name if len(references) == 1 else f"{name}({k})"
                     target = content[reference]
                     yield from _inside_73(
-                        h5py, content, f"{where}/{key}", target, depth + 1
+                        h5py, content, f"{where}/{key}", target, depth + 1, seen
                     )
             else:
-                yield from _inside_73(h5py, content, f"{name}/{key}", part, depth + 1)
+                yield from _inside_73(
+                    h5py, content, f"{name}/{key}", part, depth + 1, seen
+                )
         return
     if item.attrs.get("MATLAB_empty") or item.shape is None or 0 in item.shape:
         return
@@ -126,7 +135,8 @@ def _inside_73(
         references = item[()].ravel()
         for k, reference in enumerate(references, start=1):
             where = name if len(references) == 1 else f"{name}({k})"
-            yield from _inside_73(h5py, content, where, content[reference], depth + 1)
+            target = content[reference]
+            yield from _inside_73(h5py, content, where, target, depth + 1, seen)
         return
     kind = item.attrs.get("MATLAB_class", b"")
     if kind in (b"char", "char"):

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.formats.table import Column, FloatArray, Table
+from hystbench.formats.table import Column, FloatArray, Table, as_numbers
 from hystbench.text_files import decoded
 
 COMMENTS = ("#", "%", "//", "!", '"#')
@@ -35,6 +35,9 @@ NO_NUMBER = frozenset({"", "nan", "-nan", "na", "n/a", "null", "none", "#n/a", "
 """What stands in a cell that has no number, in small letters."""
 NAMES = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces", ",": "commas"}
 
+_STAMP = re.compile(
+    r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d([.,]\d+)?)?\s?(Z|[+-]\d\d:?\d\d)?"
+)
 _UNIT_CELL = re.compile(r"\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\))\s*")
 
 
@@ -93,13 +96,18 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
         for k, name in enumerate(layout.names)
         if (wanted is None and name) or (wanted is not None and name in wanted)
     ]
-    values = _numbers(path, lines, rows, layout, columns, strict=wanted is not None)
+    values, stamps = _numbers(
+        path, lines, rows, layout, columns, strict=wanted is not None
+    )
     found = []
     for k, column in zip(columns, values, strict=True):
         if column is None:
             notes.append(f"{layout.names[k]}: no numbers; left out")
             continue
         unit = layout.units[k] if layout.units else None
+        if k in stamps:
+            unit = "s"
+            notes.append(f"{layout.names[k]}: dates and times; seconds from the first")
         found.append(Column(layout.names[k], column, unit or None))
     if layout.separator != "," or layout.decimal != ".":
         comma = ", decimal commas" if layout.decimal == "," else ""
@@ -182,7 +190,10 @@ def _header(
     if not rows:
         return tuple(f"column {k}" for k in range(1, width + 1)), None
     if len(rows) == 2 and _are_units(rows[0]):
-        return tuple(rows[1]), tuple(_unit(cell) for cell in rows[0])
+        units = [_unit(cell) for cell in rows[0]]
+        # Empty cells at the end of the row of units were taken off.
+        units += [""] * (len(rows[1]) - len(units))
+        return tuple(rows[1]), tuple(units)
     return tuple(rows[0]), None
 
 
@@ -270,10 +281,13 @@ def _numbers(
     columns: Sequence[int],
     *,
     strict: bool,
-) -> list[FloatArray | None]:
-    """Read columns; None for one that holds no numbers, unless that is an error."""
+) -> tuple[list[FloatArray | None], set[int]]:
+    """Read columns, and tell which hold dates and times.
+
+    A column that holds no numbers is None, unless that is an error.
+    """
     if not columns:
-        return []
+        return [], set()
     separator, decimal = layout.separator, layout.decimal
     texts = [lines[k] for k in rows]
     if not any('"' in line for line in texts):
@@ -287,12 +301,20 @@ def _numbers(
                 ndmin=2,
             )
             if not (strict and np.isinf(table).any()):
-                return [np.ascontiguousarray(part) for part in table.T]
+                return [np.ascontiguousarray(part) for part in table.T], set()
         except ValueError:
             pass  # a cell is empty or no number
     cut = [_cells(line, separator) for line in texts]
     found: list[FloatArray | None] = []
+    stamps = set()
     for column in columns:
+        times = _since_first(
+            [cells[column].strip() if column < len(cells) else "" for cells in cut]
+        )
+        if times is not None:
+            found.append(times)
+            stamps.add(column)
+            continue
         values, bad, spoilt = np.full(len(rows), np.nan), ("", ""), 0
         for k, cells in enumerate(cut):
             cell = cells[column].strip() if column < len(cells) else ""
@@ -317,7 +339,24 @@ def _numbers(
                 "expected a finite number"
             )
         found.append(None if words else values)
-    return found
+    return found, stamps
+
+
+def _since_first(cells: Sequence[str]) -> FloatArray | None:
+    """Give dates and times of ISO 8601 as seconds from the first; None of others."""
+    said = ["" if cell.lower() in NO_NUMBER else cell for cell in cells]
+    there = [cell for cell in said if cell]
+    if not there or not all(map(_STAMP.fullmatch, there)):
+        return None
+    import pandas as pd  # late: a third of a second
+
+    try:
+        times = pd.to_datetime(
+            [cell.replace(",", ".") for cell in said], format="ISO8601", utc=True
+        )
+    except ValueError:
+        return None  # no day or hour of that number
+    return as_numbers(times.tz_localize(None).to_numpy())
 
 
 def _no_numbers(lines: Sequence[str], wanted: Collection[str] | None) -> str:

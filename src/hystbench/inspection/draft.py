@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from hystbench.dataset import UNIFORM_TOLERANCE, Dataset
+from hystbench.copies import common_piece
+from hystbench.dataset import RECORD_NAME, UNIFORM_TOLERANCE, Dataset, dataset_of
 from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table, read_table
@@ -150,6 +154,8 @@ def draft(files: Sequence[Path], place: Path, given: Given, ask: Ask) -> Draft:
         If a file cannot be read, no column can be time, input or output, or a record
         cannot be used.
     """
+    if given.sampling_frequency_hz is not None:
+        _checked_frequency(given.sampling_frequency_hz)
     notes: list[str] = []
     parts: list[Part] = []
     for file in files:
@@ -173,15 +179,33 @@ def draft(files: Sequence[Path], place: Path, given: Given, ask: Ask) -> Draft:
     notes += signals.notes
     about, entries = _content(used, signals, given, place, ask, notes)
     records = _read(place, about, entries)
-    entries = _roles(entries, records, given, notes)
-    if len(entries) != len(records):  # a lone record is cut in two
-        records = _read(place, about, entries)
+    warnings: list[str] = []
+    if len(entries) == 1 and not given.hold_out:
+        part = next(part for part in used if _is_of(entries[0], part, place))
+        cut = _cut(entries[0], records[0], _missing(part, signals))
+        pieces = _read(place, about, cut)
+        if common_piece(*pieces) is None:
+            entries, records = cut, pieces
+            notes.append(
+                "one record alone: its last part is held out, by whole periods where "
+                "it repeats; a record of another kind would prove more"
+            )
+        else:
+            entries = [{**entries[0], "use": "fit"}]
+            warnings.append(
+                f"{part.where}: the last part repeats what is before it to the last "
+                "digit, so nothing is held out; add a record of another input to the "
+                "files and run 'hystbench init' again"
+            )
+    else:
+        entries = _roles(entries, records, given, notes)
     for entry, record in zip(entries, records, strict=True):
         period = find_period(record.u)
         if period is not None:
             entry["period_samples"] = period
-        entry["sha256"] = _digest(place.parent / entry["file"])
-    dataset = Dataset(place, about["name"], {**about, "records": entries})
+    dataset = dataset_of(place, {**about, "records": entries})
+    for entry, file in zip(entries, dataset.record_files.values(), strict=True):
+        entry["sha256"] = _digest(file)
     records = [
         replace(
             record,
@@ -192,7 +216,11 @@ def draft(files: Sequence[Path], place: Path, given: Given, ask: Ask) -> Draft:
     ]
     inputs = {item.name: excitation_of(item.u, item.dt) for item in records}
     return Draft(
-        dataset, tuple(records), inputs, tuple(notes), doubts(dataset, records)
+        dataset,
+        tuple(records),
+        inputs,
+        tuple(notes),
+        (*warnings, *doubts(dataset, records)),
     )
 
 
@@ -200,7 +228,7 @@ def _read(
     place: Path, about: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]
 ) -> list[Record]:
     """Read and check all records."""
-    dataset = Dataset(place, about["name"], {**about, "records": entries})
+    dataset = dataset_of(place, {**about, "records": list(entries)})
     return [dataset.read(name) for name in dataset.record_files]
 
 
@@ -426,7 +454,7 @@ def _content(
     entries = []
     tolerance, rates = UNIFORM_TOLERANCE, []
     for part in parts:
-        file = Path(os.path.relpath(part.table.path, place.parent)).as_posix()
+        file = _from(place, part)
         entry: dict[str, Any] = {"file": file}
         if part.group:
             entry["group"] = part.group
@@ -478,8 +506,15 @@ def _content(
 
 
 def _is_of(entry: Mapping[str, Any], part: Part, place: Path) -> bool:
-    file = Path(os.path.relpath(part.table.path, place.parent)).as_posix()
-    return (entry["file"], entry.get("group", "")) == (file, part.group)
+    return (entry["file"], entry.get("group", "")) == (_from(place, part), part.group)
+
+
+def _from(place: Path, part: Part) -> str:
+    """Give the path of a part's file from where dataset.yaml is to stand."""
+    file = part.table.path
+    # Of folders that are links the real ones count: '..' leads out of those.
+    real = file.parent.resolve() / file.name
+    return Path(os.path.relpath(real, place.parent.resolve())).as_posix()
 
 
 def _frequency(
@@ -504,16 +539,25 @@ def _frequency(
         text = ask(
             "No column of time; sampling frequency in Hz", (), "--sampling-frequency"
         )
-        try:
-            about["sampling_frequency_hz"] = float(text)
-        except ValueError:
-            raise InputError(
-                f"--sampling-frequency: {text!r}; expected a number in Hz"
-            ) from None
+        about["sampling_frequency_hz"] = _checked_frequency(text)
         return
     frequencies = sorted({value for value in told if value})
     said = " and ".join(f"{value:g} Hz" for value in frequencies)
     notes.append(f"no column of time; the files tell a sampling frequency of {said}")
+
+
+def _checked_frequency(told: str | float) -> float:
+    """Give a sampling frequency in Hz that the user tells."""
+    try:
+        value = float(told)
+    except ValueError:
+        value = math.nan
+    # The interval is one over it, and has to be a finite number too.
+    if not (value > 0 and math.isfinite(value) and math.isfinite(1 / value)):
+        raise InputError(
+            f"--sampling-frequency: {told}; expected a finite number of Hz above 0"
+        )
+    return value
 
 
 @dataclass(frozen=True)
@@ -549,6 +593,16 @@ def _clock(part: Part, time: FloatArray) -> _Clock:
     )
 
 
+def _missing(part: Part, signals: _Signals) -> NDArray[np.bool_]:
+    """Tell of each sample whether time, input or output has no number."""
+    columns = [part.columns[signals.input], part.columns[signals.output]]
+    if signals.time is not None:
+        columns.append(part.columns[signals.time])
+    return np.asarray(
+        ~np.all([np.isfinite(column.values) for column in columns], axis=0)
+    )
+
+
 def _without_missing(
     part: Part,
     signals: _Signals,
@@ -558,10 +612,7 @@ def _without_missing(
     notes: list[str],
 ) -> list[dict[str, Any]]:
     """Give the entries of a part: one, or a piece each between missing samples."""
-    columns = [part.columns[signals.input], part.columns[signals.output]]
-    if signals.time is not None:
-        columns.append(part.columns[signals.time])
-    bad = ~np.all([np.isfinite(column.values) for column in columns], axis=0)
+    bad = _missing(part, signals)
     if not bad.any():
         return [entry]
     first = int(np.argmax(bad))
@@ -598,22 +649,28 @@ def _without_missing(
 
 
 def _give_names(entries: list[dict[str, Any]]) -> None:
-    """Name records that share a file or a stem by group and number."""
+    """Name records that share a file or a stem, or whose stem is no name.
+
+    They are called after file and group; where that is taken a number follows.
+    """
     stems = Counter(Path(entry["file"]).stem for entry in entries)
-    taken: Counter[str] = Counter()
+    taken, unnamed = set(), []
     for entry in entries:
         stem = Path(entry["file"]).stem
-        if stems[stem] == 1:
+        if stems[stem] == 1 and RECORD_NAME.fullmatch(stem):
+            taken.add(stem)
             continue
-        name = f"{stem}-{entry['group']}" if "group" in entry else stem
-        name = re.sub(r"[^\w.-]+", "-", name).strip("-.") or "record"
-        taken[name] += 1
-        entry["name"] = name
-    again: Counter[str] = Counter()
-    for entry in entries:
-        if taken[entry.get("name", "")] > 1:
-            again[entry["name"]] += 1
-            entry["name"] += f"-{again[entry['name']]}"
+        shared = stems[stem] > 1 and "group" in entry
+        name = f"{stem}-{entry['group']}" if shared else stem
+        entry["name"] = re.sub(r"[^\w.-]+", "-", name).strip("-.") or "record"
+        unnamed.append(entry)
+    wanted = Counter(entry["name"] for entry in unnamed)
+    again = [e for e in unnamed if wanted[e["name"]] > 1 or e["name"] in taken]
+    taken |= set(wanted)
+    for entry in again:
+        numbered = (f"{entry['name']}-{k}" for k in count(1))
+        entry["name"] = next(name for name in numbered if name not in taken)
+        taken.add(entry["name"])
 
 
 def _name_of(place: Path) -> str:
@@ -628,7 +685,7 @@ def _roles(
     given: Given,
     notes: list[str],
 ) -> list[dict[str, Any]]:
-    """Give the entries with their roles; a lone record is cut in two."""
+    """Give the entries of several records with their roles."""
     names = [record.name for record in records]
     if given.hold_out:
         for name in given.hold_out:
@@ -639,12 +696,6 @@ def _roles(
         held, why = given.hold_out, "the records held out are those asked for"
         if set(names) <= set(held):
             raise InputError("--hold-out: all records; expected at least one to fit")
-    elif len(records) == 1:
-        notes.append(
-            "one record alone: its last part is held out, by whole periods where it "
-            "repeats; a record of another kind would prove more"
-        )
-        return _cut(entries[0], records[0])
     else:
         held, why = propose(
             {record.name: excitation_of(record.u, record.dt) for record in records}
@@ -656,21 +707,28 @@ def _roles(
     ]
 
 
-def _cut(entry: dict[str, Any], record: Record) -> list[dict[str, Any]]:
-    """Cut a lone record: two thirds to fit, a third held out."""
+def _cut(
+    entry: dict[str, Any], record: Record, missing: NDArray[np.bool_]
+) -> list[dict[str, Any]]:
+    """Cut a lone record: two thirds to fit, a third held out.
+
+    Samples that are missing at the cut belong to neither.
+    """
     first, last = entry.get("rows", (1, len(record)))
-    count = last - first + 1
-    part = count - count // ONE_HELD_OUT
+    samples = last - first + 1
+    part = samples - samples // ONE_HELD_OUT
     period = find_period(record.u)
-    if period is not None and count >= 3 * period:
+    if period is not None and samples >= 3 * period:
         part = max(round(part / period), 2) * period
-        if count - part < period:
+        if samples - part < period:
             part -= period
     name = entry.get("name", Path(entry["file"]).stem)
+    there = np.flatnonzero(~missing) + 1
     at = first + part - 1
+    before, after = int(there[there <= at][-1]), int(there[there > at][0])
     return [
-        {**entry, "name": f"{name}-1", "rows": [first, at], "use": "fit"},
-        {**entry, "name": f"{name}-2", "rows": [at + 1, last], "use": "hold-out"},
+        {**entry, "name": f"{name}-1", "rows": [first, before], "use": "fit"},
+        {**entry, "name": f"{name}-2", "rows": [after, last], "use": "hold-out"},
     ]
 
 
