@@ -1,5 +1,6 @@
 """Simulators of somebody's own, each a real one of another program."""
 
+import shlex
 import shutil
 import sys
 from pathlib import Path
@@ -88,6 +89,11 @@ BAD = {
     "too few rows": ("echo 1", ["wrote 1 rows", "'1'", "expected 400"]),
     "words": ("sed s/[0-9].*/word/", ["expected y", "'word'"]),
     "no file": ("true {input} {output}", ["it wrote no file"]),
+    "no cells": (
+        f"{PYTHON} -c 'print(\",\\n\" * 400)'",
+        ["it wrote ',' as row 1", "expected y"],
+    ),
+    "no y": (f"{PYTHON} -c 'print(\"0.1,\\n\" * 400)'", ["'0.1,' as row 1"]),
     "no numbers": (f"{PYTHON} -c 'print(\"nan\\n\" * 400)'", ["nan at sample 0"]),
 }
 
@@ -97,6 +103,49 @@ def test_a_bad_program_is_one_line(command, words):
     said = message(lambda: Command(command=command).simulate(U, U, DT))
     for word in words:
         assert word in said
+
+
+def said_of(*rows, dt=DT):
+    code = f"print({chr(10).join(rows)!r})"
+    count = len(rows) - rows[0].startswith("t")
+    u = np.zeros(count)
+    return Command(command=shlex.join([PYTHON, "-c", code])).simulate(u, u, dt)
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ["0,397", "0,421"],
+        ["time", "0,397", "1"],
+        ["0;0,397", "0,001;0,421"],
+        ["0.0;0,397", "0.001;0,421"],
+        ["t;y", "0\t0,397", "0\t0,421"],
+        ["t,y", "0,0,0,397", "0,001,0,421"],
+        ["1,5e-3", "1,5e-3"],
+    ],
+)
+def test_a_decimal_comma_is_refused_in_one_line(rows):
+    said = message(lambda: said_of(*rows))
+    assert "as row 1, whose comma may be a decimal one" in said
+    assert "expected y with a decimal point, or a header such as time_s,u" in said
+    assert "\n" not in said
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        ["0,3", "0.001,5"],
+        ["0,3", "1e-3,5"],
+        ["time,y", "0,3", "7,5"],
+        ["t;y", "0,0;3", "0,001;5"],
+        ["0, 3", "1, 5"],
+        ["0 ,3", "1 ,5"],
+        ["0\t3", "1\t5"],
+        ["3", "5"],
+    ],
+)
+def test_a_comma_that_parts_cells_is_known_as_one(rows):
+    assert said_of(*rows).tolist() == [3, 5]
 
 
 def test_a_program_that_never_ends_is_ended():

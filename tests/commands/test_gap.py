@@ -29,6 +29,7 @@ def run(tmp_path, monkeypatch):
         closed=SimpleNamespace(finding=finding),
         effects=(),
         verdict="named",
+        content={"reason": "the gap is closed"},
         save=lambda out, report: None,
     )
 

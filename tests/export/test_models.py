@@ -1,16 +1,20 @@
 """The twin and models as `hystbench gap` writes them, exported to all three forms."""
 
+import ast
 import importlib.util
 import shutil
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
 from hystbench.blocks.step import Sampling
+from hystbench.export import c, python
 from hystbench.export.described import describe, identifier
 from hystbench.export.fmu import contents
 from hystbench.model import Model, load_model
@@ -209,12 +213,133 @@ def test_names_of_channels_that_clash_are_told_apart():
     [
         ("gma", "gma"),
         ("2 Loops!", "model_2_loops"),
-        ("for", "model_for"),
+        ("for", "for_model"),
+        ("math", "math_model"),
+        ("NumPy", "numpy_model"),
+        ("fmi3", "fmi3_model"),
+        ("stdint", "stdint_model"),
+        ("switch", "switch_model"),
+        ("aux", "aux_model"),
+        ("hb", "hb_model"),
         ("§", "model"),
     ],
 )
 def test_any_name_makes_an_identifier(name, wanted):
     assert identifier(name) == wanted
+
+
+#: Each would end a docstring, a comment or an attribute, or splice what follows.
+NASTY = [
+    """x\"\"\" + str(__import__('os').system('touch pwned')) + \"\"\"""",
+    "a */ int injected = 1; /* b",
+    "*//**/*/ int injected; /*/",
+    "a *?" + "?/",
+    "ends with \\",
+    "ends with " + "?" * 3 + "/",
+    'a <b a="1"> & \x01\u2028\n*/ int injected; \\N{dash} \\x',
+    "word " * 14 + "twelve more \\ and more */ to come",
+]
+
+
+def parsed(text):
+    return ElementTree.fromstring(text)  # noqa: S314 - our own
+
+
+def nasty(text):
+    mapping = load_model(PLANTS / "gma.yaml").to_mapping()
+    mapping["name"] = text
+    mapping["input"]["name"] = text
+    mapping["output"]["name"] = f"{text}."
+    return describe(Model.from_mapping(mapping, "here"), Sampling(DT))
+
+
+@pytest.mark.parametrize("text", NASTY)
+def test_no_name_gets_into_the_python_code(text, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    model = nasty(text)
+    tree = ast.parse(python.module(model))
+    plain = ast.parse(python.module(nasty("plain")))
+    assert [ast.dump(item) for item in tree.body[1:]] == [
+        ast.dump(item) for item in plain.body[1:]
+    ]
+    assert " ".join(ast.get_docstring(tree).split()).startswith(model.title)
+    space = {}
+    exec(python.module(model), space)  # noqa: S102 - what an import would run
+    assert space["Model"]().step(0.1) != 0.0
+    assert list(tmp_path.iterdir()) == []
+
+
+@needs_compiler
+def test_no_name_gets_into_the_c_code(tmp_path):
+    models = [replace(nasty(text), name=f"nasty_{k}") for k, text in enumerate(NASTY)]
+    for model in models:
+        (tmp_path / f"{model.name}.h").write_text(c.header(model))
+        assert "injected" in c.header(model) or "injected" not in model.title
+    given = "\n".join(f'#include "{model.name}.h"' for model in models)
+    command = ["cc", "-std=c99", "-E", "-P", "-"]
+    seen = subprocess.run(
+        command, cwd=tmp_path, input=given, capture_output=True, text=True, check=True
+    ).stdout
+    assert "injected" not in seen
+    assert seen.count("_step(") == len(models)
+    Compiled(models, tmp_path)
+
+
+@pytest.mark.parametrize("text", NASTY)
+def test_no_name_gets_into_the_unit(text):
+    model = nasty(text)
+    files = contents(model)
+    about = parsed(files["modelDescription.xml"])
+    assert about.get("modelName") == model.title
+    assert [item.get("name") for item in about.iter("Float64")] == [
+        "time", model.input.name, model.output.name,
+    ]  # fmt: skip
+    assert parsed(files["sources/buildDescription.xml"]) is not None
+    assert text not in files["sources/fmi3.c"]
+
+
+def test_a_model_called_math_lets_numpy_be(tmp_path):
+    mapping = load_model(PLANTS / "gma.yaml").to_mapping() | {"name": "math"}
+    file = tmp_path / "model.yaml"
+    Model.from_mapping(mapping, "here").save(file)
+    exported(tmp_path, file, "python")
+    code = "import math_model; math_model.Model().step(0.1)"
+    folder = tmp_path / "python"
+    subprocess.run([sys.executable, "-c", code], cwd=folder, check=True)
+
+
+def test_a_delay_of_very_many_samples_is_one_line(tmp_path):
+    mapping = load_model(PLANTS / "gma.yaml").to_mapping()
+    mapping["chain"] = [{"input-delay": {"delay_s": 900.0}}]
+    mapping.pop("provenance")
+    file = tmp_path / "late.yaml"
+    Model.from_mapping(mapping, "here").save(file)
+    done = run_hystbench(
+        "export", file, "--to", "c", "--dt", DT, "--out", tmp_path / "c"
+    )
+    assert done.returncode == 2
+    assert done.stderr == (
+        f"hystbench: {file}: chain: block 1: input-delay: code would keep 9e+06 "
+        "numbers at --dt 0.0001 s; expected at most 1000000: a shorter memory "
+        "or a longer --dt\n"
+    )
+    told = run_hystbench(
+        "export", file, "--to", "c", "--dt", 1, "--out", tmp_path / "c"
+    ).stdout
+    # 900 s back, the curve's three samples behind that, the one now, and a count.
+    assert "Its state holds 905 numbers, 7240 bytes." in told
+
+
+@pytest.mark.parametrize(
+    ("option", "value"), [("--dt", "nan"), ("--dt", "0"), ("--duration", "inf")]
+)
+def test_a_time_that_is_none_is_one_line(tmp_path, option, value):
+    times = {"--dt": "1e-4", option: value}
+    words = [word for pair in times.items() for word in pair]
+    file = PLANTS / "gma.yaml"
+    done = run_hystbench("export", file, "--to", "c", *words, "--out", tmp_path / "c")
+    assert done.returncode == 2
+    assert done.stderr == f"hystbench: {option}: {value} s; expected a time above 0\n"
 
 
 def test_a_simulator_of_ones_own_is_one_line(tmp_path):

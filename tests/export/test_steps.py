@@ -27,8 +27,8 @@ DT, COUNT = 1e-4, 1001
 TIME = np.arange(COUNT) * DT
 #: Whole periods: the band-limited curve of the record is these sines and nothing else.
 INPUT = 0.5 * np.sin(2 * np.pi * 40 * TIME) + 0.12 * np.sin(2 * np.pi * 70 * TIME)
-#: A simulator of somebody's own is no description of one.
-REFUSED = {"external", "command", "fmu", "onnx", "simulated-column"}
+#: A simulator of somebody's own, in whatever form, is no description of one.
+REFUSED = {"command", "external", "fmu", "onnx", "simulated-column"}
 SAMPLING = Sampling(DT, duration_s=TIME[-1])
 #: Samples until the polynomial goes through as many as it may; and until the input has
 #: been through its range: at first no rate is known, and hysteresis remembers.

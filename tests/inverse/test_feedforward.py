@@ -176,6 +176,20 @@ class TestCommand:
         [
             (("--dt", "1e-4"), "--stroke: expected it, or a --reference"),
             (("--dt", "0", "--stroke", "1"), "--dt: 0; expected a number above 0"),
+            (
+                ("--dt", "1", "--stroke", "nan"),
+                "--stroke: nan; expected a number above 0",
+            ),
+            (
+                ("--dt", "1", "--stroke", "1", "--band", "nan"),
+                "--band: nan; expected a number above 0",
+            ),
+            (
+                ("--dt", "1", "--stroke", "1", "--band", "0"),
+                "--band: 0; expected a number above 0",
+            ),
+            (("--limit-low", "nan"), "--limit-low: nan; expected a number"),
+            (("--limit-high", "inf"), "--limit-high: inf; expected a number"),
         ],
     )
     def test_a_mistake_is_one_line(self, tmp_path, given, said):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import shutil
 import signal
@@ -23,6 +24,8 @@ from hystbench.record import FloatArray
 INPUT, OUTPUT, STEP = "{input}", "{output}", "{dt}"
 """What stands in a command line for the files that it reads and writes, and for dt."""
 HEADER = "time_s,u"
+APART = re.compile(r",*[;\s][;,\s]*")
+DECIMAL_COMMA = re.compile(r"(^|,)[+-]?\d*,\d+([eE][+-]?\d+)?$")
 
 
 @dataclass(frozen=True)
@@ -32,8 +35,9 @@ class Command(Simulator):
     It gets a CSV table with the columns time_s and u and a row a sample, on its
     standard input or as the file that ``{input}`` stands for. It writes a row a sample,
     the last cell of which is y, to its standard output or to the file ``{output}``; a
-    header is passed over. ``{dt}`` stands for the sampling interval in seconds. It is
-    started from the folder that hystbench was started in, without a shell.
+    header is passed over. Numbers have a decimal point; cells end at a comma, a
+    semicolon, a tab or a blank. ``{dt}`` stands for the sampling interval in seconds.
+    It is started from the folder that hystbench was started in, without a shell.
 
     References
     ----------
@@ -88,7 +92,7 @@ class Command(Simulator):
                 if not gives.is_file():
                     raise InputError(f"{call}, it wrote no file {OUTPUT}")
                 said = gives.read_text(errors="replace")
-        return checked(call, z, _numbers(call, said, len(z)))
+        return checked(call, z, _numbers(call, said, dt, len(z)))
 
     def _run(self, call: str, words: list[str], table: str) -> str:
         """Run a program to its end and give what it wrote to its standard output."""
@@ -140,11 +144,12 @@ def _filled(word: str, stands: dict[str, str]) -> str:
     return word
 
 
-def _numbers(call: str, said: str, count: int) -> list[float]:
+def _numbers(call: str, said: str, dt: float, count: int) -> list[float]:
     """Read the last cell of each row; one header is passed over."""
-    rows = [line for line in said.splitlines() if line.strip()]
+    rows = [line.strip() for line in said.splitlines() if line.strip()]
+    header = ""
     if len(rows) == count + 1 and not _is_number(_last(rows[0])):
-        rows = rows[1:]
+        header, *rows = rows
     if len(rows) != count:
         first = f", the first {short(rows[0])}" if rows else ""
         raise InputError(
@@ -153,11 +158,53 @@ def _numbers(call: str, said: str, count: int) -> list[float]:
     for k, row in enumerate(rows, start=1):
         if not _is_number(_last(row)):
             raise InputError(f"{call}, it wrote {short(row)} as row {k}; expected y")
+    _refuse_decimal_commas(call, header, rows, dt)
     return [float(_last(row)) for row in rows]
 
 
+def _refuse_decimal_commas(call: str, header: str, rows: list[str], dt: float) -> None:
+    """Refuse rows whose last comma may be a decimal one.
+
+    It is none where commas alone part the cells and a number of the table has a point,
+    the header has as many commas, or the time of the sample stands before it.
+
+    Raises
+    ------
+    InputError
+        If nothing tells.
+    """
+    unclear = [k for k, row in enumerate(rows) if DECIMAL_COMMA.search(_cells(row)[-1])]
+    if not unclear:
+        return
+    row = rows[unclear[0]]
+    if not any(APART.search(row) for row in rows):
+        if any("." in row for row in rows):
+            return
+        if header and {row.count(",") for row in rows} == {header.count(",")}:
+            return
+        if all(_is_timed(row, k * dt, dt) for k, row in enumerate(rows)):
+            return
+    raise InputError(
+        f"{call}, it wrote {short(row)} as row {unclear[0] + 1}, whose comma may be a "
+        f"decimal one; expected y with a decimal point, or a header such as {HEADER}"
+    )
+
+
+def _is_timed(row: str, time: float, dt: float) -> bool:
+    """Tell whether a row is ``time,y``."""
+    before, comma, after = row.partition(",")
+    if not comma or "," in after or not _is_number(before):
+        return False
+    return abs(float(before) - time) <= 1e-6 * (dt + abs(time))
+
+
+def _cells(row: str) -> list[str]:
+    """Cut a row at semicolons, tabs and blanks; commas beside one belong to it."""
+    return APART.split(row.strip())
+
+
 def _last(row: str) -> str:
-    return row.replace(",", " ").replace(";", " ").split()[-1]
+    return _cells(row)[-1].split(",")[-1]
 
 
 def _is_number(cell: str) -> bool:

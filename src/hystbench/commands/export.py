@@ -80,5 +80,5 @@ def export(
             fmu.write_fmu(described, fresh / names[0])
     told = [f"{out / made}" for made in names]
     click.echo(f"{', '.join(told)}: {described.about}")
-    for line in described.differences:
+    for line in [described.memory, *described.differences]:
         click.echo(line)

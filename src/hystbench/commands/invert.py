@@ -50,6 +50,9 @@ def invert(
     Writes the input beside the reference and the model's output. Without a reference it
     writes how well sines of one --stroke are followed, from slow to the band's edge.
     """
+    for name, value in (("--dt", dt), ("--stroke", stroke), ("--band", band)):
+        if value is not None and not 0 < value < np.inf:
+            raise InputError(f"{name}: {value:g}; expected a number above 0")
     system = load_model(model)
     asked = options.asked_limits(limit_low, limit_high, None)
     limits = Limits(**asked)
@@ -61,10 +64,11 @@ def invert(
     if dt is None or stroke is None:
         missing = "--dt" if dt is None else "--stroke"
         raise InputError(f"{missing}: expected it, or a --reference")
-    for name, value in (("--dt", dt), ("--stroke", stroke)):
-        if not 0 < value < np.inf:
-            raise InputError(f"{name}: {value:g}; expected a number above 0")
-    _table(system, dt, stroke, band or BAND_SHARE / dt, limits, out)
+    _table(system, dt, stroke, _band(band, dt), limits, out)
+
+
+def _band(asked: float | None, dt: float) -> float:
+    return BAND_SHARE / dt if asked is None else asked
 
 
 def _follow(
@@ -95,7 +99,7 @@ def _follow(
     click.echo(
         f"{out}: {len(reference)} samples, input from {found.u.min():.4g} to "
         f"{found.u.max():.4g} {unit}; {exact}{len(found.error) - 1} corrections up to "
-        f"{band or BAND_SHARE / dt:g} Hz; the model's output is off by "
+        f"{_band(band, dt):g} Hz; the model's output is off by "
         f"{100 * found.left:.3g} % of the stroke (RMS)"
     )
     if found.clipped:

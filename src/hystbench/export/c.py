@@ -41,7 +41,9 @@ def header(model: Described) -> str:
             "/* Nothing has ever entered. */",
             f"void {name}_init({name}_state *state);",
             "",
-            f"/* The next sample: {model.output.label} of {model.input.label}. */",
+            _comment(
+                [f"The next sample: {model.output.label} of {model.input.label}."]
+            ),
             f"double {name}_step({name}_state *state, double input);",
             "",
             "#ifdef __cplusplus",
@@ -171,8 +173,21 @@ def _number(value: float) -> str:
 
 
 def _comment(sentences: Sequence[str]) -> str:
-    lines = [line for said in sentences for line in wrap(said, WIDTH - 4)]
-    return "/* " + "\n * ".join(lines) + "\n */"
+    """Write a comment that nothing in the sentences ends."""
+    lines = [
+        # A backslash at its end would splice a line with the next.
+        line.rstrip("\\ ")
+        for said in sentences
+        for line in wrap(_harmless(said), WIDTH - 6)
+    ]
+    end = " */" if len(lines) == 1 else "\n */"
+    return "/* " + "\n * ".join(lines) + end
+
+
+def _harmless(text: str) -> str:
+    """Part the signs that begin or end a comment, and those of trigraphs."""
+    text = text.replace("*/", "* /").replace("/*", "/ *")
+    return re.sub(r"\?(?=\?)", "? ", text)
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import cast
@@ -14,6 +15,30 @@ from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.model import Model
 from hystbench.record import Channel
+
+LARGEST_STATE = 1_000_000
+"""Numbers of 8 bytes that a state may hold: 8 MB, far more than a controller has."""
+
+#: Keywords of C and C++ that a model may be called, and the standard headers.
+C_WORDS = """
+alignas alignof asm auto bool break case char class const constexpr continue default do
+double else enum extern float for goto if inline int long new nullptr register restrict
+return short signed sizeof static struct switch template this thread_local typedef
+typeof union unsigned using virtual void volatile while
+assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal
+stdalign stdarg stdatomic stdbit stdbool stdckdint stddef stdint stdio stdlib
+stdnoreturn string tgmath threads time uchar wchar wctype
+"""
+#: Windows makes no files of these names.
+DEVICES = {"aux", "con", "nul", "prn"} | {
+    f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)
+}
+#: fmi3.c stands beside a unit's sources; the copied functions of C begin with hb.
+TAKEN = (
+    {*keyword.kwlist, *C_WORDS.split(), "numpy", "fmi3", "hb"}
+    | {name.lower() for name in sys.stdlib_module_names}
+    | DEVICES
+)
 
 
 @dataclass(frozen=True)
@@ -40,7 +65,7 @@ class Described:
     name : str
         The model's name as an identifier of C and of Python.
     title : str
-        The model's name as its file has it.
+        The model's name as its file has it, in one line of printable letters.
     input, output : Channel
     sampling : Sampling
     pieces : tuple of Piece
@@ -79,6 +104,12 @@ class Described:
         ]
 
     @property
+    def memory(self) -> str:
+        """Say how much the code keeps from sample to sample."""
+        count = sum(length for _, length in self.all_states())
+        return f"Its state holds {count} numbers, {8 * count} bytes."
+
+    @property
     def about(self) -> str:
         """Say what the code computes."""
         return (
@@ -97,16 +128,27 @@ def describe(model: Model, sampling: Sampling) -> Described:
     """
     if not 0 < sampling.dt < float("inf"):
         raise InputError(f"--dt: {sampling.dt:g} s; expected a time above 0")
+    duration = sampling.duration_s
+    if duration is not None and not 0 < duration < float("inf"):
+        raise InputError(f"--duration: {duration:g} s; expected a time above 0")
     if not 2 <= sampling.points <= LARGEST_POINTS:
         raise InputError(
             f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
         )
-    labels = {id(block): identifier(label) for label, block in model.labelled()}
+    labels = {id(block): _plain(label) for label, block in model.labelled()}
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
 
     def of_block(block: Block, sampling: Sampling, inner: Piece | None) -> Piece:
         try:
-            return Piece(labels[id(block)], block.step(sampling), inner)
+            step = block.step(sampling)
+            size = sum(step.states.values())
+            if size > LARGEST_STATE:
+                raise InputError(
+                    f"{block.name}: code would keep {size:.3g} numbers at --dt "
+                    f"{sampling.dt:g} s; expected at most {LARGEST_STATE}: a shorter "
+                    "memory or a longer --dt"
+                )
+            return Piece(labels[id(block)], step, inner)
         except InputError as error:
             place = f"chain: block {places[id(block)]}: "
             raise InputError(f"{place}{error}") from None
@@ -123,20 +165,32 @@ def describe(model: Model, sampling: Sampling) -> Described:
 
     return Described(
         identifier(model.name),
-        model.name,
-        model.input,
-        model.output,
+        one_line(model.name) or "model",
+        Channel(one_line(model.input.name) or "input", one_line(model.input.unit)),
+        Channel(one_line(model.output.name) or "output", one_line(model.output.unit)),
         sampling,
         tuple(of_step(step, sampling) for step in model.steps),
     )
 
 
 def identifier(name: str) -> str:
-    """Turn a name into an identifier of C and of Python."""
+    """Turn a name into an identifier of C and of Python, and into a file's name.
+
+    Names of modules, headers, keywords and the like get an ending: a file ``math.py``
+    would stand in the way of Python's own.
+    """
+    plain = _plain(name)
+    return f"{plain}_model" if plain in TAKEN or plain.startswith("hb_") else plain
+
+
+def one_line(text: str) -> str:
+    """Make a user's text one line without control or other unprintable characters."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def _plain(name: str) -> str:
     plain = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_") or "model"
-    if plain[0].isdigit() or keyword.iskeyword(plain):
-        plain = f"model_{plain}"
-    return plain
+    return f"model_{plain}" if plain[0].isdigit() else plain
 
 
 def needed(chunks: dict[str, str], wanted: set[str], prefix: str = "") -> str:

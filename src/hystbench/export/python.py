@@ -43,7 +43,7 @@ def module(model: Described) -> str:
     """Write the module: constants, functions, and the class ``Model``."""
     chunks = _library()
     told = [f"{model.title}: {model.about}.", *model.differences]
-    text = "\n".join(line for said in told for line in wrap(said, WIDTH - 4))
+    text = "\n".join(_quoted(line) for said in told for line in wrap(said, WIDTH - 4))
     constants = [
         _array(_constant(piece, key), value)
         for piece in model.all_pieces()
@@ -73,6 +73,11 @@ def module(model: Described) -> str:
         "\n".join([body.rstrip(), *methods]),
     ]
     return "\n\n\n".join(filter(None, parts)) + "\n"
+
+
+def _quoted(line: str) -> str:
+    """Write a line so that it neither ends a docstring nor escapes anything in it."""
+    return line.replace("\\", "\\\\").replace('"', '\\"')
 
 
 def _line(model: Described, piece: Piece) -> str:
