@@ -99,6 +99,9 @@ def verdict(names, family):
     return word, {item.effect for item in state.added}
 
 
+searches_more = pytest.mark.skipif(
+    "CI" in os.environ, reason="CI searches for one effect outside the vocabulary"
+)
 #: CI takes the first of each list.
 FIRST = slice(1) if "CI" in os.environ else slice(None)
 PAIRS = [
@@ -156,11 +159,13 @@ def test_an_effect_outside_the_vocabulary_has_no_name(monkeypatch):
     assert content["where"][0]["share_of_gap_power"] > 0.5
 
 
+@searches_more
 def test_a_bad_contact_is_what_the_input_does_not_explain(monkeypatch):
     first = unnamed("random-telegraph", monkeypatch)["where"][0]
     assert first["view"] == "unexplained"
     assert first["share_of_gap_power"] > 0.5
 
 
+@searches_more
 def test_dropouts_are_seen_as_lone_samples(monkeypatch):
     assert unnamed("dropouts", monkeypatch)["fit"]["lone_share"] > LONE
