@@ -32,8 +32,3 @@ class Compared:
 def rms(values: FloatArray) -> float:
     """Give the root of the mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
-
-
-def rms_of_all(compared: tuple[Compared, ...]) -> float:
-    """Give the RMS residual over the samples of all records together."""
-    return rms(np.concatenate([item.residual for item in compared]))

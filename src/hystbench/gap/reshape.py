@@ -51,8 +51,6 @@ def reshapings(scene: Scene, sample: Sample) -> FloatArray:
     ndarray, shape (scored samples, k)
         Without anything in the chain that holds a hysteresis, no column.
     """
-    if scene.loop is None:
-        return np.zeros((len(sample), 0))
     return _behind(scene, sample, _ways)
 
 
@@ -73,8 +71,6 @@ def products(scene: Scene, sample: Sample) -> FloatArray:
     ndarray, shape (scored samples, k)
         Without anything in the chain that holds a hysteresis, no column.
     """
-    if scene.loop is None:
-        return np.zeros((len(sample), 0))
     return _behind(scene, sample, _mixed)
 
 
@@ -84,6 +80,8 @@ def _behind(
     make: Callable[[Scene, Sample | None], list[Signals]],
 ) -> FloatArray:
     """Make signals of the hysteresis and send them through what follows it."""
+    if scene.loop is None:
+        return np.zeros((len(sample), 0))
     behind = scene.chain[scene.behind_hysteresis :]
     at = None if behind else sample  # what nothing follows is wanted there alone
     ways = make(scene, at)

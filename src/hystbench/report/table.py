@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -146,15 +146,3 @@ def number(value: float | None, shown: str = "", mark: str = "") -> Cell:
     if math.isinf(value):
         return Cell(shown or "diverged", "Infinity", mark or "bad")
     return Cell(shown or f"{value:.4g}", value, mark)
-
-
-def rows_of(texts: Iterable[Sequence[str]]) -> list[list[Cell]]:
-    """Make rows of a table's text; numbers are sorted as such."""
-    return [[_cell(text) for text in row] for row in texts]
-
-
-def _cell(text: str) -> Cell:
-    try:
-        return number(float(text)) if text else words("")
-    except ValueError:
-        return words(text)
