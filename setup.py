@@ -42,6 +42,7 @@ SOURCES = [
     "jiles_atherton.c",
     "largest.c",
     "lms.c",
+    "mechanism.c",
     "play.c",
     "preisach.c",
     "state_space.c",

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
+from hystbench.blocks.force import Force
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.sensor_noise import SensorNoise
 from hystbench.blocks.wrapping import WrappingBlock
@@ -159,14 +160,17 @@ words = st.text("abcdefghijklmnopqrstuvwxyz -µ:#'\"{}[]0123456789.", min_size=1
 units = st.sampled_from(["A", "mV", "um", "µm", "m/s^2", "-", "1", "N*m"])
 
 
+def host_of(block):
+    """Give the block that one has to be attached to, if so."""
+    if isinstance(block, Force):
+        return [registry()["mechanism"].from_mapping(EXAMPLES["mechanism"])]
+    return [GPI] if isinstance(block, WrappingBlock) else []
+
+
 @given(st.data())
 def test_a_model_file_round_trips(data):
     drawn = data.draw(st.lists(blocks(), min_size=1, max_size=5))
-    chain = tuple(
-        item
-        for block in drawn
-        for item in ([GPI, block] if isinstance(block, WrappingBlock) else [block])
-    )
+    chain = tuple(item for block in drawn for item in (*host_of(block), block))
     bare = Model("m", Channel("u", "A"), Channel("y", "um"), chain)
     names = bare.parameter_names()
     free = data.draw(st.lists(st.sampled_from(names), unique=True))

@@ -15,11 +15,11 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from hystbench.blocks import registry
+from hystbench.blocks.attached import Simulated, attached
 from hystbench.blocks.base import Block, RandomBlock
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.blocks.simulated_column import SimulatedColumn
-from hystbench.blocks.wrapping import HystereticBlock, Wrapped, WrappingBlock
 from hystbench.errors import InputError, nearest, short
 from hystbench.files import write_text
 from hystbench.record import Channel, FloatArray, Record
@@ -150,26 +150,9 @@ class Model:
         return y
 
     @cached_property
-    def steps(self) -> tuple[Block | Wrapped, ...]:
-        """What the signal passes: the chain, hysteresis and what wraps it as one."""
-        steps: list[Block | Wrapped] = []
-        for position, block in enumerate(self.chain):
-            if not isinstance(block, WrappingBlock):
-                steps.append(block)
-                continue
-            place = _place(position, block.name)
-            before = steps[-1] if steps else None
-            if not isinstance(before, HystereticBlock | Wrapped):
-                known = (key for key, item in registry().items() if item.hysteretic)
-                raise InputError(
-                    f"{place}expected hysteresis just before it ({', '.join(known)}), "
-                    f"got {self.chain[position - 1].name if position else 'none'}"
-                )
-            try:
-                steps[-1] = Wrapped(before, block)
-            except InputError as error:
-                raise InputError(f"{place}{error}") from None
-        return tuple(steps)
+    def steps(self) -> tuple[Simulated, ...]:
+        """What the signal passes: the chain, a block and what is attached as one."""
+        return tuple(attached(self.chain))
 
     def with_hold(self, hold: Hold) -> Model:
         """Return the model with a hold for the blocks that do not set one.

@@ -6,6 +6,22 @@ A new block needs a line here; the contract test says so.
 from pathlib import Path
 
 EXAMPLES = {
+    "drag": {"coefficient": 0.3},
+    "exponential-stiffness": {"coefficient": 20.0, "reach": 0.01},
+    "friction-force": {
+        "coulomb": 0.1,
+        "presliding_distance": 1e-4,
+        "static_excess": 0.05,
+        "stribeck_velocity": 0.3,
+    },
+    "gravity": {"amplitude": 2.0, "angle": 0.3},
+    "hysteretic-force": {"largest": 0.2, "yield_distance": 1e-3, "sharing": 0.6},
+    "mechanism": {"mass": 0.002, "damping": 0.2, "stiffness": 100.0},
+    "impedance": {"mass": 1e-3, "damping": 0.05, "stiffness": 3.0, "bias": 0.2},
+    "slider-with-gap": {"contact_stiffness": 80.0, "slip_force": 0.1, "gap": 5e-4},
+    "stiffness": {"quadratic": 500.0, "cubic": 1e5},
+    "stop": {"contact_stiffness": 300.0, "gap": 2e-3, "centre": 1e-4},
+    "store": {"gain": 2.0, "rate": 0.5, "height": 1.0, "caught": 0.5},
     "asymmetry": {"coefficient": 0.02},
     "backlash": {"half_width": 0.1},
     "butterfly": {"coefficient": 0.4, "threshold": 0.1},

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from hystbench.blocks import registry
+from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import RandomBlock
+from hystbench.blocks.force import Force
 from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
 
 from .examples import EXAMPLES
@@ -31,7 +32,7 @@ def example(name):
 
 
 def runnable(name):
-    """Return the example, around a hysteresis where it has to wrap one."""
+    """Return the example, attached to a block where it has to be."""
     if name in STORED:
         pytest.skip("answers to the input of a record alone; tested as such")
     if name == "fmu":
@@ -39,7 +40,9 @@ def runnable(name):
     if name == "onnx":
         pytest.importorskip("onnxruntime", reason="onnxruntime is not installed")
     block = example(name)
-    return Wrapped(example("gpi"), block) if isinstance(block, WrappingBlock) else block
+    if not isinstance(block, AttachedBlock):
+        return block
+    return block.attach(example("mechanism" if isinstance(block, Force) else "gpi"))
 
 
 def test_every_block_has_an_example():
@@ -53,7 +56,14 @@ class TestContract:
         assert re.fullmatch(r"[a-z]+(-[a-z]+)*", name)
         assert "References" in block.__doc__
         assert block.reference
-        assert block.place in {"base", "drive", "material", "mechanics", "sensor"}
+        assert block.place in {
+            "base",
+            "drive",
+            "material",
+            "inside",
+            "mechanics",
+            "sensor",
+        }
 
     def test_parameters_have_unit_meaning_and_bounds(self, name):
         parameters = registry()[name].parameters()

@@ -14,7 +14,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError, nearest
 from hystbench.record import FloatArray
 
-Place = Literal["base", "drive", "material", "mechanics", "sensor"]
+Place = Literal["base", "drive", "material", "inside", "mechanics", "sensor"]
 
 
 @dataclass(frozen=True)

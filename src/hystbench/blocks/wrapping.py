@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
+from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -59,12 +60,26 @@ class HystereticBlock(Block):
 
 
 @dataclass(frozen=True)
-class WrappingBlock(Block):
+class WrappingBlock(AttachedBlock):
     """A block that changes the hysteresis before it, not a signal.
 
-    In the chain it follows the hysteretic block or another wrapping block; a
-    :class:`~hystbench.model.Model` joins them to one :class:`Wrapped` step.
+    In the chain it follows the hysteretic block or another wrapping block; both
+    together are one :class:`Wrapped` step.
     """
+
+    hosts: ClassVar = "hysteresis"
+
+    def attach(self, before: Any) -> Wrapped:
+        """Wrap the hysteresis before."""
+        if not isinstance(before, HystereticBlock | Wrapped):
+            from hystbench.blocks import registry  # late: it imports every block
+
+            known = (key for key, item in registry().items() if item.hysteretic)
+            raise InputError(
+                f"expected hysteresis just before it ({', '.join(known)}), "
+                f"got {getattr(before, 'name', 'none')}"
+            )
+        return Wrapped(before, self)
 
     def check_inner(self, inner: Hysteresis) -> None:
         """Refuse hysteresis that the block cannot wrap; a subclass raises."""
@@ -91,10 +106,6 @@ class WrappingBlock(Block):
         -------
         ndarray, shape (n,)
         """
-
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Refuse: alone the block has no output."""
-        raise InputError(f"{self.name}: expected a hysteretic block before it")
 
 
 @dataclass(frozen=True)

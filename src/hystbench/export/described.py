@@ -7,7 +7,7 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.step import LARGEST_POINTS, Sampling, Step
@@ -153,14 +153,13 @@ def describe(model: Model, sampling: Sampling) -> Described:
             place = f"chain: block {places[id(block)]}: "
             raise InputError(f"{place}{error}") from None
 
-    def of_step(step: Block | Wrapped, sampling: Sampling) -> Piece:
-        if isinstance(step, Block):
+    def of_step(step: Any, sampling: Sampling) -> Piece:
+        if not isinstance(step, Wrapped):
             return of_block(step, sampling, None)
         outer: WrappingBlock = step.by
         around = of_block(outer, sampling, None)
         times = max(around.step.drives, 1)
-        inside = cast("Block | Wrapped", step.inner)
-        inner = of_step(inside, replace(sampling, dt=sampling.dt / times))
+        inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times))
         return replace(around, inner=inner)
 
     return Described(

@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from hystbench.blocks.attached import AttachedBlock, attached
 from hystbench.blocks.band_limited import finer
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock, Hold
@@ -54,7 +55,7 @@ class Scene:
         stages: list[Signals] = [tuple(record.u for record in self.records)]
         for k in range(len(self.chain)):
             start = k
-            while isinstance(self.chain[start], WrappingBlock):
+            while isinstance(self.chain[start], AttachedBlock):
                 start -= 1
             signals = self.run(self.chain[start : k + 1], stages[start])
             for z in signals:
@@ -75,7 +76,7 @@ class Scene:
 
     def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
         """Send signals through blocks, from rest."""
-        steps = joined([_quick(block) for block in blocks] if self.quick else blocks)
+        steps = attached([_quick(block) for block in blocks] if self.quick else blocks)
         out = []
         finely = self.fine and self.hold == LIMITED
         for z, record in zip(signals, self.records, strict=True):
@@ -252,14 +253,3 @@ def _plain(step: Block | Wrapped) -> Block | Wrapped:
             return Wrapped(inner, replace(step.by, **straight))
         return Wrapped(inner, step.by)
     return step
-
-
-def joined(blocks: Sequence[Block]) -> list[Block | Wrapped]:
-    """Join hysteresis and what wraps it to one step."""
-    steps: list[Block | Wrapped] = []
-    for block in blocks:
-        if isinstance(block, WrappingBlock):
-            steps[-1] = Wrapped(cast(Hysteresis, steps[-1]), block)
-        else:
-            steps.append(block)
-    return steps

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
@@ -272,7 +273,7 @@ class State:
 def scene_of(state: State, changes: dict[int, float]) -> Signals:
     """Simulate the chain with some free numbers changed."""
     start = min(state.free[k].block for k in changes)
-    while start and hasattr(state.chain[start], "wrap"):
+    while isinstance(state.chain[start], AttachedBlock):
         start -= 1
     return state.scene.tail(start, state.moved(changes)[start:])
 

@@ -1,0 +1,71 @@
+"""Blocks that change the block before them in the chain instead of a signal."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+from hystbench.blocks.base import Block
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+
+class Simulated(Protocol):
+    """What a signal passes: a block, or one together with what is attached to it."""
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output, as :meth:`Block.simulate` does."""
+
+
+@dataclass(frozen=True)
+class AttachedBlock(Block):
+    """A block that has no output of its own: it belongs to the block before it.
+
+    In the chain it follows a block that it can be attached to, or another one that is.
+    """
+
+    hosts: ClassVar[str]
+    """What it can be attached to, for messages."""
+
+    @abstractmethod
+    def attach(self, before: Any) -> Simulated:
+        """Give what the signal passes: what stands before, with this block attached.
+
+        Raises
+        ------
+        InputError
+            If this block cannot be attached to that one.
+        """
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Refuse: alone the block has no output."""
+        raise InputError(f"{self.name}: expected {self.hosts} before it")
+
+
+def attached(chain: Sequence[Block]) -> list[Any]:
+    """Join every block of a chain with what is attached to it.
+
+    Returns
+    -------
+    list of Block or what :meth:`AttachedBlock.attach` gives
+        What the signal passes, in its order.
+
+    Raises
+    ------
+    InputError
+        With the place of a block that has nothing to be attached to.
+    """
+    steps: list[Any] = []
+    for position, block in enumerate(chain):
+        if not isinstance(block, AttachedBlock):
+            steps.append(block)
+            continue
+        before = steps.pop() if steps else None
+        try:
+            steps.append(block.attach(before))
+        except InputError as error:
+            where = f"chain: block {position + 1} ({block.name})"
+            raise InputError(f"{where}: {error}") from None
+    return steps

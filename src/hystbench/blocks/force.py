@@ -1,0 +1,99 @@
+"""Forces that act inside a ``mechanism``: what each of their blocks says."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple, Protocol
+
+import numpy as np
+
+from hystbench.blocks.attached import AttachedBlock
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+KINDS = (
+    *("stiffness", "sinh", "stop", "friction"),
+    *("drag", "hysteretic", "gravity", "slider"),
+)
+"""Laws of the kernel, in the order of mechanism.c."""
+
+
+ROW = 6
+"""Numbers of a row of the kernel."""
+
+
+class Motion(NamedTuple):
+    """How a coordinate moves, shape (n,) each."""
+
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    force: FloatArray
+    """Sum of the forces inside."""
+
+
+class Host(Protocol):
+    """A block with a coordinate: ``mechanism`` or ``impedance``."""
+
+    name: ClassVar[str]
+
+    def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
+        """Compute the output with forces inside."""
+
+
+@dataclass(frozen=True)
+class Force(AttachedBlock):
+    """A force against the motion of the mechanism before it in the chain.
+
+    It depends on the position q and the velocity q', and may remember a distance.
+    """
+
+    place: ClassVar = "inside"
+    hosts: ClassVar = "mechanism or impedance"
+
+    @abstractmethod
+    def law(self) -> tuple[str, tuple[float, ...]]:
+        """Give the kernel's law, one of :data:`KINDS`, and its numbers."""
+
+    @property
+    def stiffest(self) -> float:
+        """Stiffness of a contact, which asks for shorter steps; zero without one."""
+        return 0.0
+
+    def numbers(self) -> tuple[float, ...]:
+        """Give the row of the kernel: the law's number, then six with its own."""
+        kind, own = self.law()
+        return (float(KINDS.index(kind)), *own, *(0.0,) * (ROW - 1 - len(own)))
+
+    def attach(self, before: Any) -> Driven:
+        """Let the force act inside the mechanism before."""
+        if isinstance(before, Driven):
+            return Driven(before.host, (*before.forces, self))
+        if not hasattr(before, "driven"):
+            raise InputError(
+                "expected mechanism or impedance just before it, or another force "
+                f"inside one, got {getattr(before, 'name', 'none')}"
+            )
+        return Driven(before, (self,))
+
+
+def rows(forces: tuple[Force, ...]) -> FloatArray:
+    """Give the kernel's rows of some forces, shape (forces, 6)."""
+    numbers = np.array([item.numbers() for item in forces], dtype=np.float64)
+    return numbers.reshape(len(forces), ROW)
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A mechanism or an impedance together with the forces inside it."""
+
+    host: Host
+    forces: tuple[Force, ...]
+
+    hysteretic: ClassVar[bool] = False
+    name: ClassVar[str] = "mechanism"
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output, as :meth:`Block.simulate` does."""
+        return self.host.driven(z, dt, self.forces)

@@ -1,0 +1,39 @@
+"""Block ``hysteretic-force``: a force inside a mechanism that remembers the way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.force import Force
+from hystbench.blocks.parameter import HUGE, TINY, number
+
+
+@dataclass(frozen=True)
+class HystereticForce(Force):
+    """Bouc and Wen's hysteresis of exponent one, ``F = largest z``.
+
+    ``yield_distance dz/dq = 1 - |z| (sharing + (1 - sharing) sgn(z dq))``, z between -1
+    and 1: micro-slip of joints, the fluid of a magnetorheological damper. A sharing of
+    0.5 is Dahl's friction. Solved exactly over every monotone piece of the way.
+
+    References
+    ----------
+    .. [1] Y.-K. Wen, "Method for random vibration of hysteretic systems", Journal of
+       the Engineering Mechanics Division 102 (1976) 249-263.
+    .. [2] F. Ikhouane, J. Rodellar, Systems with Hysteresis: Analysis, Identification
+       and Control Using the Bouc-Wen Model, Wiley, 2007.
+    """
+
+    name: ClassVar = "hysteretic-force"
+    reference: ClassVar = "Ikhouane, Rodellar, Systems with Hysteresis, 2007"
+
+    largest: float = number("U", "force at which it yields wholly", 0.0, HUGE)
+    yield_distance: float = number("Q", "way in which it yields", TINY, HUGE)
+    sharing: float = number(
+        "-", "0.5: Dahl's; more: softer loading branches than unloading", 0.0, 1.0, 0.5
+    )
+
+    def law(self) -> tuple[str, tuple[float, ...]]:
+        """Give force, distance and sharing."""
+        return "hysteretic", (self.largest, self.yield_distance, self.sharing)

@@ -1,0 +1,159 @@
+"""Block ``mechanism``: one coordinate whose forces act inside the dynamics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, sqrt
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench import kernels
+from hystbench.blocks.band_limited import straight_lines
+from hystbench.blocks.force import Force, Motion, rows
+from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.linear import StateSpace, discretise
+from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.transfer_function import STARTS, path_from
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+OUTPUTS = ("position", "velocity", "acceleration", "force")
+PHASE = 0.2
+"""Largest angle, in radians, by which the linear coordinate turns in one step."""
+CONTACT = 10
+"""Steps of an interval that a stiff contact may ask for: it is stable without."""
+
+
+@dataclass(frozen=True)
+class Mechanism(HeldBlock):
+    """A coordinate q of a machine: ``m q'' + c q' + k q + F(q, q') = gain z + bias``.
+
+    F is the sum of the forces that follow it in the chain; without one it is linear. A
+    free mass has a stiffness of zero. The output is the motion, or the force on the
+    mount, ``c q' + k q + F``.
+
+    The linear part is exact over a step, in which the force counts with the mean of its
+    values at both ends: of second order, and stable however stiff the forces are. A
+    band-limited input is taken as straight lines on a grid twice as fine.
+
+    References
+    ----------
+    .. [1] N. M. Newmark, "A method of computation for structural dynamics", Journal of
+       the Engineering Mechanics Division 85 (1959) 67-94 (mean acceleration).
+    """
+
+    name: ClassVar = "mechanism"
+    place: ClassVar = "base"
+    reference: ClassVar = "Newmark, J. Eng. Mech. Div. 85 (1959)"
+
+    mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY, HUGE)
+    damping: float = number("U s/Q", "c, of a viscous force", 0.0, HUGE)
+    stiffness: float = number("U/Q", "k; zero for a free mass", 0.0, HUGE)
+    gain: float = number("-", "of what drives it", -HUGE, HUGE, default=1.0)
+    bias: float = number("U", "constant force beside what drives it", -HUGE, HUGE, 0.0)
+    output: str = choice("what the output is", OUTPUTS, "position")
+    blend: float = number(
+        "s or 1/s",
+        "share of the velocity in the output; of the acceleration, where the output is "
+        "the velocity",
+        -HUGE,
+        HUGE,
+        0.0,
+    )
+    start: str = choice("state before the first sample", STARTS, "rest")
+    start_position: float = number("Q", "q at the first sample", -HUGE, HUGE, 0.0)
+    start_velocity: float = number("Q/s", "q' at the first sample", -HUGE, HUGE, 0.0)
+
+    def check(self) -> None:
+        """Refuse a start from balance where there is none."""
+        if self.start != "rest" and self.stiffness == 0.0:
+            raise InputError(
+                f"start: {self.start}; expected rest, as without a stiffness there is "
+                "no place of balance"
+            )
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output without a force inside."""
+        return self.driven(z, dt, ())
+
+    def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
+        """Compute the output with forces inside.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+            The force that drives it.
+        dt : float
+            Sampling interval in seconds.
+        forces : tuple of Force
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            NaN from where the motion has run away.
+        """
+        motion = self.motion(z, dt, forces)
+        if self.output == "force":
+            spring = self.damping * motion.velocity + self.stiffness * motion.position
+            return spring + motion.force
+        if self.output == "position":
+            return motion.position + self.blend * motion.velocity
+        if self.output == "velocity":
+            return motion.velocity + self.blend * motion.acceleration
+        return motion.acceleration + self.blend * motion.velocity
+
+    def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
+        """Compute how the coordinate moves; arguments are those of :meth:`driven`."""
+        numbers = rows(forces)
+        path, before = path_from(z, self.start)
+        p = self.gain * path + self.bias
+        fine = 2 if self.holding == "band-limited" and len(p) > 2 else 1
+        if fine > 1:
+            p = straight_lines(p, fine)
+        n, step = len(p), dt / fine
+        q, v, force = np.zeros(n), np.zeros(n), np.zeros(n)
+        if n == 0:
+            return Motion(q, v, q, force)
+        q[0], v[0] = self.start_position, self.start_velocity
+        if self.start != "rest":
+            q[0] += (self.gain * before + self.bias) / self.stiffness
+        parts = self._parts(step, forces)
+        kernels.call(
+            "hb_mechanism",
+            n,
+            parts,
+            float(self.holding != "zero-order"),
+            self._step(step / parts),
+            len(forces),
+            numbers,
+            np.zeros(len(forces)),
+            np.ascontiguousarray(p),
+            q,
+            v,
+            force,
+        )
+        acceleration = (p - self.damping * v - self.stiffness * q - force) / self.mass
+        shown = slice((len(path) - len(z)) * fine, None, fine)
+        return Motion(q[shown], v[shown], acceleration[shown], force[shown])
+
+    def _parts(self, dt: float, forces: tuple[Force, ...]) -> int:
+        """Steps of an interval: short for the linear coordinate, and for a contact."""
+        contact = max((item.stiffest for item in forces), default=0.0)
+        linear, stiff = (
+            dt * max(sqrt(k / self.mass), self.damping / self.mass) / PHASE
+            for k in (self.stiffness, self.stiffness + contact)
+        )
+        return max(1, ceil(linear), min(ceil(stiff), CONTACT))
+
+    def _step(self, dt: float) -> FloatArray:
+        """Weights of q, q' and of the driving force at both ends of a step."""
+        m, c, k = self.mass, self.damping, self.stiffness
+        system = StateSpace(
+            np.array([[0.0, 1.0], [-k / m, -c / m]]),
+            np.array([0.0, 1.0 / m]),
+            np.array([1.0, 0.0]),
+            0.0,
+        )
+        phi, now, following = discretise(system, dt, "linear")
+        return np.ascontiguousarray(np.column_stack([phi, now, following]))

@@ -1,0 +1,41 @@
+"""Block ``slider-with-gap``: dry friction in series with a clearance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.force import Force
+from hystbench.blocks.parameter import HUGE, TINY, number
+
+
+@dataclass(frozen=True)
+class SliderWithGap(Force):
+    """A spring behind a clearance that slides at a force.
+
+    ``F = contact_stiffness dead_zone(z, gap)`` with z the way since the last reversal,
+    held between plus and minus ``gap + slip_force / contact_stiffness``. After a
+    reversal the force is first constant zero, then climbs, then slides.
+
+    References
+    ----------
+    .. [1] J. Awrejcewicz, C.-H. Lamarque, Bifurcation and Chaos in Nonsmooth Mechanical
+       Systems, World Scientific, 2003.
+    """
+
+    name: ClassVar = "slider-with-gap"
+    reference: ClassVar = "Awrejcewicz, Lamarque, Nonsmooth Mechanical Systems, 2003"
+
+    contact_stiffness: float = number("U/Q", "of the contact", TINY, HUGE)
+    slip_force: float = number("U", "force at which it slides", 0.0, HUGE)
+    gap: float = number("Q", "half of the clearance", 0.0, HUGE)
+
+    @property
+    def stiffest(self) -> float:
+        """That of the contact."""
+        return self.contact_stiffness
+
+    def law(self) -> tuple[str, tuple[float, ...]]:
+        """Give the stiffness, the reach of the way and the gap."""
+        reach = self.gap + self.slip_force / self.contact_stiffness
+        return "slider", (self.contact_stiffness, reach, self.gap)

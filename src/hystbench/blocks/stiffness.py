@@ -1,0 +1,32 @@
+"""Block ``stiffness``: a spring inside a mechanism that is not linear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.force import Force
+from hystbench.blocks.parameter import HUGE, number
+
+
+@dataclass(frozen=True)
+class Stiffness(Force):
+    """A spring beside the linear one, ``F = quadratic q^2 + cubic q^3``.
+
+    A positive cube hardens, a negative one softens; a square makes both ways differ.
+
+    References
+    ----------
+    .. [1] I. Kovacic, M. J. Brennan (eds.), The Duffing Equation: Nonlinear Oscillators
+       and their Behaviour, Wiley, 2011.
+    """
+
+    name: ClassVar = "stiffness"
+    reference: ClassVar = "Kovacic, Brennan, The Duffing Equation, 2011"
+
+    quadratic: float = number("U/Q^2", "weight of the square", -HUGE, HUGE)
+    cubic: float = number("U/Q^3", "weight of the cube", -HUGE, HUGE)
+
+    def law(self) -> tuple[str, tuple[float, ...]]:
+        """Give both weights."""
+        return "stiffness", (self.quadratic, self.cubic)

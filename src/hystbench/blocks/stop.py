@@ -1,0 +1,43 @@
+"""Block ``stop``: contact inside a mechanism beyond a clearance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.force import Force
+from hystbench.blocks.parameter import HUGE, choice, number
+
+SIDES = {"both": 0.0, "upper": 1.0, "lower": -1.0}
+
+
+@dataclass(frozen=True)
+class Stop(Force):
+    """A spring that is met where q leaves a gap: ``F = contact_stiffness (x - gap)``.
+
+    That is for ``x = q - centre`` above the gap, and likewise below ``-gap`` where the
+    stop has both sides.
+
+    References
+    ----------
+    .. [1] S. W. Shaw, P. J. Holmes, "A periodically forced piecewise linear
+       oscillator", Journal of Sound and Vibration 90 (1983) 129-155.
+    """
+
+    name: ClassVar = "stop"
+    reference: ClassVar = "Shaw, Holmes, J. Sound Vib. 90 (1983)"
+
+    contact_stiffness: float = number("U/Q", "stiffness of the contact", 0.0, HUGE)
+    gap: float = number("Q", "half of the clearance", 0.0, HUGE)
+    centre: float = number("Q", "middle of the clearance", -HUGE, HUGE, 0.0)
+    sides: str = choice("where there is contact", tuple(SIDES), "both")
+
+    @property
+    def stiffest(self) -> float:
+        """That of the contact."""
+        return self.contact_stiffness
+
+    def law(self) -> tuple[str, tuple[float, ...]]:
+        """Give stiffness, gap, centre and side."""
+        own = (self.contact_stiffness, self.gap, self.centre, SIDES[self.sides])
+        return "stop", own

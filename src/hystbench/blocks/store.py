@@ -1,0 +1,79 @@
+"""Block ``store``: a tank whose outflow follows a power of its level."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from hystbench import kernels
+from hystbench.blocks.band_limited import straight_lines
+from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.record import FloatArray
+
+PART = 0.1
+"""Largest share of its level, at most, that a store loses in one step."""
+MOST = 64
+"""Steps of one interval, at most."""
+
+
+@dataclass(frozen=True)
+class Store(HeldBlock):
+    """Level h of a store, 0 to its height: ``h' = gain z + bias - rate h^exponent``.
+
+    With an exponent of a half it is a tank with a free outlet (Torricelli), with one it
+    is linear. What would rise above the height is spilt. The output is the level, or
+    what leaves: the outflow and the share of what is spilt that the next store catches.
+    Second-order Runge-Kutta method.
+
+    References
+    ----------
+    .. [1] M. Schoukens, P. Mattsson, T. Wigren, J.-P. Noel, "Cascaded tanks benchmark
+       combining soft and hard nonlinearities", Workshop on Nonlinear System
+       Identification Benchmarks, 2016.
+    """
+
+    name: ClassVar = "store"
+    place: ClassVar = "base"
+    reference: ClassVar = "Schoukens et al., Cascaded tanks benchmark, 2016"
+
+    gain: float = number("Q/(U s)", "of the inflow", -HUGE, HUGE)
+    rate: float = number("Q^(1-e)/s", "of the outflow", 0.0, HUGE)
+    exponent: float = number("-", "e, of the level in the outflow", 0.1, 3.0, 0.5)
+    height: float = number("Q", "level at which it overflows", TINY, HUGE, HUGE)
+    caught: float = number("-", "share of what is spilt that goes on", 0.0, 1.0, 0.0)
+    bias: float = number("Q/s", "constant inflow", -HUGE, HUGE, 0.0)
+    start_level: float = number("Q", "level at the first sample", 0.0, HUGE, 0.0)
+    output: str = choice("what the output is", ("level", "outflow"), "level")
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Fill and empty the store."""
+        fine = 2 if self.holding == "band-limited" and len(z) > 2 else 1
+        v = self.gain * (straight_lines(z, fine) if fine > 1 else z) + self.bias
+        n = len(v)
+        level, outflow, spilt = np.zeros(n), np.zeros(n), np.zeros(n)
+        if n == 0:
+            return level
+        level[0] = min(self.start_level, self.height)
+        kernels.call(
+            "hb_store",
+            n,
+            self._parts(dt / fine),
+            dt / fine,
+            float(self.holding != "zero-order"),
+            self.rate,
+            self.exponent,
+            self.height,
+            np.ascontiguousarray(v),
+            level,
+            outflow,
+            spilt,
+        )
+        y = level if self.output == "level" else outflow + self.caught * spilt
+        return y[::fine]
+
+    def _parts(self, dt: float) -> int:
+        """Steps of an interval: none empties more than a part of the store."""
+        return int(np.clip(np.ceil(self.rate * dt / PART), 1, MOST))
