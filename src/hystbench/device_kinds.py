@@ -140,10 +140,7 @@ CAUSES: Mapping[str, Mapping[str, Sequence[Kind]]] = {
 }
 
 #: What an effect is called where its name is that of one of its causes.
-BEHAVIOURS: Mapping[str, str] = {
-    "eddy-diffusion": "diffusion-like lag",
-    "thermal-drift": "slow drift with the square of the input",
-}
+BEHAVIOURS: Mapping[str, str] = {"eddy-diffusion": "diffusion-like lag"}
 
 
 def causes_of(effect: str, kind: Kind | None = None) -> tuple[str, ...]:

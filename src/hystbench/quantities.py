@@ -77,6 +77,10 @@ class Quantities:
         return "unknown"
 
 
+NONE_KNOWN = Quantities()
+"""Of a device of which nothing is told."""
+
+
 def quantity_of(place: str, unit: str, told: str | None = None) -> Quantity:
     """Tell what a channel measures, from its unit and what is said of it.
 
