@@ -355,3 +355,18 @@ def test_dates_and_times_are_seconds_from_the_first(run, tmp_path):
     record = load_dataset(".").read("run-1")
     assert record.dt == pytest.approx(DT, rel=1e-9)
     assert len(record) == 800
+
+
+def test_the_kind_of_device_is_written(run, tmp_path):
+    status, _, _ = run("init", *records(tmp_path), "--device", "piezoelectric")
+    assert status == 0
+    assert written()["device"] == {"kind": "piezoelectric"}
+    assert load_dataset("dataset.yaml").device_kind == "piezoelectric"
+
+
+def test_a_kind_that_is_none_is_refused_in_a_line(run, tmp_path):
+    status, _, said = run("init", *records(tmp_path), "--device", "piezo")
+    assert status == 2
+    assert len(said.splitlines()) == 1
+    assert "piezoelectric" in said
+    assert not Path("dataset.yaml").exists()

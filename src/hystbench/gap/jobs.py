@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
+from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import Finding, black_box, decide
 from hystbench.gap.floor import Floor
@@ -14,12 +15,14 @@ from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
 from hystbench.gap.named_apart import named_apart
+from hystbench.gap.outcome import with_what_was_asked
 from hystbench.gap.own_values import OwnValues
 from hystbench.gap.run import DECISIVE, SHOWN, outcome, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.start import start_state
 from hystbench.gap.unnamed import SHARE
+from hystbench.gap.vocabulary import EVERYTHING
 from hystbench.model import Model
 from hystbench.written import writes
 
@@ -55,12 +58,18 @@ def decide_in(
     """
     writes(*(folder / name for name in DECIDED))
     asked = Limits.within(evidence.fit, limits) if limits else None
-    start, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
+    say = say_in_words(say)
+    vocabulary = EVERYTHING.in_device(evidence.device_kind)
+    start, floor = start_state(
+        evidence.fit, base, evidence.hold, evidence.noise_rms, vocabulary.offered
+    )
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
     finding = decide(
         evidence.name, base, start, floor, named, say, asked, own, unnamed_share
     )
+    content = with_device(finding.content, evidence.device_kind, evidence.quantities)
+    finding = replace(finding, content=content)
     kept = {
         "floor": asdict(floor),
         "state": state_mapping(finding.state),
@@ -114,5 +123,10 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
         own,
         evidence.warnings,
     )
+    content = with_what_was_asked(
+        shown.content, EVERYTHING.in_device(evidence.device_kind)
+    )
+    content = with_device(content, evidence.device_kind, evidence.quantities)
+    shown = replace(shown, content=content)
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

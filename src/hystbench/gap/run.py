@@ -12,6 +12,7 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.augmented import augmented
+from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
 from hystbench.gap.built_in import put_in
@@ -140,6 +141,8 @@ def closed_gap(
         If units do not match, the base does not run, or an effect cannot be put in.
     """
     check_units(evidence, base, place)
+    vocabulary = vocabulary.in_device(evidence.device_kind)
+    say = say_in_words(say)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
@@ -176,6 +179,7 @@ def closed_gap(
         ((_, alone),) = ladder(evidence.hold_out, [(BASE, mine)], nuisance)
         assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
         content = with_built_in(content, built_in, alone)
+    content = with_device(content, evidence.device_kind, evidence.quantities)
     shown = replace(shown, content=content)
     return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
 

@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from hystbench.figures.style import COLUMN, unit_text
+from hystbench.gap.behaviour import for_readers
 from hystbench.gap.locate import LEVEL
 from hystbench.gap.locate.view import percent
 from hystbench.gap.report import pictures, where, words
@@ -37,6 +38,7 @@ OPTIONAL: dict[str, Any] = {
     "calls_used_up": None,
     "asked": None,
     "built_in": None,
+    "device": None,
     "command": None,
 }
 #: And its parts with figures, where a bootstrap tells nothing.
@@ -73,17 +75,19 @@ def page(content: Content) -> str:
         environment.filters[name] = getattr(words, name)
     environment.filters["unit"] = words.unit
     environment.filters["listed"] = words.listed
-    gap = with_optional(content.gap)
+    named = with_optional(content.gap)  # as the vocabulary has it
+    gap = with_optional(for_readers(content.gap))
     drawn, missing = _where(content)
     page = environment.get_template(TEMPLATE).render(
         gap=gap,
-        sentence=words.verdict_sentence(gap),
+        sentence=words.verdict_sentence(named),
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
         y=unit_text(gap["unit"]),
         named=[effect["name"] for effect in gap["effects"]],
         glance=headline(gap, content),
         advice=words.advice(gap),
-        reruns=words.rerun_commands(gap),
+        reruns=words.rerun_commands(named),
+        causes=words.causes(gap),
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
