@@ -14,7 +14,7 @@ from hystbench.record import FloatArray
 
 KINDS = (
     *("stiffness", "sinh", "stop", "friction"),
-    *("drag", "hysteretic", "gravity", "slider"),
+    *("drag", "hysteretic", "gravity", "slider", "smooth"),
 )
 """Laws of the kernel, in the order of mechanism.c."""
 

@@ -21,6 +21,8 @@ from hystbench.record import FloatArray
 OUTPUTS = ("position", "velocity", "acceleration", "force")
 PHASE = 0.2
 """Largest angle, in radians, by which the linear coordinate turns in one step."""
+MOST = 40
+"""Steps of an interval, at most: the linear part is exact however fast it is."""
 CONTACT = 10
 """Steps of an interval that a stiff contact may ask for: it is stable without."""
 
@@ -144,7 +146,7 @@ class Mechanism(HeldBlock):
             dt * max(sqrt(k / self.mass), self.damping / self.mass) / PHASE
             for k in (self.stiffness, self.stiffness + contact)
         )
-        return max(1, ceil(linear), min(ceil(stiff), CONTACT))
+        return max(1, min(ceil(linear), MOST), min(ceil(stiff), CONTACT))
 
     def _step(self, dt: float) -> FloatArray:
         """Weights of q, q' and of the driving force at both ends of a step."""

@@ -6,7 +6,7 @@
 #define NUMBERS 6 /* of a force: its kind is the first, its memory the last */
 #define ROUNDS 60 /* of the search for the force at the end of a step */
 
-enum { STIFFNESS, SINH, STOP, FRICTION, DRAG, HYSTERETIC, GRAVITY, SLIDER };
+enum { STIFFNESS, SINH, STOP, FRICTION, DRAG, HYSTERETIC, GRAVITY, SLIDER, SMOOTH };
 
 static double dead_zone(double q, double gap)
 {
@@ -58,6 +58,8 @@ static double force(const double *f, double q, double v, double before, double m
         return f[1] * (*after = bouc_wen(memory, (q - before) / f[2], f[3]));
     case GRAVITY:
         return f[1] * (sin(q + f[2]) - sin(f[2]));
+    case SMOOTH:
+        return f[1] * tanh(v / f[2]);
     case SLIDER:
         return f[1] * dead_zone(*after = held(memory + q - before, f[2]), f[3]);
     }

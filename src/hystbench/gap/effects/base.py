@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,6 +128,51 @@ class Variant:
         return f"{self.effect} ({self.form})" if self.form else self.effect
 
 
+@dataclass(frozen=True)
+class Moved:
+    """How a mechanism moves, the largest magnitudes over all records.
+
+    Parameters
+    ----------
+    reach : float
+        Of its position about the middle.
+    speed : float
+        Of its velocity.
+    force : float
+        Of the force that drives it, or that its motion takes.
+    step : float
+        Shortest sampling interval, in seconds.
+    turns : bool
+        Whether it turns: its position is an angle in rad.
+    """
+
+    reach: float
+    speed: float
+    force: float
+    step: float
+    turns: bool = False
+
+
+@dataclass(frozen=True)
+class Law:
+    """A force inside a mechanism, or a filter beside it, where its fit starts.
+
+    Parameters
+    ----------
+    form : str
+        What tells it from other laws of the effect.
+    block : Block
+    free : tuple of str
+        Parameters that are fitted.
+    place : {"inside", "before", "behind"}
+    """
+
+    form: str
+    block: Block
+    free: tuple[str, ...]
+    place: Literal["inside", "before", "behind"] = "inside"
+
+
 class Effect(ABC):
     """One physical effect of the vocabulary."""
 
@@ -225,6 +270,16 @@ class Effect(ABC):
             charge=charge,
         )
 
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Give the laws by which the effect acts inside a mechanism, with starts.
+
+        Parameters
+        ----------
+        moved : Moved
+            How the linear mechanism moves on the records.
+        """
+        yield from ()
+
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
         raise NotImplementedError
@@ -290,3 +345,24 @@ def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:
     """Give values from low to high, so many a decade, evenly in their logarithm."""
     count = max(2, int(np.ceil(np.log10(high / low) * per_decade)) + 1)
     return np.geomspace(low, high, count)
+
+
+class ForceEffect(Effect):
+    """An effect that acts inside a mechanism and nowhere else."""
+
+    place = "inside"
+
+    def variants(self, scene: Scene) -> Iterator[Variant]:
+        """Decline: no chain in series has a place for it.
+
+        Raises
+        ------
+        Declined
+            Always.
+        """
+        raise Declined("it acts inside a mechanism, where it is tried apart")
+        yield
+
+    @abstractmethod
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Give the laws, as every effect may."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_in_drive
+from hystbench.blocks import registry
+from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic, places_in_drive
 from hystbench.gap.scene import Scene
 
 
@@ -19,3 +20,8 @@ class DriveLag(Effect):
         times = logarithmic(scene.step / 20, scene.span / 20, 2)
         for place in places_in_drive(scene, linear=True):
             yield self.inserted(scene, place, grids={"time_constant_s": times})
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer it before the mechanism, short against the records' rates."""
+        block = registry()[self.name].from_mapping({"time_constant_s": 2 * moved.step})
+        yield Law("", block, ("time_constant_s",), "before")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.blocks.friction_force import FrictionForce
+from hystbench.blocks.smooth_friction import SmoothFriction
+from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
 from hystbench.gap.scene import Scene
 
 
@@ -13,6 +15,7 @@ class Friction(Effect):
 
     name = "friction"
     place = "mechanics"
+    laws = ("friction-force", "smooth-friction")
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer it behind the mechanics, by the velocity at which it saturates."""
@@ -28,3 +31,23 @@ class Friction(Effect):
             inside=("velocity_scale",),
             unit={"coulomb": 1e-3 * scene.largest(end)},
         )
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer dry friction that gives way before it slides, weak and strong."""
+        for share, way in ((0.03, 1e-3), (0.3, 1e-3), (0.1, 3e-2)):
+            own = {
+                "coulomb": share * moved.force,
+                "presliding_distance": way * moved.reach,
+            }
+            yield Law("Coulomb", FrictionForce(**own), tuple(own))
+            own |= {
+                "static_excess": 0.5 * share * moved.force,
+                "stribeck_velocity": 0.1 * moved.speed,
+            }
+            yield Law("Stribeck", FrictionForce(**own), tuple(own))
+        for share in (0.03, 0.3):
+            smooth = {
+                "coulomb": 0.1 * moved.force,
+                "velocity_scale": share * moved.speed,
+            }
+            yield Law("smooth", SmoothFriction(**smooth), tuple(smooth))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.blocks import registry
+from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
 from hystbench.gap.scene import Scene
 
 
@@ -21,3 +22,8 @@ class InputDelay(Effect):
             0,
             grids={"delay_s": logarithmic(scene.step / 20, scene.span / 20, 2)},
         )
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer it before the mechanism, short against the records' rates."""
+        block = registry()[self.name].from_mapping({"delay_s": 2 * moved.step})
+        yield Law("", block, ("delay_s",), "before")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_in_sensor
+from hystbench.blocks import registry
+from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic, places_in_sensor
 from hystbench.gap.scene import Scene
 
 
@@ -19,3 +20,9 @@ class SensorLag(Effect):
         times = logarithmic(scene.step / 20, scene.span / 20)
         for place in places_in_sensor(scene, linear=True):
             yield self.inserted(scene, place, grids={"time_constant_s": times})
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer it behind the mechanism, short against the records' rates."""
+        own = {"time_constant_s": 2 * moved.step, "start": "settled"}
+        block = registry()[self.name].from_mapping(own)
+        yield Law("", block, ("time_constant_s",), "behind")

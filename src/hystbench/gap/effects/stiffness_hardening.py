@@ -10,8 +10,18 @@ import numpy as np
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.blocks.exponential_stiffness import ExponentialStiffness
+from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.effects.base import LINEAR, Declined, Effect, Values, Variant
+from hystbench.gap.effects.base import (
+    LINEAR,
+    Declined,
+    Effect,
+    Law,
+    Moved,
+    Values,
+    Variant,
+)
 from hystbench.gap.scene import Scene
 
 Before = tuple[Block, ...]
@@ -23,6 +33,7 @@ class StiffnessHardening(Effect):
 
     name = "stiffness-hardening"
     place = "mechanics"
+    laws = ("stiffness", "exponential-stiffness")
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer the spring for each mode, those inside transfer functions included.
@@ -39,6 +50,17 @@ class StiffnessHardening(Effect):
                 yield from self._hardened(scene, k, before, mode)
         if not found:
             raise Declined("the chain has no mode whose spring could harden")
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer a cube of either sign, a square beside it, and a steep spring."""
+        linear = moved.force / moved.reach
+        for sign in (1.0, -1.0):
+            cubic = sign * 0.03 * linear / moved.reach**2
+            block = Stiffness(quadratic=0.0, cubic=cubic)
+            yield Law("cube", block, ("cubic",))
+            yield Law("square and cube", block, ("quadratic", "cubic"))
+        steep = ExponentialStiffness(coefficient=0.03 * linear, reach=moved.reach / 2)
+        yield Law("steep", steep, ("coefficient", "reach"))
 
     def _hardened(
         self, scene: Scene, k: int, before: Before, mode: Mapping[str, Any]

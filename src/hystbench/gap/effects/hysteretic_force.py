@@ -1,0 +1,23 @@
+"""``hysteretic-force``: a force inside a mechanism that remembers the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.blocks.hysteretic_force import HystereticForce as Block
+from hystbench.gap.effects.base import ForceEffect, Law, Moved
+
+
+class HystereticForce(ForceEffect):
+    """Bouc and Wen's hysteresis as a force."""
+
+    name = "hysteretic-force"
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer it weak, with short and long ways to yield."""
+        names = ("largest", "yield_distance", "sharing")
+        for share, way in ((0.03, 0.03), (0.1, 0.3), (0.3, 1.0)):
+            block = Block(
+                largest=share * moved.force, yield_distance=way * moved.reach
+            )
+            yield Law("Bouc-Wen", block, names)

@@ -1,0 +1,25 @@
+"""``slider-with-gap``: dry friction in series with a clearance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.blocks.slider_with_gap import SliderWithGap as Block
+from hystbench.gap.effects.base import ForceEffect, Law, Moved
+
+
+class SliderWithGap(ForceEffect):
+    """A slider behind a clearance."""
+
+    name = "slider-with-gap"
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer narrow and wide clearances."""
+        names = ("contact_stiffness", "slip_force", "gap")
+        for share in (0.03, 0.3):
+            block = Block(
+                contact_stiffness=3.0 * moved.force / moved.reach,
+                slip_force=0.3 * moved.force,
+                gap=share * moved.reach,
+            )
+            yield Law("", block, names)

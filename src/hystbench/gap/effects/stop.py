@@ -1,0 +1,25 @@
+"""``stop``: a contact inside a mechanism beyond a clearance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.blocks.stop import SIDES
+from hystbench.blocks.stop import Stop as StopBlock
+from hystbench.gap.effects.base import ForceEffect, Law, Moved
+
+
+class Stop(ForceEffect):
+    """Contact beyond a clearance, on one side or both."""
+
+    name = "stop"
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer both sides, and either one, met early and late."""
+        stiffness = moved.force / moved.reach
+        for sides in SIDES:
+            for share in (0.3, 0.8):
+                block = StopBlock(
+                    contact_stiffness=stiffness, gap=share * moved.reach, sides=sides
+                )
+                yield Law(f"sides: {sides}", block, ("contact_stiffness", "gap"))

@@ -1,0 +1,207 @@
+"""Linear hosts: what forces can act inside of, fitted without any of them."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.held import Hold
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted, judged
+from hystbench.gap.sample import Sample
+from hystbench.gap.score import Score
+from hystbench.gap.state import Free, State
+from hystbench.quantities import Quantities
+from hystbench.record import FloatArray, Record
+
+FREQUENCIES = 24
+"""Natural frequencies at which a mass on a spring is begun."""
+RATIOS = (0.01, 0.05, 0.2, 0.7, 2.0)
+"""Damping ratios of each."""
+BEGUN = 3
+"""Starts that are fitted, the best ones of the grid."""
+MOTIONS = ("position", "velocity", "acceleration")
+
+
+def hosts(
+    records: tuple[Record, ...], quantities: Quantities, hold: Hold
+) -> Iterator[State]:
+    """Give linear models of one coordinate, with all their numbers free, begun.
+
+    Parameters
+    ----------
+    records : tuple of Record
+    quantities : Quantities
+        What the device takes and gives: a force that makes a motion is a mass with a
+        spring and one without; a motion that makes a force is an impedance. Where the
+        causality is not known, a mass with each of the motions as its output.
+    hold : {"zero-order", "linear", "band-limited"}
+    """
+    if quantities.causality == "motion to force":
+        if quantities.input in ("position", "velocity"):
+            yield impedance(records, quantities.input, hold)
+        return
+    if quantities.causality == "storage":
+        return
+    known = quantities.output in MOTIONS
+    for output in (quantities.output,) if known else MOTIONS:
+        yield from masses(records, output, hold)
+
+
+def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> State:
+    """Give the impedance that fits best: its force is linear in its numbers."""
+    names = ("mass", "damping", "stiffness", "bias")
+    sample = Sample.of(records)
+    columns = []
+    for name in names:
+        one = Impedance(**{**dict.fromkeys(names, 0.0), name: 1.0}, input=moved)
+        columns.append(sample.take([one.simulate(r.u, r.u, r.dt) for r in records]))
+    wanted = sample.take([record.y for record in records])
+    values = _solved(np.column_stack(columns), wanted)
+    block = Impedance(**dict(zip(names, values.tolist(), strict=True)), input=moved)
+    return _state((block,), records, hold, {0: names})
+
+
+def masses(records: tuple[Record, ...], output: str, hold: Hold) -> Iterator[State]:
+    """Give masses on springs, begun where a grid says, and a free mass.
+
+    At each natural frequency and damping ratio the gain and an offset of the output are
+    solved for.
+    """
+    found: list[tuple[float, tuple[Block, ...]]] = []
+    sample = Sample.of(records)
+    wanted = sample.take([record.y for record in records])
+    starts = ("rest",) if _from_rest(records) else ("rest", "settled", "moving")
+    span = max(record.dt * len(record) for record in records)
+    fastest = 0.8 * np.pi / min(record.dt for record in records)
+    grid = np.geomspace(2 * np.pi / span, fastest, FREQUENCIES)
+    for start, w, ratio in itertools.product(starts, grid, RATIOS):
+        unit = Mechanism(
+            mass=1.0,
+            damping=2 * ratio * w,
+            stiffness=w**2,
+            output=output,
+            start=start,
+            hold=hold,
+        )
+        motion = sample.take([unit.driven(r.u, r.dt, ()) for r in records])
+        columns = np.column_stack([motion, np.ones(len(motion))])
+        gain, offset = _solved(columns, wanted).tolist()
+        rest = float(np.mean((wanted - columns @ [gain, offset]) ** 2))
+        if gain == 0.0 or not np.isfinite(rest):
+            continue
+        size = 1.0 / abs(gain)
+        block = replace(
+            unit,
+            mass=size,
+            damping=2 * ratio * w * size,
+            stiffness=w**2 * size,
+            gain=float(np.sign(gain)),
+        )
+        found.append((rest, (block, Gain(value=1.0, offset=offset))))
+    for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]:
+        own = {0: ("mass", "damping", "stiffness"), 1: ("offset",)}
+        yield _state(chain, records, hold, own)
+    if output != "acceleration":
+        yield from free_masses(records, output, hold)
+
+
+def free_masses(
+    records: tuple[Record, ...], output: str, hold: Hold
+) -> Iterator[State]:
+    """Give a mass without a spring, begun at the rate of decay that fits best."""
+    sample = Sample.of(records)
+    wanted = sample.take([record.y for record in records])
+    span = max(record.dt * len(record) for record in records)
+    step = min(record.dt for record in records)
+    found = []
+    for rate in np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES):
+        unit = Mechanism(
+            mass=1.0, damping=rate, stiffness=0.0, output=output, hold=hold
+        )
+        ones = [np.ones(len(record)) for record in records]
+        columns = np.column_stack(
+            [
+                sample.take([unit.driven(r.u, r.dt, ()) for r in records]),
+                sample.take(
+                    [
+                        unit.driven(one, r.dt, ())
+                        for one, r in zip(ones, records, strict=True)
+                    ]
+                ),
+            ]
+        )
+        gain, bias = _solved(columns, wanted).tolist()
+        rest = float(np.mean((wanted - columns @ [gain, bias]) ** 2))
+        if gain != 0.0 and np.isfinite(rest):
+            found.append((rest, rate, gain, bias))
+    if found:
+        _, rate, gain, bias = min(found)
+        size = 1.0 / abs(gain)
+        block = Mechanism(
+            mass=size,
+            damping=rate * size,
+            stiffness=0.0,
+            gain=float(np.sign(gain)),
+            bias=bias * size,
+            output=output,
+            hold=hold,
+        )
+        yield _state((block,), records, hold, {0: ("mass", "damping", "bias")})
+
+
+def best_host(states: Sequence[State], score: Score) -> Fitted | None:
+    """Fit linear hosts, the likely ones to the end; give the one that scores least.
+
+    What it gives as its output may also have a share of the next derivative (a zero).
+    """
+    if not states:
+        return None
+    quick = [fitted(state, score, QUICK) for state in states]
+    best = fitted(min(quick, key=lambda item: item.score).state, score)
+    for further in with_zero(best.state):
+        found = fitted(further, score)
+        if found.score < best.score:
+            best = found
+    return best
+
+
+def with_zero(state: State) -> Iterator[State]:
+    """Give a mechanism with a zero in its numerator."""
+    block = state.chain[0]
+    if isinstance(block, Mechanism) and block.output != "force":
+        yield replace(state, free=(*state.free, Free(0, "blend")))
+
+
+def _from_rest(records: Sequence[Record]) -> bool:
+    """Tell whether every record begins with little of its input and output."""
+
+    def little(x: FloatArray) -> bool:
+        return bool(abs(x[0]) < 0.02 * np.max(np.abs(x)))
+
+    return all(little(record.u) and little(record.y) for record in records)
+
+
+def _state(
+    chain: tuple[Block, ...],
+    records: tuple[Record, ...],
+    hold: Hold,
+    own: dict[int, tuple[str, ...]],
+) -> State:
+    free = tuple(Free(k, name) for k, names in own.items() for name in names)
+    return State(chain, records, Sample.of(records), free=free, hold=hold)
+
+
+def _solved(columns: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Least squares with the columns scaled alike; zeros where one is not finite."""
+    if not np.all(np.isfinite(columns)):
+        return np.zeros(columns.shape[1])
+    sizes = np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-300)
+    found = np.linalg.lstsq(columns / sizes, wanted, rcond=1e-10)[0] / sizes
+    return np.asarray(found)

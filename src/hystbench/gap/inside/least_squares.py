@@ -1,0 +1,160 @@
+"""Fitting all free numbers of a model together, by SciPy's trust region."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.errors import InputError
+from hystbench.gap.score import Score
+from hystbench.gap.state import Free, State
+from hystbench.record import FloatArray
+
+EVALUATIONS = 40
+"""Of the residual in one fit, at most, without those of the derivatives."""
+QUICK = 8
+"""The same where starts are compared."""
+STEP = 1e-3
+"""Share of its size by which a number moves for a derivative: more than what a force
+that is not smooth makes of rounding."""
+OUT = 1e3
+"""Residual, in times of the output's size, of a model that runs away."""
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A model whose numbers were fitted.
+
+    Parameters
+    ----------
+    state : State
+    score : float
+    """
+
+    state: State
+    score: float
+
+
+def fitted(
+    state: State,
+    score: Score,
+    evaluations: int = EVALUATIONS,
+    used: NDArray[np.bool_] | None = None,
+) -> Fitted:
+    """Fit the free numbers of a model to its records.
+
+    Each record counts alike: its residual is divided by its rms before. A number that
+    cannot be negative is fitted by its logarithm.
+
+    Parameters
+    ----------
+    state : State
+    score : Score
+        Judges the result.
+    evaluations : int
+    used : ndarray of bool, shape (scored samples,), optional
+        Samples that count in the fit; all by default.
+    """
+    from scipy.optimize import least_squares  # late: a start alone needs none of it
+
+    sizes = _sizes(state)
+    logs = np.array([_positive(state, free) for free in state.free], dtype=bool)
+    values = np.array([state.value(free) for free in state.free])
+    start = np.where(logs, np.log(np.where(logs, np.maximum(values, 1e-300), 1.0)), 0.0)
+    weights = _weights(state)
+    if used is not None:
+        weights = weights * used
+    most = OUT * weights * float(np.max(np.abs(state.measured)))
+
+    def moved(point: FloatArray) -> State:
+        found = np.where(logs, np.exp(np.clip(point, -600, 600)), values + point * sizes)
+        return at_values(state, found)
+
+    def residual(point: FloatArray) -> FloatArray:
+        try:
+            rest = moved(point).residual * weights
+        except InputError:
+            return most  # out of what the blocks accept
+        return np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
+
+    if not len(values):
+        return Fitted(state, score.of(state.residual, state.freedom))
+    found = least_squares(
+        residual,
+        start,
+        x_scale=np.ones(len(start)),
+        diff_step=STEP,
+        max_nfev=evaluations,
+        xtol=1e-6,
+        ftol=1e-6,
+    )
+    best = moved(found.x)
+    return Fitted(best, judged(best, score))
+
+
+def judged(state: State, score: Score) -> float:
+    """Score a model; one that runs away has an infinite score."""
+    residual = state.residual
+    if not np.all(np.isfinite(residual)):
+        return float("inf")
+    return score.of(residual, state.freedom)
+
+
+def at_values(state: State, values: FloatArray) -> State:
+    """Give a model with other values of its free numbers, within their bounds.
+
+    Raises
+    ------
+    InputError
+        If a block does not take them together.
+    """
+    chain = list(state.chain)
+    changes: dict[int, dict[str, float]] = {}
+    for free, value in zip(state.free, values.tolist(), strict=True):
+        about = chain[free.block].parameters()[free.parameter]
+        low, high = max(about.low, free.low), min(about.high, free.high)
+        changes.setdefault(free.block, {})[free.parameter] = min(max(value, low), high)
+    for place, change in changes.items():
+        chain[place] = replace(chain[place], **change)
+    return state.with_chain(tuple(chain))
+
+
+def _positive(state: State, free: Free) -> bool:
+    about = state.chain[free.block].parameters()[free.parameter]
+    return about.low >= 0.0 and state.value(free) > 0.0
+
+
+def _weights(state: State) -> FloatArray:
+    """One over the rms of what the start leaves of each record."""
+    weights = np.empty(len(state.measured))
+    residual = np.where(np.isfinite(state.residual), state.residual, state.measured)
+    for part in state.sample.slices:
+        weights[part] = 1.0 / max(float(np.sqrt(np.mean(residual[part] ** 2))), 1e-300)
+    return weights
+
+
+def _sizes(state: State) -> FloatArray:
+    """What is a large change of each number that may have either sign.
+
+    Its own value; of a zero, what moves the output by its own rms.
+    """
+    sizes = np.ones(len(state.free))
+    now = state.residual
+    rms = float(np.sqrt(np.mean(state.measured**2)))
+    for k, free in enumerate(state.free):
+        if _positive(state, free):
+            continue
+        value = abs(state.value(free))
+        step = 1e-3 * value if value else 1e-6
+        values = np.array([state.value(item) for item in state.free])
+        values[k] += step
+        try:
+            change = at_values(state, values).residual - now
+        except InputError:
+            change = np.full(len(now), np.nan)
+        moved = float(np.sqrt(np.mean(change**2)))
+        reach = rms * step / moved if np.isfinite(moved) and moved > 0 else 1.0
+        sizes[k] = max(value, 0.1 * reach) if value else 0.1 * reach
+    return sizes
