@@ -59,6 +59,7 @@ VIEW = _object(
                 "delay",
                 "unexplained",
                 "record",
+                "level",
             ]
         },
         "axis": {"type": "string"},

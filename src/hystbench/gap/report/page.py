@@ -48,6 +48,7 @@ WHY = {
     "distortion": "distortion, as no record repeats with a gap above the noise",
     "over_plane": "the input and its rate together, as the input never moves",
     "loops": "areas of loops, as the input never moves",
+    "levels": "modes by level, as no three levels of a broadband input show one",
     "coherence": "coherence, as records are too short or the input never moves",
 }
 
@@ -352,6 +353,20 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 words="Area of the loop, output over input, at each frequency (bars: "
                 "two standard errors), and coherence of the gap with the input",
                 panels=(1, 2),
+            ),
+        ),
+        (
+            ("levels",),
+            lambda: draw(
+                where.levels,
+                curves["levels"]["modes"],
+                units["input"],
+                words="How modes move when the input grows; a linear device's stay. "
+                "Damping is told by power: what the input puts in, over the mean "
+                "square velocity; a curved spring widens the peak and leaves this "
+                "alone. Bars: standard errors",
+                height=2.4,
+                panels=(1, 3),
             ),
         ),
         (
