@@ -8,6 +8,7 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
+from hystbench import kernels
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -17,8 +18,6 @@ KINDS = (
     *("drag", "hysteretic", "gravity", "slider"),
 )
 """Laws of the kernel, in the order of mechanism.c."""
-
-
 ROW = 6
 """Numbers of a row of the kernel."""
 
@@ -62,7 +61,7 @@ class Force(AttachedBlock):
         return 0.0
 
     def numbers(self) -> tuple[float, ...]:
-        """Give the row of the kernel: the law's number, then six with its own."""
+        """Give the row of the kernel: the law's number, then its own and zeros."""
         kind, own = self.law()
         return (float(KINDS.index(kind)), *own, *(0.0,) * (ROW - 1 - len(own)))
 
@@ -82,6 +81,35 @@ def rows(forces: tuple[Force, ...]) -> FloatArray:
     """Give the kernel's rows of some forces, shape (forces, 6)."""
     numbers = np.array([item.numbers() for item in forces], dtype=np.float64)
     return numbers.reshape(len(forces), ROW)
+
+
+def against(
+    forces: tuple[Force, ...], position: FloatArray, velocity: FloatArray
+) -> FloatArray:
+    """Compute the sum of forces against a motion; none remembers one before it.
+
+    Parameters
+    ----------
+    forces : tuple of Force
+    position, velocity : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    found = np.zeros(len(position))
+    memory = np.zeros(len(forces))
+    kernels.call(
+        "hb_forces",
+        len(position),
+        len(forces),
+        rows(forces),
+        memory,
+        position,
+        velocity,
+        found,
+    )
+    return found
 
 
 @dataclass(frozen=True)

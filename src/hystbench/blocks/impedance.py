@@ -7,9 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench import kernels
 from hystbench.blocks.base import Block
-from hystbench.blocks.force import Force, Motion, rows
+from hystbench.blocks.force import Force, Motion, against
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.record import FloatArray
 
@@ -76,19 +75,8 @@ class Impedance(Block):
             v = _rate(q, dt)
         elif len(z):
             q = np.concatenate([[0.0], np.cumsum((z[1:] + z[:-1]) / 2 * dt)])
-        force = np.zeros(len(q))
-        kernels.call(
-            "hb_forces",
-            len(q),
-            len(forces),
-            rows(forces),
-            np.zeros(len(forces)),
-            q,
-            v,
-            force,
-        )
         curved = _curvature(q, dt) if self.input == "position" else _rate(v, dt)
-        return Motion(q, v, curved, force)
+        return Motion(q, v, curved, against(forces, q, v))
 
 
 def _rate(x: FloatArray, dt: float) -> FloatArray:

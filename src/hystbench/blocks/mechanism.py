@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.band_limited import straight_lines
-from hystbench.blocks.force import Force, Motion, rows
+from hystbench.blocks.force import Force, Motion, against, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import StateSpace, discretise
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
@@ -23,6 +23,8 @@ PHASE = 0.2
 """Largest angle, in radians, by which the linear coordinate turns in one step."""
 CONTACT = 10
 """Steps of an interval that a stiff contact may ask for: it is stable without."""
+DOUBLINGS = 60
+"""Of the way on which a place of balance is looked for."""
 
 
 @dataclass(frozen=True)
@@ -33,19 +35,21 @@ class Mechanism(HeldBlock):
     free mass has a stiffness of zero. The output is the motion, or the force on the
     mount, ``c q' + k q + F``.
 
-    The linear part is exact over a step, in which the force counts with the mean of its
-    values at both ends: of second order, and stable however stiff the forces are. A
-    band-limited input is taken as straight lines on a grid twice as fine.
+    The linear part is exact over a step, in which the forces count with their mean over
+    the way, which does their exact work (a discrete gradient): of second order, and
+    stable however stiff they are. A band-limited input is taken as straight lines on a
+    grid twice as fine. With ``start: settled`` it begins where the springs balance the
+    first value; friction holds nothing there yet.
 
     References
     ----------
-    .. [1] N. M. Newmark, "A method of computation for structural dynamics", Journal of
-       the Engineering Mechanics Division 85 (1959) 67-94 (mean acceleration).
+    .. [1] O. Gonzalez, "Time integration and discrete Hamiltonian systems", Journal of
+       Nonlinear Science 6 (1996) 449-467.
     """
 
     name: ClassVar = "mechanism"
     place: ClassVar = "base"
-    reference: ClassVar = "Newmark, J. Eng. Mech. Div. 85 (1959)"
+    reference: ClassVar = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
 
     mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY, HUGE)
     damping: float = number("U s/Q", "c, of a viscous force", 0.0, HUGE)
@@ -96,7 +100,7 @@ class Mechanism(HeldBlock):
         motion = self.motion(z, dt, forces)
         if self.output == "force":
             spring = self.damping * motion.velocity + self.stiffness * motion.position
-            return spring + motion.force
+            return spring + motion.force + self.blend * motion.velocity
         if self.output == "position":
             return motion.position + self.blend * motion.velocity
         if self.output == "velocity":
@@ -117,12 +121,13 @@ class Mechanism(HeldBlock):
             return Motion(q, v, q, force)
         q[0], v[0] = self.start_position, self.start_velocity
         if self.start != "rest":
-            q[0] += (self.gain * before + self.bias) / self.stiffness
+            q[0] += self._balance(self.gain * before + self.bias, forces)
         parts = self._parts(step, forces)
         kernels.call(
             "hb_mechanism",
             n,
             parts,
+            step,
             float(self.holding != "zero-order"),
             self._step(step / parts),
             len(forces),
@@ -136,6 +141,27 @@ class Mechanism(HeldBlock):
         acceleration = (p - self.damping * v - self.stiffness * q - force) / self.mass
         shown = slice((len(path) - len(z)) * fine, None, fine)
         return Motion(q[shown], v[shown], acceleration[shown], force[shown])
+
+    def _balance(self, p: float, forces: tuple[Force, ...]) -> float:
+        """Find where the springs hold a force, next to where the linear one does."""
+        linear = p / self.stiffness
+
+        def over(q: float) -> float:
+            force = against(forces, np.array([q]), np.zeros(1))[0]
+            return float(self.stiffness * q + force - p)
+
+        first = over(linear)
+        if first == 0:
+            return linear
+        from scipy.optimize import brentq  # late: most starts are at rest
+
+        # Stiffer springs balance within the first step back; others further on.
+        step, end = -first / self.stiffness, linear
+        for _ in range(DOUBLINGS):
+            end, step = linear + step, 2 * step
+            if not over(end) * first > 0:
+                return float(brentq(over, linear, end, xtol=1e-300, rtol=1e-15))
+        return float("nan")
 
     def _parts(self, dt: float, forces: tuple[Force, ...]) -> int:
         """Steps of an interval: short for the linear coordinate, and for a contact."""

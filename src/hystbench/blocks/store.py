@@ -71,8 +71,11 @@ class Store(HeldBlock):
             outflow,
             spilt,
         )
-        y = level if self.output == "level" else outflow + self.caught * spilt
-        return y[::fine]
+        if self.output == "level":
+            return level[::fine]
+        # What was spilt is a mean over the interval before, in parts or whole.
+        spilt[fine::fine] = spilt[1:].reshape(-1, fine).mean(axis=1)
+        return outflow[::fine] + self.caught * spilt[::fine]
 
     def _parts(self, dt: float) -> int:
         """Steps of an interval: none empties more than a part of the store."""
