@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -39,6 +40,9 @@ class Host(Protocol):
 
     def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
         """Compute the output with forces inside."""
+
+    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
+        """Say what it does at one sample with forces inside."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,15 @@ def rows(forces: tuple[Force, ...]) -> FloatArray:
     return numbers.reshape(len(forces), ROW)
 
 
+def exported(forces: tuple[Force, ...]) -> dict[str, Any]:
+    """Give the constants of a step that stand for forces; it remembers one each.
+
+    Without a force there is a row of zeros, as C has no empty arrays.
+    """
+    numbers = rows(forces).ravel() if forces else np.zeros(ROW)
+    return {"count": len(forces), "forces": numbers}
+
+
 def against(
     forces: tuple[Force, ...], position: FloatArray, velocity: FloatArray
 ) -> FloatArray:
@@ -125,3 +138,7 @@ class Driven:
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
         return self.host.driven(z, dt, self.forces)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Say what both do at one sample, as :meth:`Block.step` does."""
+        return self.host.driven_step(sampling, self.forces)

@@ -10,10 +10,11 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.band_limited import straight_lines
-from hystbench.blocks.force import Force, Motion, against, rows
+from hystbench.blocks.force import Force, Motion, against, exported, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import StateSpace, discretise
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
 from hystbench.blocks.transfer_function import STARTS, path_from
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -141,6 +142,52 @@ class Mechanism(HeldBlock):
         acceleration = (p - self.damping * v - self.stiffness * q - force) / self.mass
         shown = slice((len(path) - len(z)) * fine, None, fine)
         return Motion(q[shown], v[shown], acceleration[shown], force[shown])
+
+    def step(self, sampling: Sampling) -> Step:
+        """Move the coordinate over the interval that has passed."""
+        return self.driven_step(sampling, ())
+
+    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
+        """Do so with forces inside."""
+        segments, points, corners = line_corners(self.holding, sampling.points)
+        line = sampling.dt / segments
+        parts = self._parts(line, forces)
+        balanced = 0.0 if self.start == "rest" else 1 / self.stiffness
+        constants = {
+            "gain": self.gain,
+            "bias": self.bias,
+            "segments": segments,
+            "points": points,
+            "corners": corners,
+            "ramp": float(self.holding != "zero-order"),
+            "parts": parts,
+            "h": line / parts,
+            "step": self._step(line / parts).ravel(),
+            "shown": self._shown(),
+            "start": np.array([self.start_position, self.start_velocity, balanced]),
+            **exported(forces),
+        }
+        states = {"motion": 2, "memory": max(len(forces), 1), "history": 1 + points}
+        differs = [smooth_curve(points)] if segments > 1 else []
+        if self.start == "moving" or (self.start == "settled" and forces):
+            differs.append(
+                "starts where its linear spring alone holds its first sample, whatever "
+                "came before"
+            )
+        return Step("mechanism", constants, states, differs="; ".join(differs))
+
+    def _shown(self) -> FloatArray:
+        """Weights of q, q', the forces inside and the driving force in the output."""
+        spring = np.array([self.stiffness, self.damping, 1.0, 0.0])
+        acceleration = (np.array([0.0, 0.0, 0.0, 1.0]) - spring) / self.mass
+        position, velocity = np.eye(4)[:2]
+        weights: dict[str, FloatArray] = {
+            "position": position + self.blend * velocity,
+            "velocity": velocity + self.blend * acceleration,
+            "acceleration": acceleration + self.blend * velocity,
+            "force": spring + self.blend * velocity,
+        }
+        return weights[self.output]
 
     def _balance(self, p: float, forces: tuple[Force, ...]) -> float:
         """Find where the springs hold a force, next to where the linear one does."""

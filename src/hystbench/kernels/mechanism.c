@@ -40,25 +40,29 @@ static double phi2(double y)
     return sum;
 }
 
+/* Moves x, which follows x' = 1 + a x, and gives its integral over the way. */
+static double integral_of(double *x, double a, double way)
+{
+    const double slope = 1 + a * *x, from = *x;
+    if (!(slope > 0)) return from * way; /* it rests there */
+    *x += slope * way * phi1(a * way);
+    return way * (from + slope * way * phi2(a * way));
+}
+
 /* Bouc-Wen's operator with exponent 1, solved exactly: z of a reach of one after a way
  * in units of the yield distance, and its integral over the way.  Unloading is
  * 2 share |z| less stiff than in Dahl's form, which has a share of zero. */
 static double bouc_wen(double z, double way, double share, double *integral)
 {
-    const double sign = way < 0 ? -1 : 1, b = 2 * share - 1;
-    double left = fabs(way), x = sign * z, sum = 0;
-    if (x < 0) { /* unloading: x' = 1 + b x */
-        double until = fabs(b) < 1e-9 ? -x : b * x > -1 ? -log1p(b * x) / b : INFINITY;
-        until = fmin(until, left);
-        sum = until * (x * phi1(b * until) + until * phi2(b * until));
-        x = x * exp(b * until) + until * phi1(b * until);
-        left -= until;
+    const double sign = way < 0 ? -1 : 1, b = 2 * share - 1, length = fabs(way);
+    double x = sign * z, until = 0;
+    *integral = 0;
+    if (x < 0) { /* unloading, until x is zero */
+        until = fabs(b) < 1e-9 ? -x : b * x > -1 ? -log1p(b * x) / b : length;
+        until = fmin(until, length);
+        *integral += integral_of(&x, b, until);
     }
-    if (left > 0) { /* loading: x' = 1 - x */
-        sum += left * (x * phi1(-left) + left * phi2(-left));
-        x = 1 + (x - 1) * exp(-left);
-    }
-    *integral = sum; /* of x over the way's length: of z over the way */
+    *integral += integral_of(&x, -1, length - until); /* loading */
     return sign * x;
 }
 
@@ -210,9 +214,10 @@ static double way_of(const struct part *p)
         const double best = fabs(at_a) < fabs(at_b) ? a : b, apart = fabs(b - a);
         const double near = 4e-16 * fabs(best) + 1e-16 * fabs(p->alone);
         if (at_a == 0 || apart <= near) return at_a == 0 ? a : best;
-        const double xi = (a - b) / (c - b), phi = (at_a - at_b) / (at_c - at_b);
+        const double xi = (a - b) / (c - b);
+        const double phi = at_c == at_b ? 1 : (at_a - at_b) / (at_c - at_b);
         t = 0.5;
-        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi)
+        if (phi != 1 && phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi)
             t = at_a / (at_b - at_a) * at_c / (at_b - at_c) +
                 (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b);
         t = fmax(near / apart / 2, fmin(1 - near / apart / 2, t));
