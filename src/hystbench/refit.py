@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from hystbench.blocks import registry
+from hystbench.blocks.attached import AttachedBlock, attached
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.rate_dependent_hysteresis import FORMS
@@ -249,12 +250,21 @@ def _place(task: Task, effect: str) -> int | None:
     where, end = _PLACES[effect], len(task.model.chain)
     if where == "material":
         if task.hysteresis is None:
-            return None if effect == "rate-dependent-hysteresis" else 1
-        return task.hysteresis + 1
+            return None if effect == "rate-dependent-hysteresis" else _next(task, 0)
+        return _next(task, task.hysteresis)
     if where == "mode":
         names = [block.name for block in task.model.chain]
         return names.index("resonance") if "resonance" in names else end
     return 0 if where == "start" else end
+
+
+def _next(task: Task, place: int) -> int:
+    """Give the place behind a block and all that is attached to it."""
+    chain = task.model.chain
+    behind = place + 1
+    while behind < len(chain) and isinstance(chain[behind], AttachedBlock):
+        behind += 1
+    return behind
 
 
 def _searched(task: Task, effect: str) -> dict[str, Searched]:
@@ -451,8 +461,8 @@ def _behind(
     out = []
     for record, signal in zip(task.records, before, strict=True):
         y = signal
-        for block in chain[place:]:
-            y = block.simulate(y, record.u, record.dt)
+        for step in attached(chain[place:]):
+            y = step.simulate(y, record.u, record.dt)
         out.append(y)
     return np.concatenate(out)
 
@@ -461,8 +471,8 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
     """Add plays of the input, and their squares, where the hysteresis is."""
     if (effect == "hysteresis") != (task.hysteresis is None):
         return None
-    place = (task.hysteresis or 0) + 1
-    rest = task.model.chain[place:]
+    place = _next(task, task.hysteresis or 0)
+    rest = attached(task.model.chain[place:])
     thresholds = np.linspace(0.0, 0.9 * task.reach, PLAYS)
 
     def columns(record: Record) -> FloatArray:
@@ -471,8 +481,8 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
         out = []
         for signal in plays:
             y = np.ascontiguousarray(signal)
-            for block in rest:
-                y = block.simulate(y, record.u, record.dt)
+            for step in rest:
+                y = step.simulate(y, record.u, record.dt)
             out.append(y)
         return np.stack(out, axis=1)
 

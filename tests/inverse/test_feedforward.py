@@ -58,6 +58,9 @@ def test_a_linear_system_needs_its_own_inverse_and_no_more():
         [("jiles-atherton", {}), ("input-delay", {})],
         [("gpi", {}), ("rate-dependent-hysteresis", {}), ("sensor-lag", {})],
         [("eddy-diffusion", {}), ("gpi", {}), ("asymmetry", {})],
+        [("mechanism", {}), ("stiffness", {}), ("drag", {})],
+        [("gpi", {}), ("mechanism", {"hold": "band-limited"}), ("stiffness", {})],
+        [("impedance", {"mass": 1e-5}), ("hysteretic-force", {})],
         [("gpi", {}), ("thermal-drift", {}), ("sensor-lag", {})],
     ],
     ids=lambda blocks: "+".join(name for name, _ in blocks),
@@ -205,3 +208,14 @@ class TestCommand:
         assert done.returncode == 2
         assert done.stderr.count("\n") == 1
         assert "displacement_um" in done.stderr
+
+
+@pytest.mark.parametrize("size", [0.02, 0.05])
+def test_a_motion_that_runs_away_is_refused_in_one_line(size):
+    # 100 q - 1e5 q^3 holds no load beyond q = 0.018.
+    model = model_of(
+        ("mechanism", {}), ("stiffness", {"quadratic": 0.0, "cubic": -1e5})
+    )
+    with pytest.raises(InputError, match=r"^reference: .*runs away") as told:
+        feedforward(model, sine(20, size), DT)
+    assert "\n" not in str(told.value)

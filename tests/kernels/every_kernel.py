@@ -17,13 +17,20 @@ os.sched_setaffinity(0, allowed[: int(sys.argv[1])])
 import numpy as np  # noqa: E402
 
 from hystbench import kernels, operators  # noqa: E402
+from hystbench.blocks.friction_force import FrictionForce  # noqa: E402
+from hystbench.blocks.gravity import Gravity  # noqa: E402
+from hystbench.blocks.hysteretic_force import HystereticForce  # noqa: E402
+from hystbench.blocks.impedance import Impedance  # noqa: E402
 from hystbench.blocks.jiles_atherton import JilesAtherton  # noqa: E402
+from hystbench.blocks.mechanism import Mechanism  # noqa: E402
 from hystbench.blocks.preisach import Preisach  # noqa: E402
 from hystbench.blocks.rate_dependent_hysteresis import (  # noqa: E402
     RateDependentHysteresis,
 )
 from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
+from hystbench.blocks.stiffness import Stiffness  # noqa: E402
 from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E402
+from hystbench.blocks.store import Store  # noqa: E402
 from hystbench.envelope import Envelope  # noqa: E402
 from hystbench.filters import FILTERS, run_many  # noqa: E402
 from hystbench.inverse.plays import Plays  # noqa: E402
@@ -129,6 +136,18 @@ def blocks(x):
         coefficient=0.01, exponent=0.5, form="acting-field"
     ).wrap(each[-1], x, x, DT)
     yield "acting field", (wrapped,)
+    forces = (
+        FrictionForce(coulomb=0.2, presliding_distance=1e-3),
+        Gravity(amplitude=3.0),
+        HystereticForce(largest=0.3, yield_distance=1e-2),
+        Stiffness(quadratic=5.0, cubic=40.0),
+    )
+    machine = Mechanism(mass=1e-4, damping=5e-3, stiffness=10.0)
+    yield "mechanism", (machine.driven(x, DT, forces),)
+    back = Impedance(mass=1e-4, damping=5e-3, stiffness=10.0)
+    yield "impedance", (back.driven(x, DT, forces),)
+    tank = Store(gain=4.0, rate=2.0, bias=1.0, height=1.0)
+    yield tank.name, (tank.simulate(x, x, DT),)
 
 
 def main():

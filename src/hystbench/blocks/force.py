@@ -8,7 +8,9 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
+from hystbench import kernels
 from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -17,8 +19,6 @@ KINDS = (
     *("drag", "hysteretic", "gravity", "slider", "smooth"),
 )
 """Laws of the kernel, in the order of mechanism.c."""
-
-
 ROW = 6
 """Numbers of a row of the kernel."""
 
@@ -41,6 +41,9 @@ class Host(Protocol):
     def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
         """Compute the output with forces inside."""
 
+    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
+        """Say what it does at one sample with forces inside."""
+
 
 @dataclass(frozen=True)
 class Force(AttachedBlock):
@@ -62,7 +65,7 @@ class Force(AttachedBlock):
         return 0.0
 
     def numbers(self) -> tuple[float, ...]:
-        """Give the row of the kernel: the law's number, then six with its own."""
+        """Give the row of the kernel: the law's number, then its own and zeros."""
         kind, own = self.law()
         return (float(KINDS.index(kind)), *own, *(0.0,) * (ROW - 1 - len(own)))
 
@@ -84,6 +87,44 @@ def rows(forces: tuple[Force, ...]) -> FloatArray:
     return numbers.reshape(len(forces), ROW)
 
 
+def exported(forces: tuple[Force, ...]) -> dict[str, Any]:
+    """Give the constants of a step that stand for forces; it remembers one each.
+
+    Without a force there is a row of zeros, as C has no empty arrays.
+    """
+    numbers = rows(forces).ravel() if forces else np.zeros(ROW)
+    return {"count": len(forces), "forces": numbers}
+
+
+def against(
+    forces: tuple[Force, ...], position: FloatArray, velocity: FloatArray
+) -> FloatArray:
+    """Compute the sum of forces against a motion; none remembers one before it.
+
+    Parameters
+    ----------
+    forces : tuple of Force
+    position, velocity : ndarray, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    found = np.zeros(len(position))
+    memory = np.zeros(len(forces))
+    kernels.call(
+        "hb_forces",
+        len(position),
+        len(forces),
+        rows(forces),
+        memory,
+        position,
+        velocity,
+        found,
+    )
+    return found
+
+
 @dataclass(frozen=True)
 class Driven:
     """A mechanism or an impedance together with the forces inside it."""
@@ -97,3 +138,7 @@ class Driven:
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
         return self.host.driven(z, dt, self.forces)
+
+    def step(self, sampling: Sampling) -> Step:
+        """Say what both do at one sample, as :meth:`Block.step` does."""
+        return self.host.driven_step(sampling, self.forces)

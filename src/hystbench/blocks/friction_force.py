@@ -13,10 +13,10 @@ from hystbench.blocks.parameter import HUGE, TINY, number
 class FrictionForce(Force):
     """Coulomb friction that gives way by a small distance before it slides.
 
-    ``F = (coulomb + static_excess exp(-(q' / stribeck_velocity)^2)) z /
-    presliding_distance`` with z the way held between plus and minus the presliding
-    distance (a stop operator): so it holds where the device rests. With a Stribeck
-    velocity of zero there is no excess.
+    ``F = (coulomb + static_excess) z / presliding_distance`` with z the way, held where
+    F is ``coulomb + static_excess exp(-(q' / stribeck_velocity)^2)`` either way (a stop
+    operator): so it holds where the device rests. With a Stribeck velocity of zero
+    there is no excess.
 
     References
     ----------

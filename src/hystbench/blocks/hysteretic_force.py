@@ -15,7 +15,8 @@ class HystereticForce(Force):
 
     ``yield_distance dz/dq = 1 - |z| (sharing + (1 - sharing) sgn(z dq))``, z between -1
     and 1: micro-slip of joints, the fluid of a magnetorheological damper. A sharing of
-    0.5 is Dahl's friction. Solved exactly over every monotone piece of the way.
+    zero is Dahl's friction; with one it unloads along the way on which it was loaded.
+    Solved exactly over every monotone piece of the way.
 
     References
     ----------
@@ -31,7 +32,11 @@ class HystereticForce(Force):
     largest: float = number("U", "force at which it yields wholly", 0.0, HUGE)
     yield_distance: float = number("Q", "way in which it yields", TINY, HUGE)
     sharing: float = number(
-        "-", "0.5: Dahl's; more: softer loading branches than unloading", 0.0, 1.0, 0.5
+        "-",
+        "0: Dahl's; 0.5: unloads as stiff as at rest; 1: unloads as it loads",
+        0.0,
+        1.0,
+        0.5,
     )
 
     def law(self) -> tuple[str, tuple[float, ...]]:

@@ -7,10 +7,16 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench import kernels
 from hystbench.blocks.base import Block
-from hystbench.blocks.force import Force, Motion, rows
+from hystbench.blocks.force import Force, Motion, against, exported
 from hystbench.blocks.parameter import HUGE, choice, number
+from hystbench.blocks.step import (
+    Sampling,
+    Step,
+    central_difference,
+    foretold,
+    second_difference,
+)
 from hystbench.record import FloatArray
 
 INPUTS = ("position", "velocity")
@@ -69,6 +75,29 @@ class Impedance(Block):
             + self.bias
         )
 
+    def step(self, sampling: Sampling) -> Step:
+        """Foretell the next sample, for the rates."""
+        return self.driven_step(sampling, ())
+
+    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
+        """Do so with forces inside."""
+        points, dt = sampling.points, sampling.dt
+        constants = {
+            "mass": self.mass,
+            "damping": self.damping,
+            "stiffness": self.stiffness,
+            "bias": self.bias,
+            "velocity": int(self.input == "velocity"),
+            "dt": dt,
+            "points": points,
+            "rate": central_difference(points, 0.0, 1.0) / dt,
+            "curvature": second_difference(points) / dt**2,
+            **exported(forces),
+        }
+        memory = max(len(forces), 1)
+        states = {"place": 2, "memory": memory, "history": 1 + points}
+        return Step("impedance", constants, states, differs=foretold(points))
+
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Give the motion and the forces that it meets, as for :meth:`driven`."""
         q = v = np.ascontiguousarray(z, dtype=np.float64)
@@ -76,19 +105,8 @@ class Impedance(Block):
             v = _rate(q, dt)
         elif len(z):
             q = np.concatenate([[0.0], np.cumsum((z[1:] + z[:-1]) / 2 * dt)])
-        force = np.zeros(len(q))
-        kernels.call(
-            "hb_forces",
-            len(q),
-            len(forces),
-            rows(forces),
-            np.zeros(len(forces)),
-            q,
-            v,
-            force,
-        )
         curved = _curvature(q, dt) if self.input == "position" else _rate(v, dt)
-        return Motion(q, v, curved, force)
+        return Motion(q, v, curved, against(forces, q, v))
 
 
 def _rate(x: FloatArray, dt: float) -> FloatArray:

@@ -10,10 +10,11 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.band_limited import straight_lines
-from hystbench.blocks.force import Force, Motion, rows
+from hystbench.blocks.force import Force, Motion, against, exported, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import StateSpace, discretise
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
 from hystbench.blocks.transfer_function import STARTS, path_from
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -25,6 +26,8 @@ MOST = 40
 """Steps of an interval, at most: the linear part is exact however fast it is."""
 CONTACT = 10
 """Steps of an interval that a stiff contact may ask for: it is stable without."""
+DOUBLINGS = 60
+"""Of the way on which a place of balance is looked for."""
 
 
 @dataclass(frozen=True)
@@ -35,19 +38,21 @@ class Mechanism(HeldBlock):
     free mass has a stiffness of zero. The output is the motion, or the force on the
     mount, ``c q' + k q + F``.
 
-    The linear part is exact over a step, in which the force counts with the mean of its
-    values at both ends: of second order, and stable however stiff the forces are. A
-    band-limited input is taken as straight lines on a grid twice as fine.
+    The linear part is exact over a step, in which the forces count with their mean over
+    the way, which does their exact work (a discrete gradient): of second order, and
+    stable however stiff they are. A band-limited input is taken as straight lines on a
+    grid twice as fine. With ``start: settled`` it begins where the springs balance the
+    first value; friction holds nothing there yet.
 
     References
     ----------
-    .. [1] N. M. Newmark, "A method of computation for structural dynamics", Journal of
-       the Engineering Mechanics Division 85 (1959) 67-94 (mean acceleration).
+    .. [1] O. Gonzalez, "Time integration and discrete Hamiltonian systems", Journal of
+       Nonlinear Science 6 (1996) 449-467.
     """
 
     name: ClassVar = "mechanism"
     place: ClassVar = "base"
-    reference: ClassVar = "Newmark, J. Eng. Mech. Div. 85 (1959)"
+    reference: ClassVar = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
 
     mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY, HUGE)
     damping: float = number("U s/Q", "c, of a viscous force", 0.0, HUGE)
@@ -98,7 +103,7 @@ class Mechanism(HeldBlock):
         motion = self.motion(z, dt, forces)
         if self.output == "force":
             spring = self.damping * motion.velocity + self.stiffness * motion.position
-            return spring + motion.force
+            return spring + motion.force + self.blend * motion.velocity
         if self.output == "position":
             return motion.position + self.blend * motion.velocity
         if self.output == "velocity":
@@ -119,12 +124,13 @@ class Mechanism(HeldBlock):
             return Motion(q, v, q, force)
         q[0], v[0] = self.start_position, self.start_velocity
         if self.start != "rest":
-            q[0] += (self.gain * before + self.bias) / self.stiffness
+            q[0] += self._balance(self.gain * before + self.bias, forces)
         parts = self._parts(step, forces)
         kernels.call(
             "hb_mechanism",
             n,
             parts,
+            step,
             float(self.holding != "zero-order"),
             self._step(step / parts),
             len(forces),
@@ -138,6 +144,73 @@ class Mechanism(HeldBlock):
         acceleration = (p - self.damping * v - self.stiffness * q - force) / self.mass
         shown = slice((len(path) - len(z)) * fine, None, fine)
         return Motion(q[shown], v[shown], acceleration[shown], force[shown])
+
+    def step(self, sampling: Sampling) -> Step:
+        """Move the coordinate over the interval that has passed."""
+        return self.driven_step(sampling, ())
+
+    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
+        """Do so with forces inside."""
+        segments, points, corners = line_corners(self.holding, sampling.points)
+        line = sampling.dt / segments
+        parts = self._parts(line, forces)
+        balanced = 0.0 if self.start == "rest" else 1 / self.stiffness
+        constants = {
+            "gain": self.gain,
+            "bias": self.bias,
+            "segments": segments,
+            "points": points,
+            "corners": corners,
+            "ramp": float(self.holding != "zero-order"),
+            "parts": parts,
+            "h": line / parts,
+            "step": self._step(line / parts).ravel(),
+            "shown": self._shown(),
+            "start": np.array([self.start_position, self.start_velocity, balanced]),
+            **exported(forces),
+        }
+        states = {"motion": 2, "memory": max(len(forces), 1), "history": 1 + points}
+        differs = [smooth_curve(points)] if segments > 1 else []
+        if self.start == "moving" or (self.start == "settled" and forces):
+            differs.append(
+                "starts where its linear spring alone holds its first sample, whatever "
+                "came before"
+            )
+        return Step("mechanism", constants, states, differs="; ".join(differs))
+
+    def _shown(self) -> FloatArray:
+        """Weights of q, q', the forces inside and the driving force in the output."""
+        spring = np.array([self.stiffness, self.damping, 1.0, 0.0])
+        acceleration = (np.array([0.0, 0.0, 0.0, 1.0]) - spring) / self.mass
+        position, velocity = np.eye(4)[:2]
+        weights: dict[str, FloatArray] = {
+            "position": position + self.blend * velocity,
+            "velocity": velocity + self.blend * acceleration,
+            "acceleration": acceleration + self.blend * velocity,
+            "force": spring + self.blend * velocity,
+        }
+        return weights[self.output]
+
+    def _balance(self, p: float, forces: tuple[Force, ...]) -> float:
+        """Find where the springs hold a force, next to where the linear one does."""
+        linear = p / self.stiffness
+
+        def over(q: float) -> float:
+            force = against(forces, np.array([q]), np.zeros(1))[0]
+            return float(self.stiffness * q + force - p)
+
+        first = over(linear)
+        if first == 0:
+            return linear
+        from scipy.optimize import brentq  # late: most starts are at rest
+
+        # Stiffer springs balance within the first step back; others further on.
+        step, end = -first / self.stiffness, linear
+        for _ in range(DOUBLINGS):
+            end, step = linear + step, 2 * step
+            if not over(end) * first > 0:
+                return float(brentq(over, linear, end, xtol=1e-300, rtol=1e-15))
+        return float("nan")
 
     def _parts(self, dt: float, forces: tuple[Force, ...]) -> int:
         """Steps of an interval: short for the linear coordinate, and for a contact."""

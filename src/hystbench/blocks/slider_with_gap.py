@@ -13,9 +13,9 @@ from hystbench.blocks.parameter import HUGE, TINY, number
 class SliderWithGap(Force):
     """A spring behind a clearance that slides at a force.
 
-    ``F = contact_stiffness dead_zone(z, gap)`` with z the way since the last reversal,
-    held between plus and minus ``gap + slip_force / contact_stiffness``. After a
-    reversal the force is first constant zero, then climbs, then slides.
+    ``F = contact_stiffness dead_zone(z, gap)`` with z the way, held between plus and
+    minus ``gap + slip_force / contact_stiffness``. After a reversal the force falls to
+    zero, is zero over the clearance, then climbs, then slides.
 
     References
     ----------

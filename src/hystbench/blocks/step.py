@@ -113,6 +113,56 @@ def central_difference(points: int, place: float, half_width: float) -> FloatArr
     return through_samples(points, lambda m: (ahead**m - back**m) / (2 * half_width))
 
 
+def line_corners(hold: str, points: int) -> tuple[int, int, FloatArray]:
+    """Give what straight lines between two samples take of the newest samples.
+
+    Parameters
+    ----------
+    hold : {"zero-order", "linear", "band-limited"}
+        A band-limited input is taken as :func:`straight_lines` twice as fine.
+    points : int
+        Samples that a band-limited curve goes through.
+
+    Returns
+    -------
+    segments : int
+        Lines of an interval.
+    points : int
+        Samples that are needed.
+    corners : ndarray, shape ((segments + 1) points,)
+        Weights of the samples for each corner, the oldest corner first.
+    """
+    if hold != "band-limited":
+        return 1, 2, np.concatenate([value_at(2, -1.0), value_at(2, 0.0)])
+    each = [_smooth_corner(points, at) for at in (-1.0, -0.5, 0.0)]
+    return 2, points, np.concatenate(each)
+
+
+def _smooth_corner(points: int, place: float) -> FloatArray:
+    """Weights of the samples for a corner of :func:`straight_lines`, twice as fine.
+
+    ``1 / sinc^2`` of a frequency w is ``1 + (w h)^2 / 12 + (w h)^4 / 240 + ...`` with
+    the corners h apart: so much of the curve's second and fourth derivative, with
+    their signs, is added to its value.
+    """
+    h = 0.5
+
+    def derivative(m: int, order: int) -> float:
+        lost = float(np.prod(np.arange(m, m - order, -1.0)))
+        return lost * place ** (m - order) if m >= order else 0.0
+
+    def moment(m: int) -> float:
+        second, fourth = derivative(m, 2), derivative(m, 4)
+        return derivative(m, 0) - h**2 / 12 * second + h**4 / 240 * fourth
+
+    return through_samples(points, moment)
+
+
+def second_difference(points: int) -> FloatArray:
+    """Weights of the samples for a second difference of the curve at the newest."""
+    return through_samples(points, lambda m: 1.0 + (-1.0) ** m - 2 * 0.0**m)
+
+
 def smooth_curve(points: int) -> str:
     """Say what becomes of a band-limited input."""
     return (

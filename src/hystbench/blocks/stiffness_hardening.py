@@ -11,13 +11,7 @@ from hystbench import kernels
 from hystbench.blocks.band_limited import straight_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import (
-    Sampling,
-    Step,
-    smooth_curve,
-    through_samples,
-    value_at,
-)
+from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
 from hystbench.record import FloatArray
 
 
@@ -72,11 +66,7 @@ class StiffnessHardening(HeldBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Integrate the mode over the interval that has passed."""
-        segments, points = 1, 2
-        corners = np.array([value_at(2, -1.0), value_at(2, 0.0)])
-        if self.holding == "band-limited":
-            segments, points = 2, sampling.points
-            corners = np.array([_corner(points, at) for at in (-1.0, -0.5, 0.0)])
+        segments, points, corners = line_corners(self.holding, sampling.points)
         constants = {
             "participation": self.participation,
             "phase": 2 * np.pi * self.frequency_hz * sampling.dt / segments,
@@ -85,28 +75,8 @@ class StiffnessHardening(HeldBlock):
             "ramp": float(self.holding != "zero-order"),
             "segments": segments,
             "points": points,
-            "corners": corners.ravel(),
+            "corners": corners,
         }
         states = {"mode": 2, "history": 1 + points}
         differs = smooth_curve(points) if points > 2 else ""
         return Step("stiffness_hardening", constants, states, differs=differs)
-
-
-def _corner(points: int, place: float) -> FloatArray:
-    """Weights of the samples for a corner of :func:`straight_lines`, twice as fine.
-
-    ``1 / sinc^2`` of a frequency w is ``1 + (w h)^2 / 12 + (w h)^4 / 240 + ...`` with
-    the corners h apart: so much of the curve's second and fourth derivative, with
-    their signs, is added to its value.
-    """
-    h = 0.5
-
-    def derivative(m: int, order: int) -> float:
-        lost = float(np.prod(np.arange(m, m - order, -1.0)))
-        return lost * place ** (m - order) if m >= order else 0.0
-
-    def moment(m: int) -> float:
-        second, fourth = derivative(m, 2), derivative(m, 4)
-        return derivative(m, 0) - h**2 / 12 * second + h**4 / 240 * fourth
-
-    return through_samples(points, moment)

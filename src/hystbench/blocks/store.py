@@ -11,6 +11,7 @@ from hystbench import kernels
 from hystbench.blocks.band_limited import straight_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
 from hystbench.record import FloatArray
 
 PART = 0.1
@@ -71,8 +72,35 @@ class Store(HeldBlock):
             outflow,
             spilt,
         )
-        y = level if self.output == "level" else outflow + self.caught * spilt
-        return y[::fine]
+        if self.output == "level":
+            return level[::fine]
+        # What was spilt is a mean over the interval before, in parts or whole.
+        spilt[fine::fine] = spilt[1:].reshape(-1, fine).mean(axis=1)
+        return outflow[::fine] + self.caught * spilt[::fine]
+
+    def step(self, sampling: Sampling) -> Step:
+        """Fill and empty it over the interval that has passed."""
+        segments, points, corners = line_corners(self.holding, sampling.points)
+        parts = self._parts(sampling.dt / segments)
+        constants = {
+            "gain": self.gain,
+            "bias": self.bias,
+            "segments": segments,
+            "points": points,
+            "corners": corners,
+            "ramp": float(self.holding != "zero-order"),
+            "parts": parts,
+            "t": sampling.dt / segments / parts,
+            "rate": self.rate,
+            "exponent": self.exponent,
+            "height": self.height,
+            "start": self.start_level,
+            "outflow": int(self.output == "outflow"),
+            "caught": self.caught,
+        }
+        states = {"level": 1, "history": 1 + points}
+        differs = smooth_curve(points) if segments > 1 else ""
+        return Step("store", constants, states, differs=differs)
 
     def _parts(self, dt: float) -> int:
         """Steps of an interval: none empties more than a part of the store."""

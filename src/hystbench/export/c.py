@@ -13,7 +13,7 @@ import numpy as np
 
 from hystbench.export.described import Described, Piece, needed
 
-STEPS = Path(__file__).with_name("steps.c")
+LIBRARY = tuple(Path(__file__).with_name(name) for name in ("steps.c", "inside.c"))
 WIDTH = 88
 
 
@@ -68,7 +68,7 @@ def source(model: Described) -> str:
 
 
 def library(models: Iterable[Described]) -> str:
-    """Give what some models need of the functions of steps.c."""
+    """Give what some models need of the functions of the library."""
     opening, chunks = _library()
     wanted = set().union(*(model.functions for model in models))
     return f"{opening}\n\n{needed(chunks, wanted, 'hb_')}"
@@ -192,13 +192,14 @@ def _harmless(text: str) -> str:
 
 @cache
 def _library() -> tuple[str, dict[str, str]]:
-    """Divide steps.c into what stands before its functions, and the functions."""
-    text = STEPS.read_text(encoding="utf-8")
-    opening, *chunks = re.split(r"\n\n(?=/\*|static )", text.strip())
-    opening = opening.partition("*/\n")[2]
-    found = {}
-    for chunk in chunks:
-        name = re.search(r"^static \w+ (hb_\w+)\(", chunk, re.MULTILINE)
-        if name is not None:
-            found[name[1]] = chunk
-    return opening.strip(), found
+    """Divide the library into what stands before its functions, and the functions."""
+    openings, found = "", {}
+    for path in LIBRARY:
+        text = path.read_text(encoding="utf-8").strip()
+        opening, *chunks = re.split(r"\n\n(?=/\*|static )", text)
+        openings += opening.partition("*/")[2]
+        for chunk in chunks:
+            name = re.search(r"^static \w+ (hb_\w+)\(", chunk, re.MULTILINE)
+            if name is not None:
+                found[name[1]] = chunk
+    return openings.strip(), found

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.force import Driven, Host
 from hystbench.blocks.step import LARGEST_POINTS, Sampling, Step
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
@@ -138,9 +139,12 @@ def describe(model: Model, sampling: Sampling) -> Described:
     labels = {id(block): _plain(label) for label, block in model.labelled()}
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
 
-    def of_block(block: Block, sampling: Sampling, inner: Piece | None) -> Piece:
+    def of_block(
+        block: Block | Host, tells: Block | Driven, sampling: Sampling
+    ) -> Piece:
+        """Ask for the step of a block, alone or with the forces inside it."""
         try:
-            step = block.step(sampling)
+            step = tells.step(sampling)
             size = sum(step.states.values())
             if size > LARGEST_STATE:
                 raise InputError(
@@ -148,16 +152,18 @@ def describe(model: Model, sampling: Sampling) -> Described:
                     f"{sampling.dt:g} s; expected at most {LARGEST_STATE}: a shorter "
                     "memory or a longer --dt"
                 )
-            return Piece(labels[id(block)], step, inner)
+            return Piece(labels[id(block)], step)
         except InputError as error:
             place = f"chain: block {places[id(block)]}: "
             raise InputError(f"{place}{error}") from None
 
     def of_step(step: Any, sampling: Sampling) -> Piece:
+        if isinstance(step, Driven):
+            return of_block(step.host, step, sampling)
         if not isinstance(step, Wrapped):
-            return of_block(step, sampling, None)
+            return of_block(step, step, sampling)
         outer: WrappingBlock = step.by
-        around = of_block(outer, sampling, None)
+        around = of_block(outer, outer, sampling)
         times = max(around.step.drives, 1)
         inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times))
         return replace(around, inner=inner)

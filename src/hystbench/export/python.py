@@ -13,7 +13,7 @@ import numpy as np
 
 from hystbench.export.described import Described, Piece, needed
 
-STEPS = Path(__file__).with_name("steps.py")
+LIBRARY = tuple(Path(__file__).with_name(name) for name in ("steps.py", "inside.py"))
 WIDTH = 88
 
 CLASS = '''\
@@ -136,10 +136,11 @@ def _array(name: str, values: Any) -> str:
 
 @cache
 def _library() -> dict[str, str]:
-    """Give the text of each function of steps.py by its name."""
-    text = STEPS.read_text(encoding="utf-8")
+    """Give the text of each function of the library by its name."""
+    texts = [path.read_text(encoding="utf-8") for path in LIBRARY]
     return {
         item.name: ast.get_source_segment(text, item) or ""
+        for text in texts
         for item in ast.parse(text).body
         if isinstance(item, ast.FunctionDef)
     }

@@ -489,3 +489,39 @@ static double hb_jiles_atherton(double saturation, double shape, double coupling
     return saturation * *magnetization;
 #undef HB_SLOPE
 }
+
+static double hb_outflow(double rate, double exponent, double h)
+{
+    return h > 0 ? rate * pow(h, exponent) : 0;
+}
+
+/* Runge-Kutta method of second order, over straight lines as for the mechanism. */
+static double hb_store(double gain, double bias, int segments, int points,
+                       const double *corners, double ramp, int parts, double t,
+                       double rate, double exponent, double height, double start,
+                       int outflow, double caught, double *level, double *history,
+                       double z)
+{
+    const int moves = history[0] > 0;
+    hb_remember(points, history, gain * z + bias);
+    double h = moves ? *level : hb_least(start, height), over = 0;
+    for (int i = 0; i < segments && moves; i++) {
+        const double now = hb_weighted(points, corners + i * points, history + 1);
+        const double then = hb_weighted(points, corners + (i + 1) * points, history + 1);
+        const double slope = ramp * (then - now) / parts;
+        for (int s = 0; s < parts; s++) {
+            const double from = now + s * slope;
+            const double rise = t / 2 * (from - hb_outflow(rate, exponent, h));
+            const double half = hb_least(height, hb_most(0, h + rise));
+            const double left = hb_outflow(rate, exponent, half);
+            h = hb_most(0, h + t * (from + slope / 2 - left));
+            if (h > height) {
+                over += h - height;
+                h = height;
+            }
+        }
+    }
+    *level = h;
+    const double spilt = over / (segments * parts * t);
+    return outflow ? hb_outflow(rate, exponent, h) + caught * spilt : h;
+}

@@ -457,3 +457,48 @@ def jiles_atherton(
         m += each / 6 * (first + 2 * (second + third) + fourth)
     field[0], magnetization[0] = z, m - start
     return saturation * magnetization[0]
+
+
+def flow_out(rate, exponent, h):
+    """Give what leaves a store."""
+    return rate * h**exponent if h > 0 else 0.0
+
+
+def store(
+    gain,
+    bias,
+    segments,
+    points,
+    corners,
+    ramp,
+    parts,
+    t,
+    rate,
+    exponent,
+    height,
+    start,
+    outflow,
+    caught,
+    level,
+    history,
+    z,
+):
+    """Fill and empty a store by a Runge-Kutta method of second order."""
+    moves, over = history[0] > 0, 0.0
+    remember(points, history, gain * z + bias)
+    h = level[0] if moves else min(start, height)
+    places = corners.reshape(segments + 1, points) @ history[1:]
+    for i in range(segments if moves else 0):
+        now, slope = places[i], ramp * (places[i + 1] - places[i]) / parts
+        for s in range(parts):
+            inflow = now + s * slope
+            rise = t / 2 * (inflow - flow_out(rate, exponent, h))
+            half = min(height, max(0.0, h + rise))
+            left = flow_out(rate, exponent, half)
+            h = max(0.0, h + t * (inflow + slope / 2 - left))
+            over += max(0.0, h - height)
+            h = min(h, height)
+    level[0] = h
+    if not outflow:
+        return h
+    return flow_out(rate, exponent, h) + caught * (over / (segments * parts * t))

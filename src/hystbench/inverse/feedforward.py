@@ -125,6 +125,11 @@ def feedforward(
     )
     x = without(response, reference - response.rest, dt, band)
     found = _corrected(model, start, response, x, reference, dt, band)
+    if not np.isfinite(found.left):
+        raise InputError(
+            "reference: the model's output runs away with the input that it would take; "
+            "expected a smaller or slower reference"
+        )
     if found.clipped and limits == Limits():
         raise InputError(
             f"reference: the input runs away at {found.clipped} of {len(reference)} "

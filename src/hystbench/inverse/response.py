@@ -82,7 +82,7 @@ def best_linear(
     Raises
     ------
     InputError
-        If no input makes an output of that size.
+        If no input makes an output of that size, or the map runs away with it.
     """
     lines = np.arange(1, max(int(band_hz * count * dt), 2) + 1)
     random = np.random.default_rng(seed)
@@ -96,6 +96,11 @@ def best_linear(
     scale = _scaled(map_, draws[0], size)
     inputs = np.fft.rfft(scale * draws)
     settled = [map_(np.tile(scale * u, 2))[count:] for u in draws]
+    if not np.isfinite(settled).all():
+        raise InputError(
+            f"reference: at a stroke of {size:g} the model's output runs away; expected "
+            "a smaller reference"
+        )
     outputs = np.fft.rfft(np.array(settled))
     cross = (outputs * inputs.conj()).sum(axis=0)[lines]
     power = (np.abs(inputs) ** 2).sum(axis=0)[lines]

@@ -45,7 +45,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_slew_limit": (None, "ifaa"),
     "hb_acting_field": (None, "ifffaa"),
     "hb_hardening": (_SIZE, "iffffaa"),
-    "hb_mechanism": (_SIZE, "iifaiaaaaaa"),
+    "hb_mechanism": (_SIZE, "iiffaiaaaaaa"),
     "hb_forces": (None, "iiaaaaa"),
     "hb_store": (None, "iifffffaaaa"),
     "hb_preisach": (None, "iifaaaaa"),

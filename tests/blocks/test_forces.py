@@ -1,0 +1,241 @@
+"""Forces inside a mechanism: their laws, their memory, and that they only dissipate."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from hystbench.blocks import registry
+from hystbench.blocks.impedance import Impedance
+from hystbench.errors import InputError
+from hystbench.model import Model
+from hystbench.record import Channel
+
+DT = 1e-3
+#: A device that is nothing but the forces inside.
+BARE = Impedance(mass=0.0, damping=0.0, stiffness=0.0)
+
+
+def force(name, **values):
+    return registry()[name].from_mapping(values)
+
+
+def against(block, q, dt=DT):
+    """Give the force against a motion."""
+    return block.attach(BARE).simulate(np.asarray(q, dtype=float), None, dt)
+
+
+def motion(count=4001, seed=1):
+    """Give a closed motion of three sines, fast at some places and slow at others."""
+    random = np.random.default_rng(seed)
+    turn = 2 * np.pi * np.arange(count) / (count - 1)
+    sizes, phases = random.uniform(0.2, 1.0, 3), random.uniform(0, 6, 3)
+    each = sizes[:, None] * np.sin(np.outer([1, 2, 5], turn) + phases[:, None])
+    return each.sum(axis=0)
+
+
+LAWS = {
+    "stiffness": (
+        {"quadratic": 3.0, "cubic": -2.0},
+        lambda q, v: 3 * q**2 - 2 * q**3,
+    ),
+    "exponential-stiffness": (
+        {"coefficient": 4.0, "reach": 0.5},
+        lambda q, v: 4 * (0.5 * np.sinh(q / 0.5) - q),
+    ),
+    "stop": (
+        {"contact_stiffness": 7.0, "gap": 0.4, "centre": 0.1},
+        lambda q, v: np.select(
+            [q > 0.5, q < -0.3], [7 * (q - 0.5), 7 * (q + 0.3)], 0.0
+        ),
+    ),
+    "stop above": (
+        {"contact_stiffness": 7.0, "gap": 0.4, "sides": "upper"},
+        lambda q, v: np.where(q > 0.4, 7 * (q - 0.4), 0.0),
+    ),
+    "stop below": (
+        {"contact_stiffness": 7.0, "gap": 0.0, "centre": 0.2, "sides": "lower"},
+        lambda q, v: np.where(q < 0.2, 7 * (q - 0.2), 0.0),
+    ),
+    "drag": ({"coefficient": 0.3}, lambda q, v: 0.3 * v * np.abs(v)),
+    "gravity": (
+        {"amplitude": 2.0, "angle": 0.4},
+        lambda q, v: 2 * (np.sin(q + 0.4) - np.sin(0.4)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_force_without_memory_is_its_formula(name):
+    values, law = LAWS[name]
+    q = motion()
+    found = against(force(name.split()[0], **values), q)
+    wanted = law(q, np.gradient(q, DT))
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12 * np.ptp(wanted))
+
+
+def test_friction_gives_way_and_slides():
+    block = force("friction-force", coulomb=2.0, presliding_distance=0.5)
+    q = [0.0, 0.25, 0.5, 3.0, 2.75, 2.5, 2.0, -4.0, -3.9]
+    assert against(block, q) == pytest.approx([0, 1, 2, 2, 1, 0, -2, -2, -1.6])
+
+
+def test_sliding_friction_falls_with_the_velocity():
+    block = force(
+        "friction-force",
+        coulomb=2.0,
+        presliding_distance=1e-6,
+        static_excess=1.0,
+        stribeck_velocity=0.3,
+    )
+    for velocity in (0.01, 0.3, -2.0):
+        q = velocity * DT * np.arange(9)
+        wanted = np.sign(velocity) * (2 + np.exp(-((velocity / 0.3) ** 2)))
+        assert against(block, q)[1:] == pytest.approx(np.full(8, wanted))
+
+
+def test_without_a_stribeck_velocity_there_is_no_excess():
+    block = force(
+        "friction-force", coulomb=2.0, presliding_distance=0.5, static_excess=1.0
+    )
+    assert against(block, [0.0, 0.25, 3.0]) == pytest.approx([0, 1, 2])
+
+
+def test_a_slider_behind_a_gap_lets_go_is_free_climbs_and_slides():
+    block = force("slider-with-gap", contact_stiffness=10.0, slip_force=2.0, gap=0.3)
+    up, down = np.linspace(0, 2, 401), np.linspace(2, -1, 601)
+    found = against(block, np.concatenate([up, down]))
+    # From rest: the gap, 0.2 of climbing to the slip force, sliding.
+    np.testing.assert_allclose(
+        found[:401], np.interp(up, [0, 0.3, 0.5, 2], [0, 0, 2, 2]), atol=1e-12
+    )
+    # Back: 0.2 until it lets go, both halves of the gap, 0.2 of climbing, sliding.
+    way = 2 - down
+    places, forces = [0, 0.2, 0.8, 1.0, 3.0], [2, 0, 0, -2, -2]
+    np.testing.assert_allclose(found[401:], np.interp(way, places, forces), atol=1e-12)
+
+
+@pytest.mark.parametrize("sharing", [0.0, 0.3, 0.5, 0.8, 1.0])
+def test_bouc_and_wen_are_the_solution_of_their_equation(sharing):
+    largest, reach = 3.0, 0.2
+    turns = [0.0, 0.5, 0.3, 0.45, -0.6, -0.5, -0.55, 0.02]
+
+    def slope(q, z, direction):
+        share = sharing + (1 - sharing) * np.sign(z * direction)
+        return (1 - np.abs(z) * share) / reach
+
+    z, wanted, way = [0.0], [np.zeros(1)], [np.zeros(1)]
+    for a, b in pairwise(turns):
+        places = np.linspace(a, b, 41)[1:]
+        found = solve_ivp(
+            slope, (a, b), z, t_eval=places, args=(np.sign(b - a),),
+            rtol=1e-11, atol=1e-13, max_step=1e-3,
+        )  # fmt: skip
+        z = found.y[:, -1]
+        wanted.append(found.y[0])
+        way.append(places)
+    block = force(
+        "hysteretic-force", largest=largest, yield_distance=reach, sharing=sharing
+    )
+    found = against(block, np.concatenate(way))
+    np.testing.assert_allclose(found, largest * np.concatenate(wanted), atol=1e-6)
+
+
+def test_the_step_of_bouc_and_wen_does_not_matter():
+    # Exact over a monotone piece: in one step or in many.
+    block = force("hysteretic-force", largest=1.0, yield_distance=0.1, sharing=0.7)
+    fine = np.concatenate([np.linspace(0, 0.3, 301), np.linspace(0.3, -0.2, 501)[1:]])
+    many, few = against(block, fine), against(block, fine[[0, 300, 800]])
+    np.testing.assert_allclose(few, many[[0, 300, 800]], atol=1e-12)
+
+
+PASSIVE = {
+    **{name: (name.split()[0], values) for name, (values, _) in LAWS.items()},
+    "friction": ("friction-force", {"coulomb": 1.0, "presliding_distance": 0.3}),
+    "friction that rises at rest": (
+        "friction-force",
+        {
+            "coulomb": 0.2,
+            "presliding_distance": 3.0,
+            "static_excess": 1.0,
+            "stribeck_velocity": 0.5,
+        },
+    ),
+    "slider": (
+        "slider-with-gap",
+        {"contact_stiffness": 3.0, "slip_force": 0.5, "gap": 0.2},
+    ),
+    **{
+        f"Bouc-Wen {sharing}": (
+            "hysteretic-force",
+            {"largest": 1.0, "yield_distance": 0.4, "sharing": sharing},
+        )
+        for sharing in (0.0, 0.3, 0.5, 0.8, 1.0)
+    },
+}
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("name", PASSIVE)
+def test_a_closed_motion_never_gets_work_out_of_a_force(name, seed):
+    kind, values = PASSIVE[name]
+    lap = motion(seed=seed)
+    q = np.concatenate([lap, lap[1:]])
+    f = against(force(kind, **values), q)
+    # The second lap begins and ends in the same state.
+    second = slice(len(lap) - 1, None)
+    work = np.trapezoid(f[second], q[second])
+    assert work >= -1e-4 * np.ptp(f) * np.ptp(q)
+
+
+def chained(*blocks):
+    return Model(
+        "any",
+        Channel("force", "N"),
+        Channel("position", "m"),
+        tuple(registry()[name].from_mapping(values) for name, values in blocks),
+    )
+
+
+@pytest.mark.parametrize(
+    ("chain", "place", "before"),
+    [
+        ([("drag", {"coefficient": 1.0})], 1, "none"),
+        ([("gain", {"value": 1.0}), ("drag", {"coefficient": 1.0})], 2, "gain"),
+    ],
+)
+def test_a_force_without_a_mechanism_is_refused_in_one_line(chain, place, before):
+    with pytest.raises(InputError) as told:
+        chained(*chain)
+    assert str(told.value) == (
+        f"chain: block {place} (drag): expected mechanism or impedance just before it, "
+        f"or another force inside one, got {before}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "told"),
+    [
+        ("drag", {"coefficient": -1.0}, "coefficient: -1 is out of bounds"),
+        (
+            "friction-force",
+            {"coulomb": 1.0, "presliding_distance": 0.0},
+            "presliding_distance: 0 is out of bounds",
+        ),
+        (
+            "hysteretic-force",
+            {"largest": 1.0, "yield_distance": 1.0, "sharing": 1.1},
+            "sharing: 1.1 is out of bounds",
+        ),
+        (
+            "stop",
+            {"contact_stiffness": 1.0, "gap": 1.0, "sides": "uper"},
+            "sides: 'uper' is unknown.*upper",
+        ),
+    ],
+)
+def test_a_parameter_out_of_bounds_is_refused_in_one_line(name, values, told):
+    with pytest.raises(InputError, match=told) as caught:
+        force(name, **values)
+    assert "\n" not in str(caught.value)
