@@ -11,6 +11,7 @@ from hystbench.device_kinds import Kind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap import folds, nuisance
+from hystbench.gap.inside.windows import is_free_mass, windows
 from hystbench.gap.usable import check_usable
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
@@ -101,8 +102,6 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         for name in dataset.record_files
         if use in (None, dataset.use(name))
     ]
-    fit = tuple(record for record in records if record.use == "fit")
-    hold_out = tuple(record for record in records if record.use == "hold-out")
     for record in records:
         file = dataset.record_files[record.name]
         _check_length(file, record)
@@ -115,6 +114,12 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
             f"{dataset.path}: identification: {named!r} is held out; expected a record "
             "with 'use: fit'"
         )
+    notes = doubts(dataset, records)
+    if is_free_mass(records, dataset.quantities):
+        notes, named = (*notes, CUT), None
+        records = [window for record in records for window in windows(record)]
+    fit = tuple(record for record in records if record.use == "fit")
+    hold_out = tuple(record for record in records if record.use == "hold-out")
     return Evidence(
         dataset.name,
         fit,
@@ -123,10 +128,16 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         about.get("noise_rms"),
         named,
         dataset.simulated_column,
-        doubts(dataset, records),
+        notes,
         dataset.quantities,
         dataset.device_kind,
     )
+
+
+CUT = (
+    "a force moves a mass that no spring holds: every record is cut where the motion "
+    "turns, and each window starts at rest, at zero"
+)
 
 
 def _check_length(file: Path, record: Record) -> None:

@@ -144,6 +144,9 @@ class Moved:
         Shortest sampling interval, in seconds.
     turns : bool
         Whether it turns: its position is an angle in rad.
+    anywhere : bool
+        Whether where it is does not matter, as of a mass without a spring: a force
+        that depends on the place has no meaning then.
     """
 
     reach: float
@@ -151,6 +154,7 @@ class Moved:
     force: float
     step: float
     turns: bool = False
+    anywhere: bool = False
 
 
 @dataclass(frozen=True)

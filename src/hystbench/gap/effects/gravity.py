@@ -15,6 +15,6 @@ class Gravity(ForceEffect):
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer it of either sign, where the coordinate is an angle."""
-        for sign in (1.0, -1.0) if moved.turns else ():
+        for sign in (1.0, -1.0) if moved.turns and not moved.anywhere else ():
             block = GravityBlock(amplitude=sign * 0.1 * moved.force)
             yield Law("", block, ("amplitude", "angle"))

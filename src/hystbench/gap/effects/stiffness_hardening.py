@@ -53,6 +53,8 @@ class StiffnessHardening(Effect):
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer a cube of either sign, a square beside it, and a steep spring."""
+        if moved.anywhere:
+            return
         linear = moved.force / moved.reach
         for sign in (1.0, -1.0):
             cubic = sign * 0.03 * linear / moved.reach**2

@@ -17,7 +17,7 @@ class Stop(ForceEffect):
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer both sides, and either one, met early and late."""
         stiffness = moved.force / moved.reach
-        for sides in SIDES:
+        for sides in () if moved.anywhere else SIDES:
             for share in (0.3, 0.8):
                 block = StopBlock(
                     contact_stiffness=stiffness, gap=share * moved.reach, sides=sides

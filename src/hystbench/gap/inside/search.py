@@ -178,8 +178,9 @@ def how_it_moves(state: State, turns: bool) -> Moved:
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
     step = min(record.dt for record in state.records)
+    anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
     return Moved(
-        max(reach, tiny), max(speed, tiny), max(force, tiny), step, turns
+        max(reach, tiny), max(speed, tiny), max(force, tiny), step, turns, anywhere
     )
 
 

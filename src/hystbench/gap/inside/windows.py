@@ -1,0 +1,121 @@
+"""Records of a free mass cut into windows that begin where the motion turns.
+
+A mass without a spring adds up every small error of a force without end. On its whole
+record even the right effect looks useless. Where the motion turns, the velocity is
+zero, and where a free mass is does not matter: so a window that begins there begins at
+rest, for any model alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.quantities import Quantities
+from hystbench.record import FloatArray, Record
+
+SPRING = 0.1
+"""Share of the input's rms below which a spring's force is none."""
+LEAST = 100
+"""Samples of a window, at least."""
+NEIGHBOURS = 5
+"""Samples on either side through which a parabola gives velocity and acceleration."""
+
+
+def is_free_mass(records: Iterable[Record], quantities: Quantities) -> bool:
+    """Tell whether a force moves a mass that no spring holds.
+
+    The input of the fit records is put down to acceleration, velocity, position, dry
+    friction and a constant, by least squares.
+
+    Parameters
+    ----------
+    records : iterable of Record
+        Only those with ``use: fit`` are looked at.
+    quantities : Quantities
+    """
+    if quantities.causality != "force to motion" or quantities.output != "position":
+        return False
+    columns, wanted = [], []
+    for record in records:
+        if record.use != "fit" or len(record) < 2 * LEAST:
+            continue
+        velocity, acceleration = _derivatives(record)
+        position = record.y - np.mean(record.y)
+        columns.append(
+            np.column_stack(
+                [
+                    acceleration,
+                    velocity,
+                    position,
+                    np.sign(velocity),
+                    np.ones(len(record)),
+                ]
+            )
+        )
+        wanted.append(record.u)
+    if not columns:
+        return False
+    stacked, u = np.vstack(columns), np.concatenate(wanted)
+    sizes = np.maximum(np.sqrt(np.mean(stacked**2, axis=0)), 1e-300)
+    found = np.linalg.lstsq(stacked / sizes, u, rcond=1e-10)[0]
+    explained = float(np.mean((u - (stacked / sizes) @ found) ** 2))
+    total = float(np.var(u))
+    return bool(
+        explained < 0.5 * total
+        and abs(found[2]) < SPRING * np.sqrt(total)
+    )
+
+
+def windows(record: Record) -> tuple[Record, ...]:
+    """Cut a record where its motion turns; each window starts at zero, at rest.
+
+    Returns
+    -------
+    tuple of Record
+        The record itself where it does not turn.
+    """
+    starts = _starts(record)
+    if len(starts) < 2:
+        return (record,)
+    ends = [*starts[1:], len(record)]
+    return tuple(
+        replace(
+            record,
+            name=f"{record.name}-{k + 1}",
+            u=record.u[a:b].copy(),
+            y=record.y[a:b] - record.y[a],
+            period_samples=None,
+            simulated=None,
+        )
+        for k, (a, b) in enumerate(zip(starts, ends, strict=True))
+        if b - a >= LEAST
+    )
+
+
+def _starts(record: Record) -> list[int]:
+    """Give the samples where a window begins: the first, and those of no velocity."""
+    if len(record) < 2 * LEAST:
+        return [0]
+    velocity, _ = _derivatives(record)
+    turns: NDArray[np.intp] = np.flatnonzero(np.diff(np.sign(velocity)) != 0)
+    starts = [0]
+    for turn in turns.tolist():
+        nearer = turn + int(abs(velocity[turn + 1]) < abs(velocity[turn]))
+        if nearer - starts[-1] >= LEAST and len(record) - nearer >= LEAST:
+            starts.append(nearer)
+    return starts
+
+
+def _derivatives(record: Record) -> tuple[FloatArray, FloatArray]:
+    """Velocity and acceleration of the output, by parabolas through its neighbours."""
+    from scipy.signal import savgol_filter  # late: a dataset alone does not need it
+
+    width = 2 * NEIGHBOURS + 1
+    first, second = (
+        savgol_filter(record.y, width, 2, deriv=k, delta=record.dt) for k in (1, 2)
+    )
+    return np.asarray(first), np.asarray(second)
