@@ -203,6 +203,10 @@ class Dataset:
         else:
             dt = 1.0 / self._sampling_frequency(table, columns, entry)
         u, y, *others = signals
+        # Time alone may be interpolated without a loss: it is uniform anyway.
+        lost = ~np.all(
+            [np.isfinite(x.values[rows]) for x in columns[-len(signals) :]], 0
+        )
         for item, values in zip(channels, (u, y), strict=True):
             _check_moves(file, item, values)
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
@@ -220,6 +224,7 @@ class Dataset:
             self.use(name),
             period,
             others[0] if others else None,
+            lost if lost.any() else None,
         )
 
     def _sampling_frequency(

@@ -355,3 +355,35 @@ def test_dates_and_times_are_seconds_from_the_first(run, tmp_path):
     record = load_dataset(".").read("run-1")
     assert record.dt == pytest.approx(DT, rel=1e-9)
     assert len(record) == 800
+
+
+@pytest.mark.parametrize(
+    ("lost", "pieces"),
+    [(12, ["run"]), (13, ["run-1", "run-2"])],  # 20 Hz at 1 kHz: 50 samples a period
+)
+def test_a_gap_of_the_input_is_bridged_up_to_a_quarter_of_its_period(
+    run, tmp_path, lost, pieces
+):
+    file = lone(tmp_path)
+    lines = file.read_text().splitlines()
+    for k in range(601, 601 + lost):
+        time, _, y = lines[k].split(",")
+        lines[k] = f"{time},,{y}"
+    file.write_text("\n".join(lines) + "\n")
+    other = lone(tmp_path, "whole.csv", noise=0.02)
+    status, said, _ = run(
+        "init", file, other, "--missing", "interpolate", "--hold-out", "whole"
+    )
+    assert status == 0
+    assert ("quarter of its fastest period" in said) == (len(pieces) == 2)
+    assert names()[:-1] == pieces
+
+
+def test_a_long_gap_of_the_output_alone_costs_its_samples_only(run, tmp_path):
+    file = lone(tmp_path, missing=range(500, 700))
+    other = lone(tmp_path, "whole.csv", noise=0.02)
+    given = ("--missing", "interpolate", "--hold-out", "whole")
+    assert run("init", file, other, *given)[0] == 0
+    record = load_dataset(".").read("run")
+    assert len(record) == 1200
+    assert np.flatnonzero(~record.counted).tolist() == list(range(500, 700))

@@ -22,6 +22,10 @@ from hystbench.record import Record
 
 ALIKE = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
+TOO_FAR = (
+    " The input is missing for more than a quarter of its fastest period, which no "
+    "straight line can stand for: give the parts between as 'rows'."
+)
 JITTERS = 0.01
 """Of a step: a clock that is less even than that is told."""
 
@@ -112,7 +116,7 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     ]
     to_fit = [item for item in compared if item.record.use == "fit"]
     floor = noise_floor(to_fit, dataset.about.get("noise_rms"))
-    left = rms(np.concatenate([item.residual for item in to_fit]))
+    left = rms(np.concatenate([x.residual[x.record.counted] for x in to_fit]))
     return Check(
         dataset,
         tuple(item.record for item in compared),
@@ -137,7 +141,9 @@ def _findings(
                 Finding(
                     "note",
                     f"{item.name}: {item.missing} of {item.samples} samples are "
-                    "missing and interpolated.",
+                    "missing and interpolated; no score counts them."
+                    + TOO_FAR
+                    * item.bridged_too_far,
                 )
             )
         if item.jitter is not None and item.jitter > JITTERS:

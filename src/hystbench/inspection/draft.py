@@ -22,6 +22,7 @@ from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table, read_table
 from hystbench.inspection.excitation import Excitation, excitation_of
+from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
 from hystbench.inspection.roles import propose
 from hystbench.periods import find_period
@@ -625,27 +626,30 @@ def _without_missing(
         ("interpolate", "split"),
         "--missing",
     )
+    u = part.columns[signals.input].values
+    cut = cannot_be_bridged(u) if what == "interpolate" else bad
+    entries, left = [], np.count_nonzero(~bad)
+    for first, behind in runs(~cut):
+        there = first + np.flatnonzero(~bad[first:behind])
+        if len(there) < LEAST:
+            continue
+        rows = [int(there[0]) + 1, int(there[-1]) + 1]
+        piece = entry if rows == [1, len(bad)] else {**entry, "rows": rows}
+        whole = not bad[there[0] : there[-1]].any()
+        entries.append(piece if whole else {**piece, "missing": "interpolate"})
+        left -= len(there)
     if what == "interpolate":
-        there = np.flatnonzero(~bad)
-        longest = int(np.diff(there).max()) - 1
-        notes.append(
-            f"{said}; they are interpolated, the longest gap {longest} samples"
+        said += "; they are interpolated, and no score counts them"
+    if cut.any():
+        long = "the input's gaps are longer than a quarter of its fastest period; "
+        said += (
+            f"; {long if what == 'interpolate' else ''}the record is split into "
+            f"{len(entries)} pieces"
         )
-        ends = [int(there[0]) + 1, int(there[-1]) + 1]
-        rows = {} if ends == [1, len(bad)] else {"rows": ends}
-        return [{**entry, **rows, "missing": "interpolate"}]
-    edges = np.flatnonzero(np.diff(np.concatenate([[True], bad, [True]]).astype(int)))
-    pieces = [
-        (int(a) + 1, int(b))
-        for a, b in zip(edges[::2], edges[1::2], strict=True)
-        if b - a >= LEAST
-    ]
-    lost = np.count_nonzero(~bad) - sum(b - a + 1 for a, b in pieces)
-    notes.append(
-        f"{said}; the record is split into {len(pieces)} pieces"
-        + (f", {lost} samples in shorter ones are left out" if lost else "")
-    )
-    return [{**entry, "rows": list(piece)} for piece in pieces]
+    if left:
+        said += f"; {left} samples in pieces shorter than {LEAST} are left out"
+    notes.append(said)
+    return entries
 
 
 def _give_names(entries: list[dict[str, Any]]) -> None:
