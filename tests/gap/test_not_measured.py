@@ -58,7 +58,7 @@ def test_a_whole_record_is_sampled_as_before():
 
 @pytest.mark.parametrize("nuisance", [None, path_and_mains(1, [50.0])])
 def test_hold_out_numbers_do_not_see_them(both, nuisance):
-    clean, spoilt = both
+    _, spoilt = both
     shown = []
     for records in both:
         before = base(records)
