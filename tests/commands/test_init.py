@@ -387,3 +387,18 @@ def test_a_long_gap_of_the_output_alone_costs_its_samples_only(run, tmp_path):
     record = load_dataset(".").read("run")
     assert len(record) == 1200
     assert np.flatnonzero(~record.counted).tolist() == list(range(500, 700))
+
+
+@pytest.mark.parametrize(
+    ("first", "per_second", "unit", "rtol"),
+    [(1709208000000, 1000, "ms", 1e-6), (45351.5, 1 / 86400, "day", 1e-3)],
+)
+def test_times_that_count_from_a_date(run, tmp_path, first, per_second, unit, rtol):
+    stamps = [f"{first + DT * k * per_second:.12f}" for k in range(1200)]
+    file = lone(tmp_path, stamps=stamps)
+    file.write_text(file.read_text().replace("time_s", "Time"))
+    status, said, _ = run("init", file)
+    assert status == 0
+    assert "from 2024-02-29 12:00:00.000 on (--time-unit)" in said
+    assert written()["time"]["unit"] == unit
+    assert load_dataset(".").read("run-1").dt == pytest.approx(DT, rel=rtol)

@@ -21,6 +21,7 @@ from hystbench.dataset import RECORD_NAME, UNIFORM_TOLERANCE, Dataset, dataset_o
 from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table, read_table
+from hystbench.inspection.clocks import clock_of
 from hystbench.inspection.excitation import Excitation, excitation_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
@@ -328,7 +329,10 @@ def _signals(parts: Sequence[Part], given: Given, ask: Ask) -> _Signals:
         units[key] = plain(unit) or "-"
     unit_of_time = given.time_unit or (told[time][1] if time else None)
     if time is not None and unit_of_time is None:
-        notes.append(f"time {time!r}: no unit is told; seconds are taken (--time-unit)")
+        clock = clock_of(first.columns[time].values)
+        unit_of_time = clock.unit if clock else "s"
+        taken = clock.words if clock else "seconds"
+        notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
     return _Signals(
         time,
         plain(unit_of_time or "s"),
