@@ -87,6 +87,20 @@ def test_every_key_of_the_config_is_in_the_schema_and_the_other_way_round():
             ),
             "gap: datasets: x: limits: low 2 and high 1; expected low < high",
         ),
+        (
+            changed(
+                "gap",
+                "datasets",
+                [{"dataset": "x", "model": "gpi", "without": "friction"}],
+            ),
+            "without: 'friction'; expected a list",
+        ),
+        (
+            changed(
+                "gap", "datasets", [{"dataset": "x", "model": "gpi", "witout": []}]
+            ),
+            "unknown key 'witout'; did you mean 'without'?",
+        ),
         (changed("filters", "envelopes", "publishd"), "did you mean 'published'?"),
         (changed("signals", ["sine-040h"]), "did you mean 'sine-040hz'?"),
         (changed("models", ["gpo", "voltera"]), "did you mean 'volterra'?"),

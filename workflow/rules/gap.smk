@@ -3,6 +3,7 @@
 # there; `all` leaves it out for its time.
 from hystbench.dataset import load_dataset
 from hystbench.gap.asked import check_base
+from hystbench.gap.vocabulary import Vocabulary
 
 GAP = f"{RESULTS}/gap"
 GAP_CASE = f"{GAP}/{{case}}"
@@ -62,6 +63,7 @@ for GIVEN in config["gap"]["datasets"]:
         if GAP_DATASET.name in GAP_CASES:
             raise InputError(f"a second dataset {GAP_DATASET.name!r}; expected one")
         check_base(GIVEN["model"])
+        Vocabulary.of(GIVEN.get("without", ()), GIVEN.get("with", ()))
     except InputError as error:
         refuse(f"{PLACE}: gap: datasets: {error}")
     GAP_CASES[GAP_DATASET.name] = {
@@ -78,6 +80,8 @@ for GIVEN in config["gap"]["datasets"]:
         ],
         "model": GIVEN["model"],
         "limits": GIVEN.get("limits", {}),
+        "without": GIVEN.get("without", []),
+        "with": GIVEN.get("with", []),
     }
     keep_out("gap: datasets", [GAP_DATASET.path, *GAP_DATASET.record_files.values()])
     keep_out("gap: datasets: model", model_files(GIVEN["model"]))
@@ -133,6 +137,7 @@ rule gap_decide:
     params:
         model=of_case("model"),
         limits=limits_of_case,
+        effects=effects_of_case,
         unnamed_share=config["gap"]["unnamed_share"],
         experiment=lambda wildcards, output: (
             options("--write-experiment", [Path(output.experiment[0], "signal.csv")])
@@ -144,7 +149,8 @@ rule gap_decide:
         "verdict on {wildcards.case}"
     shell:
         "hystbench gap-decide {input.dataset:q} --model {params.model:q}"
-        " {params.limits} --unnamed-share {params.unnamed_share} {params.experiment}"
+        " {params.limits} {params.effects} --unnamed-share {params.unnamed_share}"
+        " {params.experiment}"
         " --out {params.folder:q} 2> {log:q}"
 
 

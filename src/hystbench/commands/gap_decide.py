@@ -10,6 +10,7 @@ from hystbench import options
 from hystbench.gap.bases import load_base
 from hystbench.gap.evidence import check_units, load_evidence
 from hystbench.gap.jobs import decide_in
+from hystbench.gap.vocabulary import Vocabulary
 from hystbench.gap.wanted import write_wanted
 
 
@@ -17,6 +18,7 @@ from hystbench.gap.wanted import write_wanted
 @click.argument("dataset", type=options.DATASET)
 @click.option("--model", required=True, help="As for hystbench gap.")
 @options.write_experiment
+@options.vocabulary
 @options.limits
 @options.unnamed_share
 @options.out_folder
@@ -24,6 +26,8 @@ from hystbench.gap.wanted import write_wanted
 def gap_decide(
     dataset: Path,
     model: str,
+    without: tuple[str, ...],
+    with_: tuple[str, ...],
     write_experiment: Path | None,
     limit_low: float | None,
     limit_high: float | None,
@@ -35,6 +39,7 @@ def gap_decide(
 
     Writes curves.json, and the base, what was named and the decision to OUT/stages.
     """
+    asked = Vocabulary.of(without, with_)  # refuses, before a file is read
     evidence = load_evidence(dataset, "fit")
     base, note = load_base(model, evidence)
     if note:
@@ -45,6 +50,7 @@ def gap_decide(
         evidence,
         base,
         unnamed_share=unnamed_share,
+        vocabulary=asked,
         limits=options.asked_limits(limit_low, limit_high, limit_rate),
         say=lambda line: click.echo(line, err=True),
     )

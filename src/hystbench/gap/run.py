@@ -14,7 +14,7 @@ from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.augmented import augmented
 from hystbench.gap.beside import black_box_mapping
 from hystbench.gap.bounded import RunsAway, bounded, reach
-from hystbench.gap.built_in import put_in
+from hystbench.gap.built_in import BuiltIn, put_in
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
@@ -168,15 +168,10 @@ def closed_gap(
         finding.own,
         evidence.warnings,
     )
-    content = with_what_was_asked(shown.content, vocabulary)
-    if built_in is not None:
-        outputs = run_base(built_in.alone, evidence.hold_out, evidence.hold)
-        mine = as_recorded(finding.own, evidence.hold_out, outputs, finding.floor)
-        nuisance = nuisance_of(finding.state, finding.own)
-        ((_, alone),) = ladder(evidence.hold_out, [(BASE, mine)], nuisance)
-        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
-        content = with_built_in(content, built_in, alone)
-    shown = replace(shown, content=content)
+    shown = as_asked(
+        shown, vocabulary, built_in, evidence, finding.state, finding.floor, finding.own
+    )
+    content = shown.content
     return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
 
 
@@ -289,6 +284,38 @@ def outcome(
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
     content["shortfall"] = shortfall(content)
     return Outcome(model, content, shown.outputs)
+
+
+def as_asked(
+    shown: Outcome,
+    vocabulary: Vocabulary,
+    built_in: BuiltIn | None,
+    evidence: Evidence,
+    state: State,
+    floor: Floor,
+    own: OwnValues,
+) -> Outcome:
+    """Tell which effects the user put in or left out, and what those put in do.
+
+    Parameters
+    ----------
+    shown : Outcome
+    vocabulary : Vocabulary
+    built_in : BuiltIn or None
+        None where no effect was put in.
+    evidence : Evidence
+    state, floor, own
+        As for :func:`show`.
+    """
+    content = with_what_was_asked(shown.content, vocabulary)
+    if built_in is not None:
+        records = evidence.hold_out
+        outputs = run_base(built_in.alone, records, evidence.hold)
+        mine = as_recorded(own, records, outputs, floor)
+        ((_, alone),) = ladder(records, [(BASE, mine)], nuisance_of(state, own))
+        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
+        content = with_built_in(content, built_in, alone)
+    return replace(shown, content=content)
 
 
 @dataclass(frozen=True)
