@@ -72,11 +72,12 @@ class StiffnessHardening(HeldBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Integrate the mode over the interval that has passed."""
-        segments, points = 1, 2
+        segments, points, ahead = 1, 2, 0
         corners = np.array([value_at(2, -1.0), value_at(2, 0.0)])
         if self.holding == "band-limited":
-            segments, points = 2, sampling.points
-            corners = np.array([_corner(points, at) for at in (-1.0, -0.5, 0.0)])
+            segments, points, ahead = 2, sampling.points, sampling.ahead
+            places = (-1.0 - ahead, -0.5 - ahead, -float(ahead))
+            corners = np.array([_corner(points, at) for at in places])
         constants = {
             "participation": self.participation,
             "phase": 2 * np.pi * self.frequency_hz * sampling.dt / segments,
@@ -85,11 +86,15 @@ class StiffnessHardening(HeldBlock):
             "ramp": float(self.holding != "zero-order"),
             "segments": segments,
             "points": points,
+            "ahead": ahead,
             "corners": corners.ravel(),
         }
         states = {"mode": 2, "history": 1 + points}
-        differs = smooth_curve(points) if points > 2 else ""
-        return Step("stiffness_hardening", constants, states, differs=differs)
+        smooth = points > 2
+        differs = smooth_curve(points, ahead) if smooth else ""
+        return Step(
+            "stiffness_hardening", constants, states, forward=smooth, differs=differs
+        )
 
 
 def _corner(points: int, place: float) -> FloatArray:

@@ -34,6 +34,13 @@ from hystbench.model import load_model
     "samples or its rate; fewer for an input with noise.",
 )
 @click.option(
+    "--delay",
+    type=click.IntRange(0, LARGEST_POINTS - 2),
+    default=0,
+    help="Samples by which the output may be late: values between samples, and rates, "
+    "are then taken with samples on both sides.",
+)
+@click.option(
     "--duration", type=float, help="Length in seconds of the record of a path of drift."
 )
 @click.option(
@@ -47,6 +54,7 @@ def export(
     to: str,
     dt: float,
     points: int,
+    delay: int,
     duration: float | None,
     hold: Hold | None,
     out: Path,
@@ -60,7 +68,7 @@ def export(
     if hold is not None:
         system = system.with_hold(hold)
     try:
-        described = describe(system, Sampling(dt, points, duration))
+        described = describe(system, Sampling(dt, points, duration, delay))
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -43,11 +43,27 @@ TAKEN = (
 
 @dataclass(frozen=True)
 class Piece:
-    """One block's step, and for one that wraps hysteresis what is inside."""
+    """One block's step, and for one that wraps hysteresis what is inside.
+
+    Parameters
+    ----------
+    label : str
+    step : Step
+    inner : Piece, optional
+    wait : int
+        Calls, from the first on, in which nothing comes out of it yet; none where what
+        is before it waits as long.
+    """
 
     label: str
     step: Step
     inner: Piece | None = None
+    wait: int = 0
+
+    @property
+    def history(self) -> str:
+        """Name the state that the model's input is kept in."""
+        return f"{self.label}_history"
 
     def all_inside(self) -> Iterator[Piece]:
         """Give the piece and what is inside it, the innermost first."""
@@ -85,6 +101,8 @@ class Described:
 
     def all_states(self) -> Iterator[tuple[str, int]]:
         """Give the name and length of every state."""
+        if self.sampling.delay:
+            yield "calls", 1
         for piece in self.all_pieces():
             for name, length in piece.step.states.items():
                 yield f"{piece.label}_{name}", length
@@ -92,12 +110,24 @@ class Described:
     @property
     def functions(self) -> set[str]:
         """Name the functions that are called."""
-        return {piece.step.function for piece in self.all_pieces()}
+        called = {piece.step.function for piece in self.all_pieces()}
+        return called | {"remember" for piece in self.watching}
+
+    @property
+    def watching(self) -> list[Piece]:
+        """Give the pieces whose history is of the model's input."""
+        return [piece for piece in self.all_pieces() if piece.step.watches]
 
     @property
     def differences(self) -> list[str]:
         """Say how the steps differ from :meth:`Model.simulate`, a sentence each."""
-        return [
+        delay = self.sampling.delay
+        late = [
+            f"The output is late by {delay} sample{'s' * (delay > 1)} "
+            f"({delay * self.sampling.dt:.12g} s), as asked; the first "
+            f"{f'{delay} are' if delay > 1 else 'is'} 0."
+        ]
+        return late[: bool(delay)] + [
             f"{piece.label} {piece.step.differs}."
             for piece in self.all_pieces()
             if piece.step.differs
@@ -118,6 +148,32 @@ class Described:
         )
 
 
+def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
+    """Divide a delay among the pieces that gain by it, the first ones get the rest.
+
+    What looks at the model's input itself gains by the delay of a piece before it, and
+    gets none of its own then.
+
+    Raises
+    ------
+    InputError
+        If no piece gains.
+    """
+    gain: list[int] = []
+    for place, piece in enumerate(pieces):
+        if piece.step.forward and not (piece.step.watches and gain):
+            gain.append(place)
+    if not gain:
+        raise InputError(
+            f"--delay: {delay}; expected none, as no step of this model is nearer to "
+            "the simulation where samples to come are known"
+        )
+    shares = [0] * len(pieces)
+    for k in range(delay):
+        shares[gain[k % len(gain)]] += 1
+    return shares
+
+
 def describe(model: Model, sampling: Sampling) -> Described:
     """Ask every block for its step.
 
@@ -134,6 +190,11 @@ def describe(model: Model, sampling: Sampling) -> Described:
     if not 2 <= sampling.points <= LARGEST_POINTS:
         raise InputError(
             f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
+        )
+    if not 0 <= sampling.delay <= sampling.points - 2:
+        raise InputError(
+            f"--delay: {sampling.delay}; expected 0 to {sampling.points - 2}, two less "
+            "than --points"
         )
     labels = {id(block): _plain(label) for label, block in model.labelled()}
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
@@ -160,16 +221,30 @@ def describe(model: Model, sampling: Sampling) -> Described:
         around = of_block(outer, sampling, None)
         times = max(around.step.drives, 1)
         inside = cast("Block | Wrapped", step.inner)
-        inner = of_step(inside, replace(sampling, dt=sampling.dt / times))
+        inner = of_step(inside, replace(sampling, dt=sampling.dt / times, ahead=0))
         return replace(around, inner=inner)
 
+    pieces = [of_step(step, sampling) for step in model.steps]
+    if sampling.delay:
+        shares, late = _shares(sampling.delay, pieces), 0
+        pieces = []
+        for step, share in zip(model.steps, shares, strict=True):
+            watches = isinstance(step, Block) and step.step(sampling).watches
+            late += share
+            own = of_step(
+                step, replace(sampling, ahead=0 if watches else share, late=late)
+            )
+            if watches and share:  # what enters it waits; what it looks at does not
+                ring = Step("late", {"samples": share}, {"kept": share})
+                pieces.append(Piece(f"{own.label}_late", ring, wait=late))
+            pieces.append(replace(own, wait=late if share and not watches else 0))
     return Described(
         identifier(model.name),
         one_line(model.name) or "model",
         Channel(one_line(model.input.name) or "input", one_line(model.input.unit)),
         Channel(one_line(model.output.name) or "output", one_line(model.output.unit)),
         sampling,
-        tuple(of_step(step, sampling) for step in model.steps),
+        tuple(pieces),
     )
 
 

@@ -71,9 +71,16 @@ def backlash(half_width, started, w, z):
     return play(z, z, half_width, w)[0]
 
 
-def friction(coulomb, velocity_scale, points, rate, history, z, u):
+def late(samples, kept, z):
+    """Give what entered so many samples before."""
+    before = kept[-1]
+    kept[1:] = kept[:-1].copy()
+    kept[0] = z
+    return before
+
+
+def friction(coulomb, velocity_scale, points, rate, history, z):
     """Add a force against the motion."""
-    remember(points, history, u)
     velocity = rate @ history[1:] if history[0] > 1 else 0.0
     return z + coulomb * math.tanh(velocity / velocity_scale)
 
@@ -122,6 +129,7 @@ def slew_limit(rate, started, before, now, z):
 def linear(
     size,
     points,
+    ahead,
     phi,
     drive,
     output,
@@ -134,37 +142,50 @@ def linear(
     offset,
     z,
 ):
-    """Do ``x(k) = phi x(k-1) + sum_j drive_j v(k-j)``, ``y = output x + direct v``."""
-    moves = history[0] > 0
-    if settled and not moves:
+    """Do ``x(k) = phi x(k-1) + sum_j drive_j v(k-j)``, ``y = output x + direct v``.
+
+    Of the newest sample's time less those that are known ahead.
+    """
+    moves = history[0] > ahead
+    if settled and history[0] == 0:
         offset[0] = z
-    v = z - offset[0]
-    remember(points, history, v)
+    remember(points, history, z - offset[0])
     if moves:
         x_next[:] = phi.reshape(size, size) @ x + history[1:] @ drive.reshape(
             points, size
         )
         x[:] = x_next
-    return direct * v + static * offset[0] + output @ x
+    return direct * history[1 + ahead] + static * offset[0] + output @ x
 
 
 def modes(
-    size, points, phi, drive, output, direct, settled, static, x, history, offset, z
+    size,
+    points,
+    ahead,
+    phi,
+    drive,
+    output,
+    direct,
+    settled,
+    static,
+    x,
+    history,
+    offset,
+    z,
 ):
     """Do the same where phi is diagonal."""
-    moves = history[0] > 0
-    if settled and not moves:
+    moves = history[0] > ahead
+    if settled and history[0] == 0:
         offset[0] = z
-    v = z - offset[0]
-    remember(points, history, v)
+    remember(points, history, z - offset[0])
     if moves:
         x[:] = phi * x + history[1:] @ drive.reshape(points, size)
-    return direct * v + static * offset[0] + output @ x
+    return direct * history[1 + ahead] + static * offset[0] + output @ x
 
 
-def thermal_drift(coefficient, count, lags, started, before, x, z, u):
+def thermal_drift(coefficient, count, lags, points, history, started, before, x, z):
     """Let the heat go through low-passes."""
-    heat = u * u
+    heat = history[points] * history[points]
     for i in range(count):
         lag = lags[3 * i : 3 * i + 3]
         if started[0] != 0:
@@ -198,6 +219,7 @@ def stiffness_hardening(
     ramp,
     segments,
     points,
+    ahead,
     corners,
     mode,
     history,
@@ -209,7 +231,7 @@ def stiffness_hardening(
         return force - x * (1 + coefficient * x * x) - 2 * damping * v
 
     x, v = mode
-    moves = history[0] > 0
+    moves = history[0] > ahead
     remember(points, history, z)
     places = corners.reshape(segments + 1, points) @ history[1:]
     for i in range(segments if moves else 0):
@@ -237,7 +259,7 @@ def stiffness_hardening(
             x += h / 6 * (v + 2 * (v2 + v3) + v4)
             v += h / 6 * (a1 + 2 * (a2 + a3) + a4)
     mode[:] = x, v
-    return (1 - participation) * z + participation * x
+    return (1 - participation) * history[1 + ahead] + participation * x
 
 
 def gpi(envelope, count, thresholds, weights, w, v, growth):
@@ -307,6 +329,7 @@ def rate_dependent_hysteresis(
     dt,
     fine,
     points,
+    ahead,
     values,
     rates,
     history,
@@ -316,14 +339,17 @@ def rate_dependent_hysteresis(
     growth,
 ):
     """Give the fields and growths that what is inside gets, one after the other."""
-    first = history[0] == 0
+    first = history[0] == ahead
     remember(points, history, v)
+    if history[0] <= ahead:
+        return []
+    v = history[1 + ahead]
     if first:
         growth_before[0], field[0] = growth, v
     inside = []
     for row in [fine - 1] if first else range(fine):
         taps = slice(row * points, (row + 1) * points)
-        rate = 0.0 if first else rates[taps] @ history[1:]
+        rate = rates[taps] @ history[1:] if history[0] > 1 else 0.0
         effect = coefficient * abs(rate) ** exponent
         now = v if row == fine - 1 else values[taps] @ history[1:]
         factor = growth_before[0] + (growth - growth_before[0]) * (row + 1) / fine
@@ -346,6 +372,7 @@ def rdgpi(
     envelope_gain,
     envelope_offset,
     points,
+    ahead,
     rate,
     count,
     history,
@@ -354,6 +381,9 @@ def rdgpi(
 ):
     """Let thresholds and weights follow the rate: docs/rdgpi.md of hystbench."""
     remember(points, history, z)
+    if history[0] <= ahead:
+        return 0.0
+    z = history[1 + ahead]
     speed = abs(rate @ history[1:]) if history[0] > 1 else 0.0
     apart = spacing[0] * math.log(spacing[1] + spacing[2] * speed)
     ratio, envelope = math.exp(-tau * apart), envelope_gain * z + envelope_offset
