@@ -23,6 +23,7 @@ COMMANDS = {
     "init": "Propose a dataset.yaml for files of measurements.",
     "check": "Say what records are like and which effects they can reveal.",
     "export": "Write a model as C, a Python module or an FMU.",
+    "export-errors": "Measure how far exported code is from the simulation.",
     "invert": "Find the input that makes a model's output follow a reference.",
     "tracking": "Follow references on the twin with and without the inverse.",
     "load": "Read and check one record of a measured dataset.",

@@ -29,6 +29,7 @@ MAKERS = (
     ("results/blind/", "snakemake blind"),
     ("results/gap/", "snakemake gap"),
     ("results/devices/", "snakemake devices"),
+    ("results/export/", "snakemake export_errors"),
     ("results/inverse/", "snakemake inverse"),
     ("results/pressure/", "snakemake pressure"),
     ("results/figures/contest.", "snakemake pressure"),

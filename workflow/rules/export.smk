@@ -1,0 +1,15 @@
+# How far exported code is from the simulation, by `snakemake export_errors`: it needs no
+# record, and `all` leaves it out as no other page wants it.
+
+
+rule export_errors:
+    input:
+        code=code("hystbench.commands.export_errors"),
+    output:
+        "results/export/errors.csv",
+    log:
+        "results/logs/export/errors.log",
+    message:
+        "exported code beside the simulation"
+    shell:
+        "hystbench export-errors --out {output:q} 2> {log:q}"
