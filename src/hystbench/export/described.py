@@ -5,8 +5,9 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import cast
 
 from hystbench.blocks.base import Block
@@ -148,6 +149,10 @@ class Described:
         )
 
 
+Maker = Callable[[Sampling], Piece]
+"""Makes a piece for what is known of the signal at its place."""
+
+
 def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
     """Divide a delay among the pieces that gain by it, the first ones get the rest.
 
@@ -182,21 +187,8 @@ def describe(model: Model, sampling: Sampling) -> Described:
     InputError
         If the interval or the points make no sense, or a block cannot be exported.
     """
-    if not 0 < sampling.dt < float("inf"):
-        raise InputError(f"--dt: {sampling.dt:g} s; expected a time above 0")
-    duration = sampling.duration_s
-    if duration is not None and not 0 < duration < float("inf"):
-        raise InputError(f"--duration: {duration:g} s; expected a time above 0")
-    if not 2 <= sampling.points <= LARGEST_POINTS:
-        raise InputError(
-            f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
-        )
-    if not 0 <= sampling.delay <= sampling.points - 2:
-        raise InputError(
-            f"--delay: {sampling.delay}; expected 0 to {sampling.points - 2}, two less "
-            "than --points"
-        )
-    labels = {id(block): _plain(label) for label, block in model.labelled()}
+    _check_sampling(sampling)
+    labels = labels_of(model)
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
 
     def of_block(block: Block, sampling: Sampling, inner: Piece | None) -> Piece:
@@ -224,28 +216,75 @@ def describe(model: Model, sampling: Sampling) -> Described:
         inner = of_step(inside, replace(sampling, dt=sampling.dt / times, ahead=0))
         return replace(around, inner=inner)
 
-    pieces = [of_step(step, sampling) for step in model.steps]
+    makers: list[Maker] = [partial(of_step, step) for step in model.steps]
+    return arranged(model.name, model.input, model.output, makers, sampling)
+
+
+def labels_of(model: Model) -> dict[int, str]:
+    """Give an identifier for each block, by the block's ``id``."""
+    return {id(block): _plain(label) for label, block in model.labelled()}
+
+
+def arranged(
+    name: str,
+    enters: Channel,
+    leaves: Channel,
+    makers: Sequence[Maker],
+    sampling: Sampling,
+) -> Described:
+    """Make the pieces of a chain, and divide its delay among them.
+
+    Parameters
+    ----------
+    name : str
+    enters, leaves : Channel
+    makers : sequence of callable
+        Each gives a piece, from what is known of the signal there.
+    sampling : Sampling
+
+    Raises
+    ------
+    InputError
+        If the interval, the points or the delay make no sense.
+    """
+    _check_sampling(sampling)
+    pieces = [make(sampling) for make in makers]
     if sampling.delay:
         shares, late = _shares(sampling.delay, pieces), 0
-        pieces = []
-        for step, share in zip(model.steps, shares, strict=True):
-            watches = isinstance(step, Block) and step.step(sampling).watches
+        plain, pieces = pieces, []
+        for make, usual, share in zip(makers, plain, shares, strict=True):
+            watches = usual.step.watches
             late += share
-            own = of_step(
-                step, replace(sampling, ahead=0 if watches else share, late=late)
-            )
+            own = make(replace(sampling, ahead=0 if watches else share, late=late))
             if watches and share:  # what enters it waits; what it looks at does not
                 ring = Step("late", {"samples": share}, {"kept": share})
                 pieces.append(Piece(f"{own.label}_late", ring, wait=late))
             pieces.append(replace(own, wait=late if share and not watches else 0))
     return Described(
-        identifier(model.name),
-        one_line(model.name) or "model",
-        Channel(one_line(model.input.name) or "input", one_line(model.input.unit)),
-        Channel(one_line(model.output.name) or "output", one_line(model.output.unit)),
+        identifier(name),
+        one_line(name) or "model",
+        Channel(one_line(enters.name) or "input", one_line(enters.unit)),
+        Channel(one_line(leaves.name) or "output", one_line(leaves.unit)),
         sampling,
         tuple(pieces),
     )
+
+
+def _check_sampling(sampling: Sampling) -> None:
+    if not 0 < sampling.dt < float("inf"):
+        raise InputError(f"--dt: {sampling.dt:g} s; expected a time above 0")
+    duration = sampling.duration_s
+    if duration is not None and not 0 < duration < float("inf"):
+        raise InputError(f"--duration: {duration:g} s; expected a time above 0")
+    if not 2 <= sampling.points <= LARGEST_POINTS:
+        raise InputError(
+            f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
+        )
+    if not 0 <= sampling.delay <= sampling.points - 2:
+        raise InputError(
+            f"--delay: {sampling.delay}; expected 0 to {sampling.points - 2}, two less "
+            "than --points"
+        )
 
 
 def identifier(name: str) -> str:
