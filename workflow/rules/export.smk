@@ -5,6 +5,8 @@
 rule export_errors:
     input:
         code=code("hystbench.commands.export_errors"),
+        # Copied into what is exported, and not imported.
+        steps=PACKAGE / "export/steps.py",
     output:
         "results/export/errors.csv",
     log:

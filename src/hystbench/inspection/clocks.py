@@ -1,18 +1,26 @@
-"""Numbers that count from a date: what a column of time without a unit may be."""
+"""A column of time: what it counts, and how evenly."""
 
 from __future__ import annotations
 
 import datetime as dt
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from hystbench.errors import InputError
+from hystbench.formats import Table
+from hystbench.reading import UNIFORM_TOLERANCE
 from hystbench.record import FloatArray
 
 EARLIEST, LATEST = dt.datetime(1990, 1, 1), dt.datetime(2100, 1, 1)
 """Between these a computer has recorded."""
 LONGEST_DAYS = 1.0
 """Of a record: a column of some ten thousand that runs further counts no days."""
+
+
+LOOSEST = 0.5
+"""Of a step: what dataset.yaml may tolerate at most."""
 
 
 class Clock(NamedTuple):
@@ -78,3 +86,36 @@ def clock_of(values: FloatArray) -> Clock | None:
             told = date.isoformat(" ", "milliseconds")
             return Clock(count.unit, f"{count.words}, from {told} on")
     return None
+
+
+@dataclass(frozen=True)
+class Ticks:
+    """What a column of time is like: mean step in s, unevenness, whether rounded."""
+
+    step: float
+    tolerance: float
+    rounded: bool
+
+
+def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
+    """Look at a column of time; what dataset.yaml cannot say is refused."""
+    there = time[np.isfinite(time)]
+    steps = np.diff(there)
+    mean = float(there[-1] - there[0]) / max(len(steps), 1)
+    uneven = float(np.abs(steps - mean).max()) / mean if mean > 0 else np.inf
+    if uneven <= UNIFORM_TOLERANCE:
+        return Ticks(mean, UNIFORM_TOLERANCE, False)
+    away = np.abs(there - there[0] - mean * np.arange(len(there)))
+    positive = steps[steps > 0]
+    quantum = float(positive.min()) if len(positive) else np.inf
+    whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < 1e-3
+    if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
+        return Ticks(mean, UNIFORM_TOLERANCE, True)
+    if uneven <= LOOSEST and away.max() <= LOOSEST * mean:
+        return Ticks(mean, min(LOOSEST, np.ceil(1100 * uneven) / 1000), False)
+    row = int(np.argmax(np.abs(steps - mean)))
+    raise InputError(
+        f"{where}: {table.place(row + 1)}: a step in time of "
+        f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
+        "give the parts between such steps as files or 'rows' of their own"
+    )

@@ -17,16 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.copies import common_piece
-from hystbench.dataset import RECORD_NAME, UNIFORM_TOLERANCE, Dataset, dataset_of
+from hystbench.dataset import RECORD_NAME, Dataset, dataset_of
 from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table, read_table
-from hystbench.inspection.clocks import clock_of
+from hystbench.inspection.clocks import clock_of, ticks_of
 from hystbench.inspection.excitation import Excitation, excitation_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
 from hystbench.inspection.roles import propose
 from hystbench.periods import find_period
+from hystbench.reading import UNIFORM_TOLERANCE
 from hystbench.record import FloatArray, Record
 from hystbench.units import NONE, check_known, plain, seconds
 
@@ -34,8 +35,6 @@ LEAST = 20
 """Samples of a signal; fewer are a table of something else."""
 ONE_HELD_OUT = 3
 """Of a lone record: a third is held out."""
-LOOSEST = 0.5
-"""Of a step: what dataset.yaml may tolerate at most."""
 
 _OF_MATRIX = re.compile(r"(?P<stem>.+)(?P<place>\(:,\d+\))")
 
@@ -466,7 +465,8 @@ def _content(
         clock = None
         if signals.time is not None:
             unit = seconds("--time-unit", signals.time_unit)
-            clock = _clock(part, part.columns[signals.time].values * unit)
+            time = part.columns[signals.time].values * unit
+            clock = ticks_of(time, part.where, part.table)
             tolerance = max(tolerance, clock.tolerance)
             rates.append(clock)
         entries += _without_missing(part, signals, entry, given, ask, notes)
@@ -563,39 +563,6 @@ def _checked_frequency(told: str | float) -> float:
             f"--sampling-frequency: {told}; expected a finite number of Hz above 0"
         )
     return value
-
-
-@dataclass(frozen=True)
-class _Clock:
-    """What a column of time is like: mean step in s, unevenness, whether rounded."""
-
-    step: float
-    tolerance: float
-    rounded: bool
-
-
-def _clock(part: Part, time: FloatArray) -> _Clock:
-    """Look at a column of time; what dataset.yaml cannot say is refused."""
-    there = time[np.isfinite(time)]
-    steps = np.diff(there)
-    mean = float(there[-1] - there[0]) / max(len(steps), 1)
-    uneven = float(np.abs(steps - mean).max()) / mean if mean > 0 else np.inf
-    if uneven <= UNIFORM_TOLERANCE:
-        return _Clock(mean, UNIFORM_TOLERANCE, False)
-    away = np.abs(there - there[0] - mean * np.arange(len(there)))
-    positive = steps[steps > 0]
-    quantum = float(positive.min()) if len(positive) else np.inf
-    whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < 1e-3
-    if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
-        return _Clock(mean, UNIFORM_TOLERANCE, True)
-    if uneven <= LOOSEST and away.max() <= LOOSEST * mean:
-        return _Clock(mean, min(LOOSEST, np.ceil(1100 * uneven) / 1000), False)
-    row = int(np.argmax(np.abs(steps - mean)))
-    raise InputError(
-        f"{part.where}: {part.table.place(row + 1)}: a step in time of "
-        f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
-        "give the parts between such steps as files or 'rows' of their own"
-    )
 
 
 def _missing(part: Part, signals: _Signals) -> NDArray[np.bool_]:
