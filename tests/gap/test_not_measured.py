@@ -6,13 +6,17 @@ import numpy as np
 import pytest
 
 from hystbench.gap.compared import Compared
+from hystbench.gap.evidence import load_evidence
 from hystbench.gap.folds import make_folds
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.nuisance import left_over, path_and_mains
+from hystbench.gap.run import close_gap
 from hystbench.gap.sample import Sample
 from hystbench.gap.shrink import ladder, shrink
 from hystbench.gap.yardstick import BlackBox
+from hystbench.model import load_model
 from tests.gap.made import record, sine
+from tests.gap.tiny import LAG_S, write_tiny
 
 LOST = [0, 1, 700, 701, 702, 1500]
 GARBAGE = 1e6
@@ -102,3 +106,23 @@ def test_views_of_samples_do_not_see_them(both):
         assert view.slices[-1].stop == 4 * 1994
         seen.append(view.residual)
     np.testing.assert_array_equal(*seen)
+
+
+def test_a_gap_is_found_beside_records_with_holes(tmp_path):
+    """Every view and stage takes records of which different samples are missing."""
+    data, base = write_tiny(tmp_path)
+    about = (data / "dataset.yaml").read_text()
+    for name, lost in (("fast", range(400, 460)), ("unseen", [900, 901])):
+        rows = (data / f"{name}.csv").read_text().splitlines()
+        for k in lost:
+            rows[k] = rows[k].rpartition(",")[0] + ","
+        (data / f"{name}.csv").write_text("\n".join(rows) + "\n")
+        about = about.replace(
+            f"file: {name}.csv,", f"file: {name}.csv, missing: interpolate,"
+        )
+    (data / "dataset.yaml").write_text(about)
+    found = close_gap(load_evidence(data), load_model(base), tmp_path / "out")
+    (effect,) = found.content["effects"]
+    assert effect["name"] == "drive-lag"
+    number = effect["parameters"]["time_constant_s"]
+    assert number["value"] == pytest.approx(LAG_S, rel=0.02)

@@ -144,10 +144,8 @@ class Samples:
         They approximate any Preisach operator, so no loop is out of their reach.
         """
         thresholds = np.array(THRESHOLDS) * self.reach
-        parts = [
-            play(item.record.u, thresholds)[0][:: self.stride] for item in self.compared
-        ]
-        return np.ascontiguousarray(np.concatenate(parts).T)
+        played = self.thin(lambda item: play(item.record.u, thresholds)[0])
+        return np.ascontiguousarray(played.T)
 
     @cached_property
     def shapes(self) -> FloatArray:
