@@ -8,12 +8,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from hystbench.device_kinds import KINDS, Kind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
+from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
 from hystbench.reading import (
     UNIFORM_TOLERANCE,
     check_moves,
@@ -42,6 +44,7 @@ _CHANNEL = {
         "unit": {"type": "string"},
         "name": {"type": "string"},
         "meant": {"type": "boolean"},
+        "quantity": {"enum": list(QUANTITIES)},
     },
 }
 
@@ -80,6 +83,12 @@ SCHEMA: dict[str, Any] = {
                 "unit": {"type": "string"},
                 "meant": {"type": "boolean"},
             },
+        },
+        "device": {
+            "type": "object",
+            "required": ["kind"],
+            "additionalProperties": False,
+            "properties": {"kind": {"enum": list(KINDS)}},
         },
         "sampling_frequency_hz": {"type": "number", "exclusiveMinimum": 0},
         "noise_rms": {"type": "number", "exclusiveMinimum": 0},
@@ -248,6 +257,22 @@ class Dataset:
         return None if about is None else str(about["column"])
 
     @property
+    def quantities(self) -> Quantities:
+        """What the device takes and gives, as its units and dataset.yaml tell."""
+        return Quantities(self._quantity("input"), self._quantity("output"))
+
+    def _quantity(self, key: Literal["input", "output"]) -> Quantity:
+        channel = self.about[key]
+        place = f"{self.path}: {key}"
+        return quantity_of(place, channel["unit"], channel.get("quantity"))
+
+    @property
+    def device_kind(self) -> Kind | None:
+        """Kind of the device, if dataset.yaml tells it."""
+        kind: Kind | None = self.about.get("device", {}).get("kind")
+        return kind
+
+    @property
     def identification(self) -> str:
         """Name of the record for identification: the one named, or the slowest.
 
@@ -324,6 +349,8 @@ def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
         check_same_unit(f"{file}: simulated: unit", ours, "the output", measured)
     for channel in ("input", "output"):
         check_known(f"{file}: {channel}: unit", about[channel]["unit"])
+    if any("quantity" in about[channel] for channel in ("input", "output")):
+        _ = dataset.quantities  # refuses one that the unit is none of
     if "time" in about:
         seconds(f"{file}: time: unit", about["time"]["unit"])
     return dataset

@@ -7,6 +7,7 @@ is shown, axes and pages, is written by :func:`hystbench.figures.style.unit_text
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from contextlib import suppress
 from typing import Any
 
@@ -23,6 +24,7 @@ LONGEST = 40
 
 _SIMPLE = re.compile(f"([{''.join(PREFIXES)}]?)({'|'.join(SYMBOLS)})")
 _MICRO = re.compile("[\u00b5\u03bc]")  # the sign, and the Greek letter
+_TORQUE = re.compile(f"(?<![A-Za-z])([{''.join(PREFIXES)}]?N)([cm]?m)(?![A-Za-z])")
 _EXPONENT = r"(?:\*\*|\^)\s*[-+]?(?:\d(?:\.\d)?|\(\s*[-+]?\d(?:[./]\d)?\s*\))"
 _WORDS = (
     *("ampere", "amp", "volt", "newton", "meter", "metre", "millimeter", "micrometer"),
@@ -148,11 +150,56 @@ def named_otherwise(column: str, unit: str) -> str | None:
     return named[0]
 
 
+def alike(place: str, unit: str, references: Iterable[str]) -> str | None:
+    """Give the one of some units that measures the same kind of thing.
+
+    A size plays no part: ``mm`` is like ``m``. An angle is told from a plain number,
+    and a torque from an energy, as a unit of force is part of it.
+
+    Parameters
+    ----------
+    place : str
+        Where the unit stands, for the message.
+    unit : str
+    references : iterable of str
+
+    Returns
+    -------
+    str or None
+        None where it is like none of them.
+
+    Raises
+    ------
+    InputError
+        If it is no unit.
+    """
+    base, with_force = _made_of(place, unit)
+    for reference in references:
+        if (base, with_force) == _made_of(place, reference):
+            return reference
+    return None
+
+
+def _made_of(place: str, unit: str) -> tuple[Any, bool]:
+    """Give the base units, the radian one of them, and whether it is a torque."""
+    parsed = _parsed(place, unit)
+    import pint
+
+    registry: Any = pint.application_registry
+    _, base = registry.get_base_units(parsed)
+    if base != registry.get_base_units("joule")[1]:
+        return base, False
+    parts = [name for name, _ in pint.Quantity(1, parsed).unit_items()]
+    force = registry.get_dimensionality("newton")
+    return base, any(registry.get_dimensionality(name) == force for name in parts)
+
+
 def _parsed(place: str, unit: str) -> Any:
     """Read a unit with pint."""
     import pint  # late: a fifth of a second, and rarely needed
 
-    text = plain(unit)
+    # pint reads Nm as a number of metres, where files mean a torque.
+    text = _TORQUE.sub(r"\1*\2", plain(unit))
     if text in NONE:
         text = ""
     registry: Any = pint.application_registry

@@ -402,3 +402,18 @@ def test_times_that_count_from_a_date(run, tmp_path, first, per_second, unit, rt
     assert "from 2024-02-29 12:00:00.000 on (--time-unit)" in said
     assert written()["time"]["unit"] == unit
     assert load_dataset(".").read("run-1").dt == pytest.approx(DT, rel=rtol)
+
+
+def test_the_kind_of_device_is_written(run, tmp_path):
+    status, _, _ = run("init", *records(tmp_path), "--device", "piezoelectric")
+    assert status == 0
+    assert written()["device"] == {"kind": "piezoelectric"}
+    assert load_dataset("dataset.yaml").device_kind == "piezoelectric"
+
+
+def test_a_kind_that_is_none_is_refused_in_a_line(run, tmp_path):
+    status, _, said = run("init", *records(tmp_path), "--device", "piezo")
+    assert status == 2
+    assert len(said.splitlines()) == 1
+    assert "piezoelectric" in said
+    assert not Path("dataset.yaml").exists()

@@ -50,6 +50,7 @@ def test_curves_are_small_and_are_json():
         "distortion",
         "loops",
         "coherence",
+        "levels",
     }
     assert found["units"] == {"input": "A", "output": "um"}
 

@@ -33,8 +33,11 @@ BASE = {
 }  # fmt: skip
 
 
-def write_tiny(folder: Path, lag_s: float = LAG_S) -> tuple[Path, Path]:
-    """Write dataset and base; a drive lag is in the records and not in the base."""
+def write_tiny(folder: Path, lag_s: float = LAG_S, more: str = "") -> tuple[Path, Path]:
+    """Write dataset and base; a drive lag is in the records and not in the base.
+
+    ``more`` are further lines of dataset.yaml.
+    """
     rng = np.random.default_rng(5)
     base = Model.from_mapping(BASE, "base")
     lag = {"drive-lag": {"time_constant_s": lag_s}}
@@ -62,7 +65,7 @@ def write_tiny(folder: Path, lag_s: float = LAG_S) -> tuple[Path, Path]:
         "time: {column: time_s, unit: s}\n"
         "input: {column: current_A, unit: A}\n"
         "output: {column: displacement_um, unit: um}\n"
-        f"noise_rms: {NOISE}\n"
+        f"noise_rms: {NOISE}\n{more}"
         "records:\n" + "".join(entries)
     )
     load_dataset(data)

@@ -8,6 +8,7 @@ import click
 
 from hystbench import options
 from hystbench.gap.asked import check_base
+from hystbench.gap.behaviour import in_words
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.limits import Limits
 from hystbench.gap.run import will_write
@@ -86,7 +87,7 @@ def gap(
     if write_experiment is not None:
         finding = found.closed.finding
         click.echo(write_wanted(finding, evidence.input, write_experiment))
-    effects = [effect.name for effect in found.effects]
+    effects = [in_words(effect.name) for effect in found.effects]
     named = f": {', '.join(effects)}" if effects else ""
     put_in = f" (you put in {', '.join(with_)})" if with_ else ""
     click.echo(f"{out / 'gap.json'}: {found.verdict}{named}{put_in}")

@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from hystbench import options
+from hystbench.device_kinds import KINDS, Kind
 from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.draft import Draft, Given, draft
@@ -37,6 +38,7 @@ PLACE = "dataset.yaml"
     type=click.Choice(["interpolate", "split"]),
     help="What to do where samples are missing.",
 )
+@click.option("--device", type=click.Choice(KINDS), help="Kind of the device.")
 @click.option("--name", help="Name of the dataset; by default that of its folder.")
 @click.option(
     "--out",
@@ -54,6 +56,7 @@ def init(
     sampling_frequency: float | None,
     hold_out: tuple[str, ...],
     missing: str | None,
+    device: Kind | None,
     name: str | None,
     out: Path | None,
 ) -> None:
@@ -76,6 +79,7 @@ def init(
         sampling_frequency,
         hold_out,
         missing,
+        device,
     )
     found = draft(files, place, given, _asker())
     write_text(place, yaml_text(found.dataset.about))

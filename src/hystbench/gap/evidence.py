@@ -7,11 +7,13 @@ from pathlib import Path
 
 from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset
+from hystbench.device_kinds import Kind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap import folds, nuisance
 from hystbench.gap.usable import check_usable
 from hystbench.model import Model
+from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record, Use
 from hystbench.units import check_same_unit
 
@@ -38,6 +40,10 @@ class Evidence:
         Column of the output that a simulator gave elsewhere, if the records have one.
     warnings : tuple of str
         What of the records is hardly meant, one line each.
+    quantities : Quantities
+        What the device takes and gives.
+    device_kind : str, optional
+        Kind of the device, where dataset.yaml tells it.
     """
 
     name: str
@@ -48,6 +54,8 @@ class Evidence:
     identification: str | None = None
     simulated_column: str | None = None
     warnings: tuple[str, ...] = ()
+    quantities: Quantities = NONE_KNOWN
+    device_kind: Kind | None = None
 
     @property
     def input(self) -> Channel:
@@ -116,6 +124,8 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         named,
         dataset.simulated_column,
         doubts(dataset, records),
+        dataset.quantities,
+        dataset.device_kind,
     )
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
+from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.built_in import BuiltIn, put_in
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import Finding, black_box, decide
@@ -60,6 +61,8 @@ def decide_in(
     """
     writes(*(folder / name for name in DECIDED))
     asked = Limits.within(evidence.fit, limits) if limits else None
+    say = say_in_words(say)
+    vocabulary = vocabulary.in_device(evidence.device_kind)
     base, built_in = put_in(base, evidence, vocabulary.fixed, say)
     start, floor = start_state(
         evidence.fit, base, evidence.hold, evidence.noise_rms, vocabulary.offered
@@ -69,6 +72,8 @@ def decide_in(
     finding = decide(
         evidence.name, base, start, floor, named, say, asked, own, unnamed_share
     )
+    content = with_device(finding.content, evidence.device_kind, evidence.quantities)
+    finding = replace(finding, content=content)
     kept = {
         "floor": asdict(floor),
         "state": state_mapping(finding.state),
@@ -126,7 +131,10 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
         evidence.warnings,
     )
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
+    vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
     shown = as_asked(shown, vocabulary, built_in, evidence, state, floor, own)
+    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
+    shown = replace(shown, content=content)
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

@@ -11,6 +11,7 @@ import numpy as np
 
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.augmented import augmented
+from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.built_in import BuiltIn, put_in
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
@@ -131,6 +132,8 @@ def closed_gap(
         If units do not match, the base does not run, or an effect cannot be put in.
     """
     check_units(evidence, base, place)
+    vocabulary = vocabulary.in_device(evidence.device_kind)
+    say = say_in_words(say)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
@@ -162,7 +165,8 @@ def closed_gap(
     shown = as_asked(
         shown, vocabulary, built_in, evidence, finding.state, finding.floor, finding.own
     )
-    content = shown.content
+    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
+    shown = replace(shown, content=content)
     return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
 
 

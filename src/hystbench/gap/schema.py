@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from hystbench.device_kinds import KINDS
+from hystbench.quantities import QUANTITIES
+
 NUMBER = {"type": "number"}
 OPTIONAL = {"type": ["number", "null"]}
 WORDS = {"type": "string"}
@@ -38,6 +41,10 @@ EFFECT = _object(
     # Standard error of what it adds to the output, in times of it; null where that
     # cannot be told.
     size_error=OPTIONAL,
+    # What it is called by what it does, and what usually causes it: in such a device,
+    # where its kind is known.
+    behaviour=WORDS,
+    causes=NAMES,
 )
 
 VIEW = _object(
@@ -52,6 +59,7 @@ VIEW = _object(
                 "delay",
                 "unexplained",
                 "record",
+                "level",
             ]
         },
         "axis": {"type": "string"},
@@ -289,7 +297,9 @@ BUILT_IN = _object(
                     "place": WORDS,
                     "form": WORDS,
                     "parameters": {"type": "object", "additionalProperties": VALUE},
-                }
+                },
+                behaviour=WORDS,
+                causes=NAMES,
             ),
         },
         "before": NUMBER,
@@ -320,8 +330,20 @@ SCHEMA = _object(
     findings={"type": "array", "items": FOUND},
     record_values={"oneOf": [RECORD_VALUES, {"type": "null"}]},
     withdrawn={"oneOf": [WITHDRAWN, {"type": "null"}]},
-    # Where the user put effects in or left some out.
-    asked=_object({"without": NAMES, "with": NAMES, "sentence": WORDS}),
+    # Where the user put effects in or left some out, or the kind of device leaves some
+    # out as impossible.
+    asked=_object(
+        {"without": NAMES, "with": NAMES, "sentence": WORDS}, impossible=NAMES
+    ),
+    # What the device is: its kind as dataset.yaml tells it, and what its units tell.
+    device=_object(
+        {
+            "kind": {"enum": [*KINDS, None]},
+            "input": {"enum": list(QUANTITIES)},
+            "output": {"enum": list(QUANTITIES)},
+            "causality": WORDS,
+        }
+    ),
     built_in=BUILT_IN,
     # What hystbench gap was called with, as typed, so that the page can show how to run
     # it again.

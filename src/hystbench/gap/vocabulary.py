@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from hystbench.device_kinds import Kind, impossible_in
 from hystbench.errors import InputError, nearest
 
 
@@ -20,6 +21,8 @@ class Vocabulary:
     fixed : tuple of str
         Effects that are in the model from the start. They are fitted, and found by
         nobody: what they close of the gap is told apart from what is found.
+    kind : str, optional
+        Kind of the device; what it cannot have is not named, unless it is put in.
 
     Raises
     ------
@@ -29,6 +32,7 @@ class Vocabulary:
 
     without: tuple[str, ...] = ()
     fixed: tuple[str, ...] = ()
+    kind: Kind | None = None
 
     def __post_init__(self) -> None:
         """Refuse names that mean nothing."""
@@ -53,21 +57,36 @@ class Vocabulary:
         """Take names in any sequence."""
         return cls(tuple(without), tuple(fixed))
 
+    def in_device(self, kind: Kind | None) -> Vocabulary:
+        """Leave out what a kind of device cannot have."""
+        return replace(self, kind=kind)
+
+    @property
+    def impossible(self) -> tuple[str, ...]:
+        """Effects that the kind of device leaves out, which nobody named."""
+        named = {*self.without, *self.fixed}
+        return tuple(name for name in impossible_in(self.kind) if name not in named)
+
     @property
     def offered(self) -> tuple[str, ...]:
         """Effects that the search may name, in their order."""
         from hystbench.gap.effects import effects  # late: as above
 
-        closed = {*self.without, *self.fixed}
+        closed = {*self.without, *self.fixed, *self.impossible}
         return tuple(name for name in effects() if name not in closed)
 
     def words(self) -> list[str]:
-        """Say what the user asked for, a sentence each."""
+        """Say what the user asked for and the device leaves out, a sentence each."""
         said = []
         if self.fixed:
             said.append(f"you put in {_listed(self.fixed)}: it is not a finding")
         if self.without:
             said.append(f"you left out {_listed(self.without)}: it was not tried")
+        if self.impossible:
+            said.append(
+                f"the device is {self.kind}, as dataset.yaml says, and cannot have "
+                f"{_listed(self.impossible)}: it was not tried"
+            )
         return said
 
     def mapping(self) -> dict[str, Any]:
@@ -75,6 +94,7 @@ class Vocabulary:
         return {
             "without": list(self.without),
             "with": list(self.fixed),
+            "impossible": list(self.impossible),
             "sentence": "; ".join(self.words()),
         }
 

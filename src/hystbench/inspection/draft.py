@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from hystbench.copies import common_piece
 from hystbench.dataset import RECORD_NAME, Dataset, dataset_of
+from hystbench.device_kinds import Kind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table, read_table
@@ -62,6 +63,8 @@ class Given:
         Names of records to hold out.
     missing : {"interpolate", "split"}, optional
         What to do where samples are missing.
+    device : str, optional
+        Kind of the device.
     """
 
     name: str | None = None
@@ -74,6 +77,7 @@ class Given:
     sampling_frequency_hz: float | None = None
     hold_out: tuple[str, ...] = ()
     missing: str | None = None
+    device: Kind | None = None
 
 
 @dataclass(frozen=True)
@@ -455,6 +459,8 @@ def _content(
 ) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     """Give dataset.yaml but for roles and periods; notes are added to."""
     about: dict[str, Any] = {"name": given.name or _name_of(place)}
+    if given.device is not None:
+        about["device"] = {"kind": given.device}
     entries = []
     tolerance, rates = UNIFORM_TOLERANCE, []
     for part in parts:

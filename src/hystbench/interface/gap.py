@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
+from hystbench.gap.behaviour import in_words
 from hystbench.gap.evidence import Evidence, load_evidence
 from hystbench.gap.run import Closed, closed_gap
 from hystbench.gap.say import Say, silent
@@ -40,6 +41,8 @@ class Effect:
     parameters : mapping
         By name: ``value``, ``standard_error`` and ``unit``.
     cannot_be_told_from : tuple of str
+    causes : tuple of str
+        What usually causes it: in such a device, where its kind is known.
     """
 
     name: str
@@ -47,18 +50,20 @@ class Effect:
     confidence: float
     parameters: Mapping[str, Mapping[str, Any]]
     cannot_be_told_from: tuple[str, ...]
+    causes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Tell the name, how sure it is, and its numbers."""
         said = ", ".join(_number(*item) for item in self.parameters.items())
         rivals = (
-            f"; not to be told from {', '.join(self.cannot_be_told_from)}"
+            "; not to be told from "
+            f"{', '.join(map(in_words, self.cannot_be_told_from))}"
             if self.cannot_be_told_from
             else ""
         )
         return (
-            f"{self.name} ({self.place}), confidence {100 * self.confidence:.0f} %: "
-            f"{said}{rivals}"
+            f"{in_words(self.name)} ({self.place}), confidence "
+            f"{100 * self.confidence:.0f} %: {said}{rivals}"
         )
 
 
@@ -108,6 +113,7 @@ class Gap:
                 item["confidence"],
                 item["parameters"],
                 tuple(item["cannot_be_told_from"]),
+                tuple(item["causes"]),
             )
             for item in self.content["effects"]
         )

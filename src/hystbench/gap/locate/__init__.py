@@ -13,6 +13,7 @@ from hystbench.gap.locate.curves import curves
 from hystbench.gap.locate.delay import delay_view
 from hystbench.gap.locate.distortion import take_distortion
 from hystbench.gap.locate.frequency import frequency_view
+from hystbench.gap.locate.levels import levels_view, take_levels
 from hystbench.gap.locate.rate import rate_view
 from hystbench.gap.locate.record import record_view
 from hystbench.gap.locate.samples import take_samples
@@ -39,8 +40,8 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     Returns
     -------
     tuple of View
-        One of each kind, the most telling first; those whose p-value, times the number
-        of views, is not below 0.05 come last.
+        One of each kind that the records allow, the most telling first; those whose
+        p-value, times the number of views, is not below 0.05 come last.
 
     Raises
     ------
@@ -71,6 +72,7 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
     samples = take_samples(compared, floor)
     spectra = take_spectra(samples)
     distortion = take_distortion(samples)
+    moving = take_levels(samples)
     views = (
         delay_view(samples, spectra),
         amplitude_view(samples),
@@ -80,6 +82,7 @@ def locate(compared: Sequence[Compared], floor: Floor) -> tuple[View, ...]:
         unexplained_view(samples, distortion),
         rate_view(samples),
         record_view(samples),
+        *((levels_view(samples, moving),) if moving else ()),
     )
     return ranked(views)
 

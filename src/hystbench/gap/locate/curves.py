@@ -15,6 +15,7 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.locate.cells import cell_of
 from hystbench.gap.locate.coherence import coherence_curve, take_coherence
 from hystbench.gap.locate.distortion import KINDS, Distortion, Lines, take_distortion
+from hystbench.gap.locate.levels import levels_curve, take_levels
 from hystbench.gap.locate.listed import IntArray, in_groups, listed
 from hystbench.gap.locate.loops import loop_curve, take_loops
 from hystbench.gap.locate.plane import over_plane
@@ -83,6 +84,11 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
           ``coherence`` (0 to 1), ``chance`` (what an unrelated residual exceeds in one
           of twenty) and ``share`` (of the gap, one number); or null where records are
           short.
+        - ``levels``: one mapping a mode under ``modes``, at each level of the input:
+          ``kind`` (the class), ``input`` (U, rms), ``frequency`` (Hz), ``width``
+          (damping ratio of the fitted pole), ``damping`` (the same by power), ``gain``,
+          and of each but the input its ``_error``; or null where fewer than three
+          levels of broadband input show a mode.
 
     Raises
     ------
@@ -108,6 +114,7 @@ def curves(compared: Sequence[Compared], floor: Floor) -> dict[str, Any]:
         "distortion": None if distortion is None else _distortion(samples, distortion),
         "loops": loop_curve(take_loops(samples)),
         "coherence": coherence_curve(take_coherence(samples)),
+        "levels": levels_curve(take_levels(samples)),
     }
 
 

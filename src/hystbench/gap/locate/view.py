@@ -18,8 +18,8 @@ class View:
     Parameters
     ----------
     view : str
-        Kind: frequency, amplitude, rate, branch, slow-time, delay, unexplained or
-        record.
+        Kind: frequency, amplitude, rate, branch, slow-time, delay, unexplained,
+        record or level.
     axis : str
         What ``start`` and ``end`` are values of.
     start, end : float or str

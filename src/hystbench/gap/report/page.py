@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from hystbench.figures.style import COLUMN, unit_text
+from hystbench.gap.behaviour import for_readers
 from hystbench.gap.locate import LEVEL
 from hystbench.gap.locate.view import percent
 from hystbench.gap.report import pictures, where, words
@@ -37,6 +38,7 @@ OPTIONAL: dict[str, Any] = {
     "calls_used_up": None,
     "asked": None,
     "built_in": None,
+    "device": None,
     "command": None,
 }
 #: And its parts with figures, where a bootstrap tells nothing.
@@ -46,6 +48,7 @@ WHY = {
     "distortion": "distortion, as no record repeats with a gap above the noise",
     "over_plane": "the input and its rate together, as the input never moves",
     "loops": "areas of loops, as the input never moves",
+    "levels": "modes by level, as no three levels of a broadband input show one",
     "coherence": "coherence, as records are too short or the input never moves",
 }
 
@@ -73,17 +76,19 @@ def page(content: Content) -> str:
         environment.filters[name] = getattr(words, name)
     environment.filters["unit"] = words.unit
     environment.filters["listed"] = words.listed
-    gap = with_optional(content.gap)
+    named = with_optional(content.gap)  # as the vocabulary has it
+    gap = with_optional(for_readers(content.gap))
     drawn, missing = _where(content)
     page = environment.get_template(TEMPLATE).render(
         gap=gap,
-        sentence=words.verdict_sentence(gap),
+        sentence=words.verdict_sentence(named),
         floor_words=words.FLOORS[gap["gap"]["floor_method"]],
         y=unit_text(gap["unit"]),
         named=[effect["name"] for effect in gap["effects"]],
         glance=headline(gap, content),
         advice=words.advice(gap),
-        reruns=words.rerun_commands(gap),
+        reruns=words.rerun_commands(named),
+        causes=words.causes(gap),
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
@@ -348,6 +353,20 @@ def _where(content: Content) -> tuple[list[Picture], list[str]]:
                 words="Area of the loop, output over input, at each frequency (bars: "
                 "two standard errors), and coherence of the gap with the input",
                 panels=(1, 2),
+            ),
+        ),
+        (
+            ("levels",),
+            lambda: draw(
+                where.levels,
+                curves["levels"]["modes"],
+                units["input"],
+                words="How modes move when the input grows; a linear device's stay. "
+                "Damping is told by power: what the input puts in, over the mean "
+                "square velocity; a curved spring widens the peak and leaves this "
+                "alone. Bars: standard errors",
+                height=2.4,
+                panels=(1, 3),
             ),
         ),
         (

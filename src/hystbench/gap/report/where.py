@@ -200,6 +200,38 @@ def plane(axes: Sequence[Axes], curve: dict[str, Any], units: dict[str, str]) ->
     bar.outline.set_visible(False)
 
 
+def levels(axes: Any, modes: Sequence[dict[str, Any]], unit: str) -> None:
+    """Draw how modes move with the input's level: frequency, damping, gain."""
+    marks = []
+    looks = ((BLUE, "o", "-"), (VERMILION, "s", "--"))
+    for mode, (color, mark, line) in zip(modes, looks, strict=False):
+        level = np.array(mode["input"])
+        look: dict[str, Any] = {"color": color, "marker": mark, "linestyle": line}
+        first = mode["frequency"][0]
+        for panel, name, scale, base in (
+            (axes[0], "frequency", 100 / first, first),
+            (axes[1], "damping", 100.0, 0.0),
+            (axes[2], "gain", 1 / mode["gain"][0], 0.0),
+        ):
+            values = scale * (np.array(mode[name]) - base)
+            errors = scale * np.array(mode[f"{name}_error"])
+            panel.errorbar(level, values, errors, capsize=2, markersize=4, **look)
+        hollow = look | {"linestyle": "none", "markerfacecolor": "none"}
+        axes[1].plot(level, 100 * np.array(mode["width"]), markersize=8, **hollow)
+        marks.append(Line2D([], [], label=f"{first:.3g} Hz: {mode['kind']}", **look))
+    hollow = {"color": GREY, "marker": "o", "markerfacecolor": "none"}
+    marks.append(Line2D([], [], linestyle="none", label="width of the peak", **hollow))
+    names = ("change of frequency (%)", "damping ratio (%)", "gain over the first (-)")
+    for panel, name in zip(axes, names, strict=True):
+        panel.set_xlim(0, 1.05 * max(max(mode["input"]) for mode in modes))
+        panel.set_xlabel(f"rms of the input ({unit_text(unit)})")
+        panel.set_ylabel(name)
+    axes[0].axhline(0, color=BLACK, linewidth=0.6)
+    axes[1].set_ylim(bottom=0)
+    axes[2].set_ylim(bottom=0)
+    legend_above(axes[0].figure, marks)
+
+
 def slow(axes: Sequence[Axes], paths: Sequence[dict[str, Any]], unit: str) -> None:
     """Draw the slow path of the residual, record behind record."""
     (panel,) = axes

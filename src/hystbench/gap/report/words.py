@@ -8,7 +8,9 @@ from typing import Any
 
 from markupsafe import Markup
 
+from hystbench.device_kinds import behaviour_of
 from hystbench.figures.style import unit_text
+from hystbench.gap.behaviour import in_words
 
 #: A narrow space that does not break.
 NARROW = "\u202f"
@@ -33,7 +35,7 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
     put_in = (gap.get("asked") or {"with": []})["with"]
     if not put_in:
         return _verdict(gap)
-    names = listed([name.replace("-", " ") for name in put_in])
+    names = listed([behaviour_of(name) for name in put_in])
     said = _verdict(gap)
     return f"With {names}, which you put in, {said[:1].lower()}{said[1:]}"
 
@@ -70,7 +72,7 @@ def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
             first = named[0]
             found.append((f"it is not {first}, it is {rival}", [first], rival))
     return [
-        (words, _command(place, asked, without, put_in))
+        (in_words(words), _command(place, asked, without, put_in))
         for words, without, put_in in found
     ]
 
@@ -94,7 +96,7 @@ def _command(
 def _verdict(gap: dict[str, Any]) -> str:
     if gap["withdrawn"] and gap["verdict"] == "unnamed":
         return _withdrawn_sentence(gap["withdrawn"])
-    names = [effect["name"].replace("-", " ") for effect in gap["effects"]]
+    names = [behaviour_of(effect["name"]) for effect in gap["effects"]]
     sentence = VERDICTS[gap["verdict"]].format(
         effects=listed(names), reason=gap["reason"].rstrip(".")
     )
@@ -111,6 +113,23 @@ def _verdict(gap: dict[str, Any]) -> str:
         sentence += f" It looks like {listed(names)}, but is not that"
         return sentence + (f": {stays}." if stays else ".")
     return sentence + (f" On the fit records {stays}." if stays else "")
+
+
+def causes(gap: dict[str, Any]) -> list[str]:
+    """Say of each effect that was found what usually causes it, a sentence each."""
+    device = gap.get("device") or {"kind": None}
+    where = f"in a device that is {device['kind']}" if device["kind"] else "usually"
+    return [
+        f"{effect['behaviour'][:1].upper()}{effect['behaviour'][1:]}: {where} "
+        f"{_either(effect['causes'])}."
+        for effect in gap["effects"]
+        if effect.get("causes")
+    ]
+
+
+def _either(names: list[str]) -> str:
+    """Join causes, any of which may be the one."""
+    return "; ".join(names[:-1]) + "; or " + names[-1] if names[1:] else names[0]
 
 
 def advice(gap: dict[str, Any]) -> str:
@@ -141,7 +160,7 @@ def advice(gap: dict[str, Any]) -> str:
 
 def _withdrawn_sentence(taken: dict[str, Any]) -> str:
     """Say that names were withdrawn, and why."""
-    names = listed([name.replace("-", " ") for name in taken["names"]])
+    names = listed([behaviour_of(name) for name in taken["names"]])
     what = f"{names[:1].upper()}{names[1:]}" if names else "The re-tuning of the base"
     were = "were" if len(taken["names"]) > 1 else "was"
     they = "they make" if len(taken["names"]) > 1 else "it makes"

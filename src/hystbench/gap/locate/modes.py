@@ -1,0 +1,414 @@
+"""One mode in the frequency domain, fitted in a band around it, level by level.
+
+In a band around a lightly damped mode a spectrum obeys ``Y = (B U + T) / D`` with
+``D = s^2 + 2 zeta w s + w^2``; the polynomials B and T are short and complex, as they
+stand for all other modes and for the ends of the record [1]_.
+
+References
+----------
+.. [1] T. McKelvey, G. Guerin, "Non-parametric frequency response estimation using a
+   local rational model", IFAC Proceedings 45 (2012) 49-54.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+from hystbench.gap.bases import spectral
+from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
+from hystbench.gap.compared import Compared
+from hystbench.gap.periods import settled
+from hystbench.record import FloatArray, Record
+
+ComplexArray = NDArray[np.complex128]
+
+ORDERS = (2, 4, 6, 8)
+"""Orders of the model that finds the modes."""
+DEGREE = 2
+"""Of the local polynomials, in the distance from the middle of the band."""
+SLOWEST = 0.5
+"""Damping ratio up to which a pair of poles has a peak to speak of."""
+LEAST_SHARE = 0.1
+"""Of the output's power, that a mode worth a picture holds."""
+WIDE = 6.0
+"""Half the width of a band, in damping ratios: nine tenths of a mode's energy."""
+NARROWEST, WIDEST = 0.08, 0.5
+"""Ends of half the width of a band, as shares of its frequency."""
+LINES = 16
+"""Fewest excited lines of a band: twice the numbers that are fitted."""
+DAMPINGS, FREQUENCIES = 12, 25
+"""Of the grid in which a mode is searched."""
+
+
+EXCITED = 1e-3
+"""Of the strongest line's input power, that an excited line holds."""
+EDGE = 1e-3
+"""Of a range: a fit that comes so near to its end has none, relative to its value."""
+ENOUGH = 2**15
+"""Samples of a record without periods that are looked at, from its end on."""
+
+
+class Lines(NamedTuple):
+    """Spectral lines of one record.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (m,)
+        In Hz.
+    u, y, missed : ndarray of complex, shape (m,)
+        Input, output and what the simulation misses of it. The sum of ``|y|^2`` is the
+        mean square about the mean.
+    ends : bool
+        Whether the record's ends leave a transient in the lines.
+    """
+
+    frequency: FloatArray
+    u: ComplexArray
+    y: ComplexArray
+    missed: ComplexArray
+    ends: bool
+
+    def within(self, chosen: NDArray[np.bool_]) -> Lines:
+        """Give some of the lines."""
+        return Lines(
+            self.frequency[chosen],
+            self.u[chosen],
+            self.y[chosen],
+            self.missed[chosen],
+            self.ends,
+        )
+
+    @property
+    def excited(self) -> NDArray[np.bool_]:
+        """Lines that the input excites."""
+        return _excited(self.u)
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A mode at one level of the input.
+
+    Parameters
+    ----------
+    frequency : float
+        In Hz.
+    damping : float
+        Damping ratio of the fitted pole.
+    power_damping : float
+        Damping ratio by power: what the input puts in, over the mean square velocity.
+        A spring, however curved, takes no power: it may widen a peak, and does not
+        change this.
+    gain : float
+        Acceleration a unit of input, of the mode alone: one over its mass. It does
+        not depend on its stiffness.
+    errors : ndarray, shape (4,)
+        Standard errors of the four, relative to them. What follows the input but not
+        by a linear filter counts as noise.
+    reach : float
+        RMS of the output in the band.
+    missed, left : float
+        Mean square in the band of what the simulation misses, and of what the mode as
+        fitted here misses; summed over the level's records.
+    """
+
+    frequency: float
+    damping: float
+    power_damping: float
+    gain: float
+    errors: FloatArray
+    reach: float
+    missed: float
+    left: float
+
+
+def lines_of(compared: Compared) -> Lines:
+    """Transform a record: its settled periods, or its end where none repeat."""
+    record = compared.record
+    period = record.period_samples
+    signals = np.stack([record.u, record.y, compared.residual])
+    repeats = period is not None and len(record) >= 2 * period
+    if period is not None and repeats:
+        runs = settled(signals, period)
+        # Of two periods the first still holds the way from rest.
+        signals = runs[:, -1] if runs.shape[1] == 2 else runs.mean(axis=1)
+    else:
+        signals = signals[:, -ENOUGH:]
+    n = signals.shape[1]
+    centred = signals - signals.mean(axis=1, keepdims=True)
+    u, y, missed = np.asarray(fft.rfft(centred))[:, 1:] * (np.sqrt(2) / n)
+    frequency = np.asarray(fft.rfftfreq(n, record.dt))[1:]
+    return Lines(frequency, u, y, missed, not repeats)
+
+
+class Found(NamedTuple):
+    """Modes of one level: frequency in Hz and damping ratio, and what they leave."""
+
+    modes: tuple[tuple[float, float], ...]
+    left: float
+
+
+def find_modes(records: Sequence[Record], most: int = 2) -> Found:
+    """Find the modes that hold most of the output, by a rational fit.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        Of one level.
+    most : int
+
+    Returns
+    -------
+    Found
+        The mode with the largest share first; ``left`` is the share of the output's
+        power that the linear model does not explain.
+    """
+    stretches = [Stretch(*_centred(record), record.dt) for record in records]
+    whole = Spectra.of(stretches, "band-limited")
+    spectra = replace(whole, lines=tuple(map(_driven, whole.lines)))
+    facts = 2 * sum(len(one.s) for one in spectra.lines)
+    energy = sum(float(np.sum(np.abs(one.y) ** 2)) for one in spectra.lines)
+    fits = [(order, fit_ratio(spectra, order, order)) for order in ORDERS]
+    _, ratio = min(
+        fits,
+        key=lambda item: (
+            facts * np.log(max(item[1].cost, 1e-12 * energy))
+            + 2 * item[0] * np.log(facts)
+        ),
+    )
+    shares = [
+        (_share(spectra, ratio, pole) / energy, pole)
+        for pole in np.roots(np.append(ratio.a, 1.0)[::-1])
+        if pole.imag > 0 and -pole.real < SLOWEST * abs(pole)
+    ]
+    kept = sorted(shares, key=lambda item: -item[0])[:most]
+    modes = tuple(
+        (float(abs(pole)) * spectra.scale / (2 * np.pi), float(-pole.real / abs(pole)))
+        for share, pole in kept
+        if share >= LEAST_SHARE
+    )
+    return Found(modes, ratio.cost / energy)
+
+
+def fit_mode(
+    level: Sequence[Lines], frequency: float, damping: float, integrals: int
+) -> Mode | None:
+    """Fit a mode in a band that follows it, starting from where it was a level below.
+
+    Parameters
+    ----------
+    level : sequence of Lines
+        Records of one level.
+    frequency : float
+        In Hz.
+    damping : float
+    integrals : int
+        How often the output has to be integrated for a position: two for an
+        acceleration.
+
+    Returns
+    -------
+    Mode, optional
+        None where the input excites too few lines of the band, or no peak is in it.
+    """
+    found: Mode | None = None
+    half = float(np.clip(2 * WIDE * damping, 2 * NARROWEST, WIDEST))
+    for searched in (True, False, False):
+        band = _Band.of(level, frequency, half, integrals)
+        if band is None:
+            return None
+        if searched:
+            frequency, damping = band.searched()
+        found = band.fitted(frequency, damping)
+        if found is None:
+            return None
+        frequency, damping = found.frequency, found.damping
+        half = float(np.clip(WIDE * damping, NARROWEST, WIDEST))
+    return found
+
+
+@dataclass(frozen=True)
+class _Band:
+    """Lines of one level in a band; s is ``j f / centre``."""
+
+    centre: float
+    lines: tuple[Lines, ...]
+    integrals: int
+
+    @classmethod
+    def of(
+        cls, level: Sequence[Lines], centre: float, half: float, integrals: int
+    ) -> _Band | None:
+        parts = []
+        for one in level:
+            inside = np.abs(one.frequency / centre - 1) <= half
+            near = one.within(inside)
+            near = near.within(near.excited)
+            away = near.frequency / centre - 1
+            if len(away) >= LINES and _on_both_sides(away, half):
+                parts.append(near)
+        return cls(centre, tuple(parts), integrals) if parts else None
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The lowest and the highest frequency, over the middle of the band."""
+        low = min(float(one.frequency[0]) for one in self.lines)
+        high = max(float(one.frequency[-1]) for one in self.lines)
+        return low / self.centre, high / self.centre
+
+    @property
+    def sharpest(self) -> float:
+        """Damping ratio of a peak as wide as the lines are apart.
+
+        One that is sharper stands on a single line, and may be that line's noise.
+        """
+        steps = [float(np.median(np.diff(one.frequency))) for one in self.lines]
+        return min(steps) / (2 * self.centre)
+
+    def searched(self) -> tuple[float, float]:
+        """Give the best frequency, in Hz, and damping ratio of a grid."""
+        _, nu, zeta = min(
+            (float(np.sum(np.square(self._residual(np.log([nu, zeta]))))), nu, zeta)
+            for nu in np.linspace(*self.ends, FREQUENCIES)[1:-1]
+            for zeta in np.geomspace(self.sharpest, 0.6, DAMPINGS)
+        )
+        return float(nu) * self.centre, float(zeta)
+
+    def fitted(self, frequency: float, damping: float) -> Mode | None:
+        """Fit the mode from a start; none where it leaves the band or is too sharp."""
+        from scipy.optimize import least_squares  # late: it takes long to load
+
+        low, high = self.ends
+        ends = np.log([[low, self.sharpest], [high, 1.0]])
+        start = np.log([frequency / self.centre, damping])
+        inside = np.clip(start, ends[0] + EDGE, ends[1] - EDGE)
+        best = least_squares(self._residual, inside, x_scale=0.1, bounds=ends).x
+        if np.any(np.abs(best - ends) < EDGE):
+            return None
+        return self._mode(best)
+
+    def _residual(self, at: FloatArray) -> FloatArray:
+        """Give what B and T cannot explain for a pole: real and imaginary parts."""
+        parts = []
+        for columns, y in self._linear(at):
+            basis, _ = np.linalg.qr(columns)
+            parts.append(y - basis @ (basis.conj().T @ y))
+        whole = np.concatenate(parts)
+        return np.concatenate([whole.real, whole.imag])
+
+    def _linear(self, at: FloatArray) -> list[tuple[ComplexArray, ComplexArray]]:
+        """Give the columns of B, then of T, and the output, of each record."""
+        nu, zeta = np.exp(at)
+        found = []
+        for one in self.lines:
+            s = 1j * one.frequency / self.centre
+            powers = np.vander(s - 1j, DEGREE + 1, increasing=True)
+            powers = powers / (s**2 + 2 * zeta * nu * s + nu**2)[:, None]
+            columns = powers * one.u[:, None]
+            if one.ends:
+                columns = np.hstack([columns, powers])
+            found.append((columns, one.y))
+        return found
+
+    def _mode(self, at: FloatArray) -> Mode:
+        """Give the numbers of the mode, and how sure they are."""
+        nu, zeta = (float(value) for value in np.exp(at))
+        residual = self._residual(at)
+        linear = self._linear(at)
+        facts = len(residual) - 2 - 2 * sum(columns.shape[1] for columns, _ in linear)
+        noise = float(residual @ residual) / max(facts, 1)
+        step = 1e-5
+        slopes = np.column_stack(
+            [
+                (self._residual(at + step * e) - self._residual(at - step * e))
+                / (2 * step)
+                for e in np.eye(2)
+            ]
+        )
+        covariance = noise * np.linalg.pinv(slopes.T @ slopes)
+        errors = np.sqrt(np.diag(covariance))
+        # The numerator at the pole, over all records alike, weighted by their power.
+        here = np.array([1.0, 1j * (nu - 1), (1j * (nu - 1)) ** 2])
+        value, weights, spread = 0.0 + 0.0j, 0.0, 0.0
+        for columns, y in linear:
+            solved = np.linalg.lstsq(columns, y, rcond=None)[0]
+            inverse = np.linalg.pinv(columns.conj().T @ columns)
+            weight = float(np.sum(np.abs(columns[:, 0]) ** 2))
+            value += weight * complex(here @ solved[: DEGREE + 1])
+            own = inverse[: DEGREE + 1, : DEGREE + 1]
+            spread += weight**2 * 2 * noise * float(np.real(here @ own @ here.conj()))
+            weights += weight
+        value, of_gain = value / weights, np.sqrt(spread) / max(abs(value), 1e-300)
+        taken, moved, blurred = self._power(value, nu, noise)
+        frequency = nu * self.centre
+        scale = (2 * np.pi) ** (2 - self.integrals)
+        gain = abs(value) * self.centre**2 * scale / frequency**self.integrals
+        # A pole that is damped more has a numerator that is larger alike.
+        relative = np.array([errors[0], errors[1], blurred, 0.0])
+        relative[3] = float(np.hypot(of_gain, errors[1]))
+        relative[2] = float(np.hypot(relative[2], relative[3]))
+        held = sum(float(np.sum(np.abs(one.y) ** 2)) for one in self.lines)
+        return Mode(
+            frequency,
+            zeta,
+            taken / (2 * nu * moved),
+            float(gain),
+            relative,
+            float(np.sqrt(held / len(self.lines))),
+            sum(float(np.sum(np.abs(one.missed) ** 2)) for one in self.lines),
+            float(residual @ residual),
+        )
+
+    def _power(
+        self, value: complex, nu: float, noise: float
+    ) -> tuple[float, float, float]:
+        """Give power put in, mean square velocity, and the relative error of both."""
+        taken = moved = spread = 0.0
+        for one in self.lines:
+            s = 1j * one.frequency / self.centre
+            shape = value * (s / (1j * nu)) ** self.integrals
+            velocity = s * one.y / shape
+            taken += float(np.real(np.vdot(one.u, velocity)))
+            moved += float(np.sum(np.abs(velocity) ** 2))
+            spread += float(np.sum(np.abs(one.u * s / shape) ** 2)) * noise
+        return taken, moved, float(np.sqrt(spread) / max(abs(taken), 1e-300))
+
+
+def _excited(u: ComplexArray) -> NDArray[np.bool_]:
+    power = np.abs(u) ** 2
+    return np.asarray(power > EXCITED * float(np.max(power, initial=0.0)))
+
+
+def _driven(lines: spectral.Lines) -> spectral.Lines:
+    """Cut off what lies below and above all that the input excites."""
+    (there,) = np.nonzero(_excited(lines.u))
+    cut = slice(int(there[0]), int(there[-1]) + 1)
+    return spectral.Lines(lines.s[cut], lines.u[cut], lines.y[cut], lines.constant[cut])
+
+
+def _centred(record: Record) -> tuple[FloatArray, FloatArray]:
+    period = record.period_samples
+    repeats = period is not None and len(record) >= 2 * period
+    u, y = (x[period:] if repeats else x[-ENOUGH:] for x in (record.u, record.y))
+    return u - float(np.mean(u)), y - float(np.mean(y))
+
+
+def _share(spectra: Spectra, ratio: Ratio, pole: complex) -> float:
+    """Give the energy of the output that one pair of poles makes."""
+    slope = np.polyval(np.polyder(np.append(ratio.a, 1.0)[::-1]), pole)
+    residue = np.polyval(ratio.b[::-1], pole) / slope
+    energy = 0.0
+    for one in spectra.lines:
+        both = residue / (one.s - pole) + np.conj(residue) / (one.s - np.conj(pole))
+        energy += float(np.sum(np.abs(both * one.u) ** 2))
+    return energy
+
+
+def _on_both_sides(away: FloatArray, half: float) -> bool:
+    """Tell whether lines lie on both sides of the middle, half way out at least."""
+    return cast(bool, away.min() < -half / 2 and away.max() > half / 2)
