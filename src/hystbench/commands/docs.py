@@ -30,10 +30,6 @@ MAKERS = (
     ("results/gap/", "snakemake gap"),
     ("results/devices/", "snakemake devices"),
     ("results/inverse/", "snakemake inverse"),
-    ("results/pressure/", "snakemake pressure"),
-    ("results/figures/contest.", "snakemake pressure"),
-    ("results/structures/held-out", "snakemake held_out"),
-    ("results/structures/", "snakemake structures"),
     ("", "make reproduce"),
 )
 #: Made of measured records that the project does not ship: where they are missing, a

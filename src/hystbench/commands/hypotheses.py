@@ -10,9 +10,9 @@ import click
 
 from hystbench import options
 from hystbench.files import write_csv
-from hystbench.pressure.hypotheses import Row, chirp_rows, volterra_rows
-from hystbench.pressure.twins import read_twins
 from hystbench.published import FILTERS, load
+from hystbench.twins.hypotheses import Row, chirp_rows, volterra_rows
+from hystbench.twins.read import read_twins
 
 
 @click.command()

@@ -1,0 +1,69 @@
+"""What could explain errors that stay far off: one thing changed at a time."""
+
+import numpy as np
+import pytest
+import yaml
+
+from hystbench.settings import read_settings
+from hystbench.twins.hypotheses import (
+    CHIRP,
+    FAST,
+    VOLTERRA_FACTORS,
+    chirp_rows,
+    volterra_rows,
+)
+from hystbench.twins.read import read_twins
+from hystbench.twins.runs import draw_signals, measure_twin
+from tests.conftest import ROOT, shorten
+
+from .conftest import TWIN
+
+
+@pytest.fixture(scope="module")
+def job():
+    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config["signals"] = [CHIRP, *FAST]
+    shorten(config, 0.2)
+    config["excitations"][CHIRP]["chirp"]["duration_s"] = 0.2
+    config["filters"]["order"] = 6
+    schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
+    return read_settings(config, schema).hypotheses_job
+
+
+@pytest.fixture
+def twin(tmp_path):
+    content = yaml.safe_load(yaml.safe_dump(TWIN))
+    mode = {"frequency_hz": 65.0, "damping_ratio": 0.05, "participation": -0.05}
+    content["chain"].insert(2, {"resonance": mode})
+    path = tmp_path / "small.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return read_twins([path])[0]
+
+
+def test_a_row_of_the_chirp_has_one_thing_changed(twin, job):
+    rows = {row.changed: row for row in chirp_rows(twin, job)}
+    usual = rows["nothing"].mse
+    assert set(usual) == {"gpo", "backlash", "volterra", "delayed"}
+    assert all(row.mse != usual for name, row in rows.items() if name != "nothing")
+    # A constant that is taken back is the record itself.
+    both = [rows[f"{sign}0.5 um on the displacement"].mse["gpo"] for sign in "+-"]
+    assert both[0] != both[1]
+
+
+def test_the_start_up_and_the_rest_make_the_whole(twin, job):
+    rows = list(volterra_rows(twin, job))
+    assert len(rows) == 2 * len(VOLTERRA_FACTORS) * len(FAST)
+    named = {name: job["signals"][name] for name in FAST}
+    records = measure_twin(twin, draw_signals(named, 0).values(), job["measure"], 0)
+    for row in rows:
+        if row.part == "whole record" and row.changed == "step sizes times 1":
+            (late,) = (
+                other.mse["volterra"]
+                for other in rows
+                if other.part != "whole record"
+                and (other.changed, other.signal) == (row.changed, row.signal)
+            )
+            samples = len(records[row.signal])
+            # The squared error of the first 0.1 s cannot be negative.
+            assert row.mse["volterra"] * samples >= late * (samples - 1000)
+            assert np.isfinite(late)
