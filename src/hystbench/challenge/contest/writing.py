@@ -7,12 +7,15 @@ from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
 from hystbench.challenge.contest import tables
-from hystbench.challenge.contest.rows import write_rows
-from hystbench.challenge.contest.score import Row
+from hystbench.challenge.contest.frames import frame, write_frame
 from hystbench.challenge.contest.summary import Asked, further, reach, summary
 from hystbench.files import write_csv, write_json
 
+#: No transfer set.
+NOTHING = frame([])
 #: With room for the rounding of a difference of two shares.
 FIVE_POINTS = 0.05 + 1e-9
 _SHARE = ("share", "low", "high", "cases")
@@ -47,8 +50,8 @@ WRITTEN = (
 
 
 def write_score(
-    rows: Sequence[Row],
-    transfer: Sequence[Row],
+    cases: pd.DataFrame,
+    transfer: pd.DataFrame,
     solver: str,
     about: Mapping[str, Any],
     skipped: Mapping[str, str],
@@ -58,9 +61,9 @@ def write_score(
 
     Parameters
     ----------
-    rows : sequence of Row
+    cases : DataFrame
         Of all solvers on one set.
-    transfer : sequence of Row
+    transfer : DataFrame
         Of the solver on the transfer set; may be empty.
     solver : str
         Whose score it is.
@@ -76,13 +79,13 @@ def write_score(
         ``confused.csv``, ``effects.csv``, ``retuned.csv``, ``power.csv``,
         ``reliability.csv`` and ``rivals.csv``.
     """
-    own = [row for row in rows if row.solver == solver]
+    own = cases[cases["solver"] == solver]
     carried = list(_carried(own, transfer))
     asked = [*reach(own, transfer), *_off(carried)]
     write_csv(out / "reach.csv", _REACH, (_told(astuple(item)) for item in asked))
     write_csv(out / "further.csv", _FURTHER, map(_told, further(own)))
-    write_rows(out / "cases.csv", rows)
-    write_rows(out / "transfer-cases.csv", transfer)
+    write_frame(out / "cases.csv", cases)
+    write_frame(out / "transfer-cases.csv", transfer)
     write_csv(out / "contest.csv", _CONTEST, _held(own, transfer, about))
     write_csv(out / "transfer.csv", _TRANSFER, map(_told, carried))
     counts = tables.confusion(own)
@@ -112,10 +115,12 @@ def write_score(
         ("from", "to", "stated", *_SHARE),
         map(_told, tables.reliability(own)),
     )
-    same = _shared(own, rows)
+    # Some solvers are asked a share of the cases: the same of its own stand beside.
+    asked_of = own["case"].map(cases.groupby("case")["solver"].nunique())
+    same = own[asked_of == cases["solver"].nunique()]
     rivals = []
-    for name in dict.fromkeys(row.solver for row in rows):
-        rivals.append(_rival(name, [row for row in rows if row.solver == name]))
+    for name, mine in cases.groupby("solver", sort=False):
+        rivals.append(_rival(str(name), mine))
         if name == solver and len(same) < len(own):
             rivals.append(_rival(f"{solver}, the rivals' cases", same))
     unheard = [(name, 0, *[None] * 10, why) for name, why in skipped.items()]
@@ -127,36 +132,38 @@ def write_score(
             "solver": solver,
             **about,
             **summary(own),
-            "transfer": summary(transfer) if transfer else None,
+            "transfer": summary(transfer) if len(transfer) else None,
             "reach": [item.__dict__ for item in asked],
         },
     )
 
 
 def _held(
-    rows: Sequence[Row], transfer: Sequence[Row], about: Mapping[str, Any]
+    cases: pd.DataFrame, transfer: pd.DataFrame, about: Mapping[str, Any]
 ) -> list[tuple[Any, ...]]:
     """Say how large each set is and which seeds it has, and those used before."""
     told: list[tuple[Any, ...]] = []
     for name, scale, judged in (
-        (about["set"], about["scale"], rows),
+        (about["set"], about["scale"], cases),
         ("transfer", about["transfer_scale"], transfer),
     ):
-        seeds = [row.seed for row in judged]
-        if seeds:
-            told.append((name, scale, len(seeds), min(seeds), max(seeds)))
+        seeds = judged["seed"]
+        if len(seeds):
+            told.append((name, scale, len(seeds), seeds.min(), seeds.max()))
     mended = about["seeds_used_while_mending"]
     return [*told, *((name, None, None, *ends) for name, ends in mended.items())]
 
 
 def _carried(
-    rows: Sequence[Row], transfer: Sequence[Row]
+    cases: pd.DataFrame, transfer: pd.DataFrame
 ) -> Iterator[tuple[str, float, float, float, bool | None]]:
     """Hold each figure on the transfer set beside the published set's.
 
     Within 5 points is said of shares; seconds are none.
     """
-    for here, there in zip(reach(rows, ()), reach(transfer, ()), strict=True):
+    for here, there in zip(
+        reach(cases, NOTHING), reach(transfer, NOTHING), strict=True
+    ):
         if here.reached is not None and there.reached is not None:
             apart = there.reached - here.reached
             share = here.figure != "seconds_per_case"
@@ -173,19 +180,11 @@ def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[Asked]:
         yield Asked(figure, "<= 0", float(off), None, None, len(told), not off)
 
 
-def _shared(own: Sequence[Row], rows: Sequence[Row]) -> list[Row]:
-    """Own rows of the cases that every solver was asked: some get a share of them."""
-    asked: dict[str, set[str]] = {}
-    for row in rows:
-        asked.setdefault(row.solver, set()).add(row.case)
-    return [row for row in own if all(row.case in each for each in asked.values())]
-
-
-def _rival(name: str, mine: Sequence[Row]) -> tuple[Any, ...]:
-    found = {item.figure: item.reached for item in reach(mine, ())}
-    lost = [row.lost for row in mine if row.lost]
+def _rival(name: str, mine: pd.DataFrame) -> tuple[Any, ...]:
+    found = {item.figure: item.reached for item in reach(mine, NOTHING)}
+    lost = mine["lost"][mine["lost"] != ""]
     figures = [found[figure] for figure in _RIVALS[3:-1]]
-    note = f"first loss: {lost[0]}" if lost else ""
+    note = f"first loss: {lost.iloc[0]}" if len(lost) else ""
     return _told((name, len(mine), len(lost), *figures, note))
 
 
