@@ -7,16 +7,14 @@ what the paper prints.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from hystbench.adaptive import make_filter
 from hystbench.metrics import mean_square_error
 from hystbench.model import Model
-from hystbench.record import Record
 from hystbench.twins.read import Twin
 from hystbench.twins.runs import (
     Settings,
@@ -45,43 +43,34 @@ PLANT = {
 SWEEPS = ({"from_hz": 0.5}, {"to_hz": 90}, {"to_hz": 110}, {"duration_s": 4.06})
 
 
-@dataclass(frozen=True)
-class Row:
-    """What the filters give with one thing changed.
+def chirp_rows(
+    twin: Twin, settings: Settings
+) -> Iterator[tuple[str, dict[str, float]]]:
+    """Vary mode, sweep and constant under the chirp.
 
-    Parameters
-    ----------
-    subject : str
-        Which error is to be explained: ``chirp`` or ``volterra``.
-    changed : str
-        What is changed.
-    signal, part : str
-        On which signal, and on which part of the record.
-    mse : mapping
-        MSE (um^2) by filter; infinite where it diverged.
+    Yields
+    ------
+    (str, dict of str to float)
+        What is changed, and the MSE (um^2) by filter; infinite where it diverged.
     """
 
-    subject: str
-    changed: str
-    signal: str
-    part: str
-    mse: Mapping[str, float]
-
-
-def chirp_rows(twin: Twin, settings: Settings) -> Iterator[Row]:
-    """Vary mode, sweep and constant under the chirp."""
-
-    def run(model: Model, job: Settings, changed: str, extra: Any = None) -> Row:
+    def run(
+        model: Model,
+        job: Settings,
+        changed: str,
+        constant: float = 0.0,
+        drift: float = 0.0,
+    ) -> tuple[str, dict[str, float]]:
         signal = draw_signals({CHIRP: job}, 0)[CHIRP]
         other = replace(twin, model=model)
         record = measure_twin(other, [signal], settings["measure"], 0)[CHIRP]
-        if extra is not None:
-            record = replace(record, y=record.y + extra(record))
+        fading = 1 - np.arange(len(record)) / len(record)
+        record = replace(record, y=record.y + constant + drift * fading)
         mse = {}
         for name, own in filter_jobs(settings).items():
             runs = run_records(name, own, {CHIRP: record}, {})
             mse[name] = runs[CHIRP, name].error("mse")
-        return Row("chirp", changed, CHIRP, "whole record", mse)
+        return changed, mse
 
     usual = settings["signals"][CHIRP]
     yield run(twin.model, usual, "nothing")
@@ -97,34 +86,37 @@ def chirp_rows(twin: Twin, settings: Settings) -> Iterator[Row]:
         yield run(twin.model, job, f"sweep with {told}")
     for size in OFFSETS_UM:
         for sign in (1, -1):
-            shift = sign * size
-            told = f"{shift:+g} um on the displacement"
-            yield run(twin.model, usual, told, lambda record, c=shift: c)
+            told = f"{sign * size:+g} um on the displacement"
+            yield run(twin.model, usual, told, constant=sign * size)
     for size in DRIFTS_UM:
         told = f"drift of {size:g} um that dies away"
-        yield run(twin.model, usual, told, lambda record, c=size: _drift(record, c))
+        yield run(twin.model, usual, told, drift=size)
 
 
-def _drift(record: Record, size: float) -> Any:
-    return size * (1 - np.arange(len(record)) / len(record))
+def volterra_rows(
+    twin: Twin, settings: Settings
+) -> Iterator[tuple[str, str, dict[str, float]]]:
+    """Leave the start-up out, and vary the step sizes, at high frequencies.
 
-
-def volterra_rows(twin: Twin, settings: Settings) -> Iterator[Row]:
-    """Leave the start-up out, and vary the step sizes, at high frequencies."""
+    Yields
+    ------
+    (str, str, dict of str to float)
+        What is changed, the part of the record, and the MSE (um^2) of the Volterra
+        filter by signal; infinite where it diverged.
+    """
     names = {name: settings["signals"][name] for name in FAST}
     signals = draw_signals(names, 0)
     records = measure_twin(twin, signals.values(), settings["measure"], 0)
+    parts = {"whole record": 0.0, f"after {START_UP_S:g} s": START_UP_S}
     for factor in VOLTERRA_FACTORS:
         job = scaled(settings["filters"]["volterra"], factor)
         filters = [make_filter("volterra", job, r) for r in records.values()]
-        found = run_all(list(zip(filters, records.values(), strict=True)))
-        for record, result in zip(records.values(), found, strict=True):
-            start = round(START_UP_S / record.dt)
-            told = f"step sizes times {factor:g}"
-            parts = {"whole record": math.inf}
-            if result.diverged_at is None:
-                parts["whole record"] = mean_square_error(result.error)
-                late = mean_square_error(result.error[start:])
-                parts[f"after {START_UP_S:g} s"] = late
-            for part, value in parts.items():
-                yield Row("volterra", told, record.name, part, {"volterra": value})
+        pairs = list(zip(filters, records.values(), strict=True))
+        results = dict(zip(records, run_all(pairs), strict=True))
+        for part, begin_s in parts.items():
+            mse = dict.fromkeys(names, math.inf)
+            for name, result in results.items():
+                if result.diverged_at is None:
+                    late = result.error[round(begin_s / signals[name].dt) :]
+                    mse[name] = mean_square_error(late)
+            yield f"step sizes times {factor:g}", part, mse
