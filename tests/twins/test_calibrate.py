@@ -242,7 +242,7 @@ def test_descent_finds_a_twin_that_made_the_targets():
     truth = {**START, "gain": 91.0, "backlash step": 0.15, "offset": -0.15}
     aims = targets_of(problem, truth)
     before = problem.residuals(START, aims)
-    fit = nearest_twin(problem, aims, START, evaluations=40)
+    fit = nearest_twin(problem, aims, START, evaluations=20)
     assert fit.cost < 1e-2 * (before @ before) / 2
     found = problem.cells(fit.values, problem.signals)
     for aim in aims:

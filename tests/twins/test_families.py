@@ -53,7 +53,7 @@ def test_a_fit_keeps_the_loop_and_the_dynamics(name, most):
     given = task()
     wanted = 1 + given.rms_errors(GMA)
     given = replace(given, rms=tuple(np.array(given.rms) * wanted))
-    fit = fit_family(FAMILIES[name], given, starts=2, evaluations=8, tell=told.append)
+    fit = fit_family(FAMILIES[name], given, starts=2, evaluations=4, tell=told.append)
     assert [block.name for block in fit.twin.chain[:2]] == [name, GMA.chain[1].name]
     assert unmoved(fit.twin) == unmoved(GMA)
     assert given.loop_error(fit.twin) < most
