@@ -81,7 +81,7 @@ def keep_out(key, files):
 if SETTINGS.dataset is None:
     keep_out("twin: model", [SETTINGS.model_file])
     keep_out("pressure: twins", SETTINGS.twin_files)
-    keep_out("contest: twins", SETTINGS.contest_files)
+    keep_out("constants: twins", SETTINGS.constants_files)
 else:
     keep_out("source", [SETTINGS.dataset.path, *SETTINGS.dataset.record_files.values()])
 
@@ -162,18 +162,6 @@ def identified(wildcards):
     if wildcards.filter == "gpo" and SETTINGS.envelopes == "identified":
         return rules.identify.output
     return []
-
-
-def structures_tried(wildcards):
-    """Results of the structures that the settings ask for."""
-    # Imported only where they are asked for: it takes a quarter of a second.
-    from hystbench.calibration.structures import asked_structures
-
-    try:
-        asked = asked_structures(SETTINGS.structures)
-    except InputError as error:
-        refuse(f"{PLACE}: structures: tried: {error}")
-    return [f"{RESULTS}/structures/{each.name}.json" for each in asked]
 
 
 def figure(name, suffix):

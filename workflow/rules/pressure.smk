@@ -1,4 +1,4 @@
-# The claims on other twins, with other step sizes and seeds, and the fair contest.
+# The claims on other twins and in other experiments, and what else could be otherwise.
 # One job runs all models on all twins in memory: a file for each run would cost more
 # than the runs.
 PRESSURE = f"{RESULTS}/pressure"
@@ -57,7 +57,7 @@ if TWIN:
     # The ranking with other zero errors, and with a constant tap.
     rule constants:
         input:
-            twins=SETTINGS.contest_files,
+            twins=SETTINGS.constants_files,
             identified=rules.identify.output,
             published=PUBLISHED,
             code=code("hystbench.commands.constants", *FILTER_MODULES),
@@ -145,72 +145,6 @@ if TWIN:
             " --settings {params.settings:q}"
             " --errors {output.errors:q} --claims {output.claims:q} 2> {log:q}"
 
-    rule press:
-        input:
-            twins=SETTINGS.twin_files,
-            code=code("hystbench.commands.pressure", *FILTER_MODULES),
-        output:
-            claims=f"{PRESSURE}/claims.csv",
-            by_twin=f"{PRESSURE}/by-twin.csv",
-            summary=f"{PRESSURE}/summary.json",
-            markdown=f"{PRESSURE}/claims.md",
-        log:
-            f"{RESULTS}/logs/pressure/claims.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/press.tsv"
-        params:
-            settings=settings_text(SETTINGS.pressure_job),
-            folder=lambda wildcards, output: Path(output.claims).parent,
-        message:
-            "claims on many twins, step sizes and seeds"
-        shell:
-            "hystbench pressure {input.twins:q} --settings {params.settings:q}"
-            " --out {params.folder:q} 2> {log:q}"
-
-    rule contest:
-        input:
-            twins=SETTINGS.contest_files,
-            published=PUBLISHED,
-            code=code("hystbench.commands.contest", *FILTER_MODULES),
-        output:
-            table=f"{PRESSURE}/contest.csv",
-            ranking=f"{PRESSURE}/ranking.csv",
-            markdown=f"{PRESSURE}/contest.md",
-        log:
-            f"{RESULTS}/logs/pressure/contest.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/contest.tsv"
-        params:
-            settings=settings_text(SETTINGS.contest_job),
-            folder=lambda wildcards, output: Path(output.table).parent,
-        message:
-            "each filter with its best step size"
-        shell:
-            "hystbench contest {input.twins:q} --settings {params.settings:q}"
-            " --out {params.folder:q} 2> {log:q}"
-
-    rule draw_contest:
-        input:
-            table=rules.contest.output.table,
-            code=code("hystbench.commands.figure", "hystbench.figures.contest"),
-            style=PACKAGE / "figures" / "hystbench.mplstyle",
-        output:
-            png=report(
-                figure("contest", "png"),
-                caption="../report/contest.rst",
-                category="Figures",
-            ),
-            svg=figure("contest", "svg"),
-        log:
-            f"{RESULTS}/logs/figures/contest.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/draw_contest.tsv"
-        message:
-            "figure contest"
-        shell:
-            "hystbench figure contest --table {input.table:q}"
-            " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
-
     # What could explain the errors that stay far off; for docs/.
     HYPOTHESES = []
     if {"chirp-1-100hz", "sine-100hz", "sine-150hz", "sine-200hz"} <= {
@@ -238,12 +172,3 @@ if TWIN:
                 " --chirp {output.chirp:q} --volterra {output.volterra:q} 2> {log:q}"
 
         HYPOTHESES = rules.hypotheses.output
-
-        # `snakemake pressure`; `all` leaves it out for its time.
-    rule pressure:
-        input:
-            rules.press.output,
-            rules.contest.output,
-            rules.draw_contest.output,
-        message:
-            f"{PRESSURE} is up to date"

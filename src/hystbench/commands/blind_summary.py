@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 from hystbench import options
+from hystbench.challenge.contest.frames import read_rows
 from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
-from hystbench.challenge.contest.rows import read_rows
 from hystbench.challenge.contest.writing import WRITTEN, write_score
 from hystbench.files import whole_folder
 

@@ -8,9 +8,9 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.calibration.run import run_calibration
-from hystbench.calibration.twin import step_sizes
 from hystbench.files import whole_folder
+from hystbench.twins.plant import step_sizes
+from hystbench.twins.run import run_calibration
 from hystbench.written import check_free, remove
 
 WRITTEN = ("gma.yaml", "report.json", "uncertainty/gma-*.yaml")
@@ -31,9 +31,7 @@ def calibrate(settings: dict[str, Any], out: Path) -> None:
     with whole_folder(out, WRITTEN) as fresh:
         best = run_calibration(
             settings,
-            model=fresh / "gma.yaml",
-            uncertainty=fresh / "uncertainty",
-            report=fresh / "report.json",
+            fresh,
             state=state,
             tell=lambda line: click.echo(line, err=True),
         )

@@ -8,11 +8,11 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.compare.constants import Row, write_constants
+from hystbench.compare.constants import write_constants
 from hystbench.files import read_json
-from hystbench.pressure.constants import vary_constants
-from hystbench.pressure.twins import read_twins
 from hystbench.published import load
+from hystbench.twins.constants import vary_constants
+from hystbench.twins.read import read_twins
 
 
 @click.command()
@@ -29,31 +29,9 @@ def constants(
     """Rank the filters on TWINS with other zero errors and with a constant tap."""
     envelopes = {} if identified is None else read_json(identified)
     published = {(p.signal, p.model): p.mse.value for p in load()}
-    calibrated = set(settings["calibrated"])
-    rows = []
-    for twin in read_twins(twins):
-        for each in vary_constants(twin, settings, envelopes, published):
-            halves = [
-                each.pairs([s for s in each.signals if (s in calibrated) is inside])
-                for inside in (True, False)
-            ]
-            others = [f"{s}: {m}" for s, m in each.first.items() if m != "gpo"]
-            rows.append(
-                Row(
-                    twin=each.twin,
-                    family=each.family,
-                    zero_error=each.zero_error,
-                    constant_tap=each.constant_tap,
-                    configured=each.configured,
-                    signals=len(each.signals),
-                    gpo_first=each.gpo_first,
-                    not_first="; ".join(others),
-                    pairs_calibrated=halves[0],
-                    pairs_held_out=halves[1],
-                    diverged=each.diverged,
-                    mean={
-                        m: each.mean(m) for m in dict.fromkeys(m for _, m in each.mse)
-                    },
-                )
-            )
+    rows = [
+        row
+        for twin in read_twins(twins)
+        for row in vary_constants(twin, settings, envelopes, published)
+    ]
     write_constants(rows, out)

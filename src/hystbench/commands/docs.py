@@ -31,10 +31,6 @@ MAKERS = (
     ("results/devices/", "snakemake devices"),
     ("results/export/", "snakemake export_errors"),
     ("results/inverse/", "snakemake inverse"),
-    ("results/pressure/", "snakemake pressure"),
-    ("results/figures/contest.", "snakemake pressure"),
-    ("results/structures/held-out", "snakemake held_out"),
-    ("results/structures/", "snakemake structures"),
     ("", "make reproduce"),
 )
 #: Made of measured records that the project does not ship: where they are missing, a

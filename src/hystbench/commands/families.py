@@ -8,11 +8,12 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.calibration.targets import targets
-from hystbench.families import FAMILIES, Task, fit_family
 from hystbench.files import whole_folder, write_json
-from hystbench.model import Model, load_model
+from hystbench.model import load_model
 from hystbench.signals import load_signal
+from hystbench.twins.families import FAMILIES, Task
+from hystbench.twins.family_fit import fit_family, judge
+from hystbench.twins.targets import targets
 
 
 @click.command()
@@ -43,22 +44,13 @@ def families(
         tuple(target.rms for target in wanted),
         settings["seed"],
     )
-    report = {task.model.name: _judge(task, task.model)}
+    report = {task.model.name: judge(task, task.model)}
     with whole_folder(out, ("families.json", "*.yaml")) as fresh:
         for family in FAMILIES.values():
             fit = fit_family(family, task, tell=lambda line: click.echo(line, err=True))
             fit.twin.save(fresh / f"{fit.twin.name}.yaml")
             report[fit.twin.name] = {
-                **_judge(task, fit.twin),
+                **judge(task, fit.twin),
                 "at_bounds": list(fit.at_bounds),
             }
         write_json(fresh / "families.json", report)
-
-
-def _judge(task: Task, twin: Model) -> dict[str, Any]:
-    names = [signal.name for signal in task.signals]
-    percent = [round(100 * float(each), 4) for each in task.rms_errors(twin)]
-    return {
-        "loop_relative_error": task.loop_error(twin),
-        "rms_error_percent": dict(zip(names, percent, strict=True)),
-    }

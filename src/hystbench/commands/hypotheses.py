@@ -10,9 +10,9 @@ import click
 
 from hystbench import options
 from hystbench.files import write_csv
-from hystbench.pressure.hypotheses import Row, chirp_rows, volterra_rows
-from hystbench.pressure.twins import read_twins
 from hystbench.published import FILTERS, load
+from hystbench.twins.hypotheses import CHIRP, FAST, chirp_rows, volterra_rows
+from hystbench.twins.read import read_twins
 
 
 @click.command()
@@ -26,27 +26,18 @@ def hypotheses(
     """Run the filters on TWIN with one thing changed at a time; nothing is fitted."""
     (read,) = read_twins([twin])
     printed = {(p.signal, p.model): p.mse.text for p in load()}
-    rows = list(chirp_rows(read, settings))
-    told = [printed[rows[0].signal, model] for model in FILTERS]
-    lines = [["the paper's table", *told]]
+    lines = [["the paper's table", *(printed[CHIRP, model] for model in FILTERS)]]
     lines += [
-        [row.changed, *(_number(row.mse[model]) for model in FILTERS)] for row in rows
+        [changed, *(_number(mse[model]) for model in FILTERS)]
+        for changed, mse in chirp_rows(read, settings)
     ]
     write_csv(chirp, ["changed", *FILTERS], lines)
-    write_csv(volterra, *_volterra(list(volterra_rows(read, settings)), printed))
-
-
-def _volterra(
-    rows: list[Row], printed: dict[tuple[str, str], str]
-) -> tuple[list[str], list[list[str]]]:
-    """A line for each step size and part of the record, a column for each signal."""
-    signals = list(dict.fromkeys(row.signal for row in rows))
-    found = {(row.changed, row.part, row.signal): row.mse["volterra"] for row in rows}
-    lines = [["the paper's table", "", *(printed[s, "volterra"] for s in signals)]]
-    for changed, part in dict.fromkeys((row.changed, row.part) for row in rows):
-        values = [found.get((changed, part, s), math.inf) for s in signals]
-        lines.append([changed, part, *map(_number, values)])
-    return ["changed", "part", *signals], lines
+    lines = [["the paper's table", "", *(printed[s, "volterra"] for s in FAST)]]
+    lines += [
+        [changed, part, *(_number(mse[signal]) for signal in FAST)]
+        for changed, part, mse in volterra_rows(read, settings)
+    ]
+    write_csv(volterra, ["changed", "part", *FAST], lines)
 
 
 def _number(value: float) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -12,11 +11,11 @@ import click
 from hystbench import options
 from hystbench.compare.draws import write_draws
 from hystbench.files import read_json, write_csv
-from hystbench.pressure.draws import Reading, readings, run_draws
-from hystbench.pressure.twins import read_twins
 from hystbench.published import load
 from hystbench.published.consistency import check
 from hystbench.rdgpi import RateDependentGPI
+from hystbench.twins.draws import READING_COLUMNS, readings, run_draws
+from hystbench.twins.read import read_twins
 
 
 @click.command()
@@ -42,20 +41,7 @@ def random_sum(
     found = run_draws(read_twins([twin])[0], settings, envelopes, fitted)
     signal = settings["signal"]
     write_draws(signal, found, draws)
-    published = [pair for pair in load() if pair.signal == signal]
+    published = {p.model: p.mse.value for p in load() if p.signal == signal}
     implied = check(load())[signal].rms
     rms = fmean((each.low + each.high) / 2 for each in implied)
-    rows = [
-        [
-            each.sines,
-            each.quantity,
-            *(f"{getattr(each, key):.4g}" for key in _NUMBERS),
-            f"{each.ratio:.2f}",
-        ]
-        for each in readings(found, published, rms)
-    ]
-    names = [field.name for field in fields(Reading)]
-    write_csv(told, [*names, "median_over_published"], rows)
-
-
-_NUMBERS = ("published", "median", "low", "high")
+    write_csv(told, READING_COLUMNS, readings(found, published, rms))

@@ -12,8 +12,8 @@ import click
 from hystbench import options
 from hystbench.compare.edges import write_edges
 from hystbench.files import read_json, write_csv
-from hystbench.pressure.edges import Point, sweep
 from hystbench.record import load_record
+from hystbench.twins.edges import Point, sweep
 
 
 @click.command()

@@ -9,8 +9,8 @@ import click
 
 from hystbench import options
 from hystbench.files import write_json
-from hystbench.pressure.fits import fit
-from hystbench.pressure.twins import read_twins
+from hystbench.twins.fits import fit
+from hystbench.twins.read import read_twins
 
 
 @click.command()

@@ -9,8 +9,8 @@ import click
 
 from hystbench import options
 from hystbench.files import read_json, write_json
-from hystbench.pressure.configured import run
-from hystbench.pressure.twins import read_twins
+from hystbench.twins.parts import run
+from hystbench.twins.read import read_twins
 
 
 @click.command()

@@ -9,10 +9,9 @@ import click
 
 from hystbench import options
 from hystbench.files import read_json
-from hystbench.pressure.configured import join, join_experiments
-from hystbench.pressure.report import write_twins
-from hystbench.pressure.runs import draw_signals
-from hystbench.pressure.twins import read_twins
+from hystbench.twins.judge import write_twins
+from hystbench.twins.parts import join
+from hystbench.twins.read import read_twins
 
 
 @click.command()
@@ -32,12 +31,9 @@ def twins(
 ) -> None:
     """Put what was run on TWINS together: errors, and where claims hold."""
     parts = [read_json(path) for path in (fits, *runs)]
-    signals = draw_signals(settings["signals"], 0).values()
-    read = read_twins(twins)
-    found = [join(twin, signals, settings, parts) for twin in read]
-    others = (
-        ensemble
-        for place, twin in enumerate(read)
-        for ensemble in join_experiments(twin, place, settings, parts)
+    outcomes = (
+        outcome
+        for place, twin in enumerate(read_twins(twins))
+        for outcome in join(twin, place, settings, parts)
     )
-    write_twins(found, others, errors, claims)
+    write_twins(outcomes, errors, claims)

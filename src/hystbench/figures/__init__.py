@@ -28,7 +28,6 @@ NAMES = (
     "identification",
     "learning-curves",
     "errors-heat-map",
-    "contest",
     "step-edges",
     "loops",
     "errors-by-record",
