@@ -188,9 +188,9 @@ def options(name, files):
     return " ".join(f"{name} {shlex.quote(str(file))}" for file in files)
 
 
-# The paper's own numbers, an input of all that is compared with them.
+# The paper's own numbers and its claims, an input of all that is compared with them.
 PUBLISHED = sorted(
     str(file)
-    for file in PACKAGE.glob("published/*")
+    for file in [*PACKAGE.glob("published/*"), *PACKAGE.glob("compare/claims/*")]
     if file.suffix in {".csv", ".yaml"}
 )
