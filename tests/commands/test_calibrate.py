@@ -12,8 +12,8 @@ from hystbench.calibration.first_round import FIRST_ROUND
 from hystbench.calibration.fit import descend
 from hystbench.calibration.found import values_of
 from hystbench.calibration.twin import UNKNOWNS, make_twin
-from hystbench.commands.calibrate import calibrate
-from hystbench.commands.tried import tried
+from hystbench.commands.jobs.calibrate import calibrate
+from hystbench.commands.jobs.tried import tried
 from hystbench.files import read_json
 from hystbench.model import load_model
 from hystbench.settings import read_settings

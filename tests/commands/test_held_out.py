@@ -1,4 +1,4 @@
-"""``hystbench held-out``: no figure before a choice, and what the figures are."""
+"""``hystbench job held-out``: no figure before a choice, and what the figures are."""
 
 import csv
 import json
@@ -8,8 +8,8 @@ import pytest
 
 from hystbench.calibration.structures import find_structure
 from hystbench.calibration.trial import starts
-from hystbench.commands import held_out as command
-from hystbench.commands.held_out import held_out
+from hystbench.commands.jobs import held_out as command
+from hystbench.commands.jobs.held_out import held_out
 from hystbench.errors import InputError
 from hystbench.files import write_json
 from hystbench.signals import sine

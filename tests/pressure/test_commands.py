@@ -9,14 +9,14 @@ import pytest
 from click.testing import CliRunner
 
 from hystbench.adaptive import make_filter
-from hystbench.commands.constants import constants
-from hystbench.commands.contest import contest
-from hystbench.commands.pressure import pressure
-from hystbench.commands.random_sum import random_sum
-from hystbench.commands.step_sweep import step_sweep
-from hystbench.commands.twin_fits import twin_fits
-from hystbench.commands.twin_runs import twin_runs
-from hystbench.commands.twins import twins
+from hystbench.commands.jobs.constants import constants
+from hystbench.commands.jobs.contest import contest
+from hystbench.commands.jobs.pressure import pressure
+from hystbench.commands.jobs.random_sum import random_sum
+from hystbench.commands.jobs.step_sweep import step_sweep
+from hystbench.commands.jobs.twin_fits import twin_fits
+from hystbench.commands.jobs.twin_runs import twin_runs
+from hystbench.commands.jobs.twins import twins
 from hystbench.compare.constants import read_constants
 from hystbench.compare.draws import read_draws
 from hystbench.compare.edges import read_edges

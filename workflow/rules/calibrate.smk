@@ -12,7 +12,7 @@ if TWIN:
             first_round=PACKAGE / "calibration/first_round.yaml",
             twin=PACKAGE / "plants/gma.yaml",
             others=sorted(PACKAGE.glob("plants/uncertainty/gma-*.yaml")),
-            code=code("hystbench.commands.tried"),
+            code=code("hystbench.commands.jobs.tried"),
         output:
             tried=f"{COMPARE}/tried.csv",
             found=f"{COMPARE}/found.csv",
@@ -23,13 +23,13 @@ if TWIN:
         message:
             "what the calibration tried and found"
         shell:
-            "hystbench tried {input.twin:q} {input.others:q} --tried {output.tried:q}"
+            "hystbench job tried {input.twin:q} {input.others:q} --tried {output.tried:q}"
             " --found {output.found:q} 2> {log:q}"
 
     rule calibration:
         input:
             published=PUBLISHED,
-            code=code("hystbench.commands.calibrate", *CALIBRATED_FILTERS),
+            code=code("hystbench.commands.jobs.calibrate", *CALIBRATED_FILTERS),
         output:
             model=f"{CALIBRATION}/gma.yaml",
             uncertainty=[
@@ -48,7 +48,7 @@ if TWIN:
             "calibration of the twin"
         shell:
             # Shown while it runs: it takes a minute or more.
-            "hystbench calibrate --settings {params.settings:q}"
+            "hystbench job calibrate --settings {params.settings:q}"
             " --out {params.folder:q} 2>&1 | tee {log:q}"
 
     rule calibrate:
@@ -71,7 +71,7 @@ if TWIN:
     rule structure:
         input:
             published=PUBLISHED,
-            code=code("hystbench.commands.structure", *CALIBRATED_FILTERS),
+            code=code("hystbench.commands.jobs.structure", *CALIBRATED_FILTERS),
         output:
             f"{RESULTS}/structures/{{structure}}.json",
         log:
@@ -83,13 +83,13 @@ if TWIN:
         message:
             "structure {wildcards.structure}"
         shell:
-            "hystbench structure {wildcards.structure}"
+            "hystbench job structure {wildcards.structure}"
             " --settings {params.settings:q} --out {output:q} 2> {log:q}"
 
     rule structures:
         input:
             tried=structures_tried,
-            code=code("hystbench.commands.structures"),
+            code=code("hystbench.commands.jobs.structures"),
         output:
             tried=f"{RESULTS}/structures/tried.csv",
             choice=f"{RESULTS}/structures/choice.yaml",
@@ -100,7 +100,7 @@ if TWIN:
         message:
             "structures that were tried"
         shell:
-            "hystbench structures {input.tried:q} --out {output.tried:q}"
+            "hystbench job structures {input.tried:q} --out {output.tried:q}"
             " --choice {output.choice:q} 2> {log:q}"
 
     # After the choice: all structures on the held-out signals, by one rule.
@@ -109,7 +109,7 @@ if TWIN:
             tried=structures_tried,
             choice=PACKAGE / "plants/choice.yaml",
             published=PUBLISHED,
-            code=code("hystbench.commands.held_out", *CALIBRATED_FILTERS),
+            code=code("hystbench.commands.jobs.held_out", *CALIBRATED_FILTERS),
         output:
             f"{RESULTS}/structures/held-out.csv",
         log:
@@ -121,5 +121,5 @@ if TWIN:
         message:
             "structures on the held-out signals"
         shell:
-            "hystbench held-out {input.tried:q} --choice {input.choice:q}"
+            "hystbench job held-out {input.tried:q} --choice {input.choice:q}"
             " --settings {params.settings:q} --out {output:q} 2> {log:q}"

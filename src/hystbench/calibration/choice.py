@@ -24,7 +24,7 @@ RULE = (
 )
 HEAD = """\
 # Which structure is chosen among those of calibration/structures.py. The rule was
-# committed before the trial was run; `hystbench structures` writes what it chooses.
+# committed before the trial was run; `hystbench job structures` writes what it chooses.
 """
 COLUMNS = (
     "structure",

@@ -69,7 +69,7 @@ class Objective:
         Settings of each filter's job, as :func:`hystbench.adaptive.make_filter` takes
         them, but for the step sizes.
     seed : int
-        Seed of the noise, as of ``hystbench measure``.
+        Seed of the noise, as of ``hystbench job measure``.
     window_start_s : float
         Errors before it are left out of the MSE.
     unknowns : tuple of Unknown
@@ -98,7 +98,7 @@ class Objective:
     _powers: dict[tuple[Any, ...], float] = field(default_factory=dict, repr=False)
 
     def record(self, name: str, model: Model, input_zero: float) -> Record:
-        """Measure a signal on the twin as ``hystbench measure`` does."""
+        """Measure a signal on the twin as ``hystbench job measure`` does."""
         return self._measured(self.signals[name], model, {"input zero": input_zero})
 
     def _measured(

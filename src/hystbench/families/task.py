@@ -35,7 +35,7 @@ class Task:
     rms : tuple of float
         The RMS displacement of each, as the tables imply it.
     seed : int
-        Of the sensor noise, as for ``hystbench measure``, and of the starts.
+        Of the sensor noise, as for ``hystbench job measure``, and of the starts.
 
     Raises
     ------
