@@ -114,7 +114,7 @@ TWIN = SETTINGS.dataset is None
 
 
 def code(*modules):
-    """Files of modules and of all that they import, the compiled kernels included.
+    """Files of modules and of all that they import, with tables, words and kernels.
 
     As inputs of a rule they make an edited module rerun what depends on it.
     """
@@ -128,6 +128,10 @@ def code(*modules):
     for name in sorted(names):
         path = PACKAGE.joinpath(*name.split(".")[1:])
         files.append(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
+    if "hystbench.compare.claims" in names:
+        files.extend(sorted(PACKAGE.glob("compare/claims/*.yaml")))
+    if "hystbench.compare.verdict" in names:
+        files.extend(sorted(PACKAGE.glob("compare/*.j2")))
     if "hystbench.kernels" in names:
         files.extend(KERNELS)
     return [str(file) for file in files]
@@ -188,9 +192,9 @@ def options(name, files):
     return " ".join(f"{name} {shlex.quote(str(file))}" for file in files)
 
 
-# The paper's own numbers and its claims, an input of all that is compared with them.
+# The paper's own numbers, an input of all that is compared with them.
 PUBLISHED = sorted(
     str(file)
-    for file in [*PACKAGE.glob("published/*"), *PACKAGE.glob("compare/claims/*")]
+    for file in PACKAGE.glob("published/*")
     if file.suffix in {".csv", ".yaml"}
 )

@@ -137,16 +137,8 @@ def compare(
     out_dir: str | Path,
     runs: Iterable[str | Path],
     records: Iterable[str | Path] = (),
-    order_sweep: str | Path | None = None,
-    identified: str | Path | None = None,
-    envelopes: str | Path | None = None,
     held_out: Iterable[str] = (),
-    twin_errors: str | Path | None = None,
-    twin_claims: str | Path | None = None,
-    draws: str | Path | None = None,
-    edges: str | Path | None = None,
-    constants: str | Path | None = None,
-    order_sweep_other: str | Path | None = None,
+    **files: str | Path | None,
 ) -> Comparison:
     """Read the files of the runs, compare them with the paper, write what came out.
 
@@ -161,40 +153,17 @@ def compare(
         One JSON file for each signal and model.
     records : iterable of paths
         Records of the signals.
-    order_sweep, identified, envelopes : path, optional
-        Order sweep, identification, and errors by envelopes; claims on what is left
-        out are not testable.
     held_out : iterable of str
         Signals whose published errors were not used in choosing the twin; the
         summary then tells both groups apart.
-    twin_errors, twin_claims : path, optional
-        Errors and claims on other twins, for the spread of each cell and for the
-        families of twins on which each claim holds.
-
-    draws, edges, constants, order_sweep_other : path, optional
-        Draws of the random sum, edges of the step sizes, the ranking with other
-        constants, and the order sweep under the other rule for the step size.
+    **files : path or None
+        As for :func:`read_evidence`; claims on what is left out are not testable.
 
     Raises
     ------
     InputError
         If a file is not what it should be.
     """
-    found = compare_evidence(
-        read_evidence(
-            runs,
-            records,
-            order_sweep,
-            identified,
-            envelopes,
-            twin_errors,
-            twin_claims,
-            draws,
-            edges,
-            constants,
-            order_sweep_other,
-        ),
-        held_out,
-    )
+    found = compare_evidence(read_evidence(runs, records, **files), held_out)
     found.write(out_dir)
     return found

@@ -16,45 +16,24 @@ from hystbench.files import whole_folder
 @click.option("--run", "runs", multiple=True, type=options.FILE, help="Run (JSON).")
 @click.option("--record", "records", multiple=True, type=options.FILE, help="Record.")
 @click.option("--order-sweep", type=options.FILE, help="Errors by order (CSV).")
+@click.option("--order-sweep-other", type=options.FILE, help="By order, other rule.")
 @click.option("--envelopes", type=options.FILE, help="GPO errors by envelopes (CSV).")
 @click.option("--twin-errors", type=options.FILE, help="Errors by twin (CSV).")
 @click.option("--twin-claims", type=options.FILE, help="Claims by twin (CSV).")
 @click.option("--draws", type=options.FILE, help="Draws of the random sum (CSV).")
 @click.option("--edges", type=options.FILE, help="Edges of the step sizes (CSV).")
 @click.option("--constants", type=options.FILE, help="Ranking by constant (CSV).")
-@click.option("--order-sweep-other", type=options.FILE, help="By order, other rule.")
 @options.identified
 @options.settings
 @options.out_folder
 def compare(
     runs: tuple[Path, ...],
     records: tuple[Path, ...],
-    order_sweep: Path | None,
-    envelopes: Path | None,
-    twin_errors: Path | None,
-    twin_claims: Path | None,
-    draws: Path | None,
-    edges: Path | None,
-    constants: Path | None,
-    order_sweep_other: Path | None,
-    identified: Path | None,
     settings: dict[str, Any],
     out: Path,
+    **files: Path | None,
 ) -> None:
     """Compare runs with the paper: cells, claims, audit, summary and tables."""
+    held_out = comparison.held_out_signals(settings["calibrated"])
     with whole_folder(out, comparison.WRITTEN) as fresh:
-        comparison.compare(
-            fresh,
-            runs,
-            records,
-            order_sweep,
-            identified,
-            envelopes,
-            held_out=comparison.held_out_signals(settings["calibrated"]),
-            twin_errors=twin_errors,
-            twin_claims=twin_claims,
-            draws=draws,
-            edges=edges,
-            constants=constants,
-            order_sweep_other=order_sweep_other,
-        )
+        comparison.compare(fresh, runs, records, held_out, **files)
