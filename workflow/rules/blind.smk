@@ -142,7 +142,7 @@ for NAME, TABLE in BLIND_FIGURES.items():
             table=f"{BLIND}/{TABLE}.csv",
             code=code(
                 "hystbench.commands.jobs.figure",
-                f"hystbench.figures.{NAME.replace('-', '_')}",
+                module_of(NAME),
             ),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:

@@ -10,6 +10,7 @@ import grimp
 
 import hystbench
 from hystbench.errors import InputError
+from hystbench.figures import module_of
 from hystbench.settings import read_settings
 from hystbench.written import check_replaceable, claim_logs
 

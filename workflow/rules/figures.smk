@@ -80,7 +80,7 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
             published=PUBLISHED,
             code=code(
                 "hystbench.commands.jobs.figure",
-                f"hystbench.figures.{NAME.replace('-', '_')}",
+                module_of(NAME),
             ),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:

@@ -210,7 +210,7 @@ if TWIN:
             record=record(SHOWN),
             gap=f"{GAP}/twin/gap.json",
             hold_out=f"{GAP}/twin/holdout",
-            code=code("hystbench.commands.jobs.figure", "hystbench.figures.gap_loop"),
+            code=code("hystbench.commands.jobs.figure", module_of("gap-loop")),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
             png=f"{GAP}/gap-loop.png",

@@ -37,7 +37,7 @@ if TWIN:
         input:
             table=rules.tracking.output.table,
             raster=rules.tracking.output.raster,
-            code=code("hystbench.commands.jobs.figure", "hystbench.figures.tracking_errors"),
+            code=code("hystbench.commands.jobs.figure", module_of("tracking-errors")),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
             png=f"{INVERSE}/tracking-errors.png",

@@ -192,7 +192,7 @@ if TWIN:
     rule draw_contest:
         input:
             table=rules.contest.output.table,
-            code=code("hystbench.commands.jobs.figure", "hystbench.figures.contest"),
+            code=code("hystbench.commands.jobs.figure", module_of("contest")),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
             png=report(

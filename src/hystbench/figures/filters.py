@@ -1,4 +1,4 @@
-"""Learning curves: the smoothed squared error of the filters over time."""
+"""Errors of the filters: over their order (Figure 7), and over time as they learn."""
 
 from __future__ import annotations
 
@@ -10,14 +10,53 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
-from hystbench.compare.evidence import Run, read_run
+from hystbench.compare.evidence import Run, read_order_sweep, read_run
 from hystbench.errors import InputError
 from hystbench.figures import style
+from hystbench.figures.data import read_one
 from hystbench.files import read_json
 from hystbench.record import FloatArray
 
 _COLUMNS = 3
+
+
+def draw_order(*, table: Path, records: Sequence[Path]) -> Figure:
+    """Draw the MSE of each filter over the order, on a logarithmic scale.
+
+    Parameters
+    ----------
+    table : Path
+        The order sweep: model, order, mse, status.
+    records : sequence of Path
+        The record of the sweep, for its unit.
+    """
+    points = read_order_sweep(table)
+    record = read_one(records, "the one of the sweep")
+    figure = Figure(figsize=(style.COLUMN, 2.9))
+    axes = figure.subplots()
+    for model in style.in_order(point.model for point in points):
+        mine = [p for p in points if p.model == model]
+        finite = [p for p in mine if math.isfinite(p.mse)]
+        look = style.look(model)
+        axes.plot([p.order for p in finite], [p.mse for p in finite], **look.marked)
+        style.mark_above(axes, [p.order for p in mine if p not in finite], look.color)
+    axes.set_yscale("log")
+    # Room above the data for the marks of what diverged.
+    axes.margins(y=0.15)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set(
+        xlabel="order $N$ of the filters (-)",
+        ylabel=f"MSE ({style.unit_text(record.output.unit)}²)",
+    )
+    handles = style.handles(
+        (point.model for point in points),
+        marked=True,
+        diverged=not all(math.isfinite(point.mse) for point in points),
+    )
+    style.legend_above(figure, handles, columns=2)
+    return figure
 
 
 @dataclass(frozen=True)
@@ -29,7 +68,7 @@ class _Curve:
     value: FloatArray
 
 
-def draw(*, runs: Sequence[Path]) -> Figure:
+def draw_learning(*, runs: Sequence[Path]) -> Figure:
     """Draw one panel a signal, on a logarithmic scale.
 
     Only models that learn along the record are drawn: their errors are one-step a
@@ -50,7 +89,7 @@ def draw(*, runs: Sequence[Path]) -> Figure:
         axes.set_title(style.signal_title(signal))
         for curve in curves:
             if curve.run.signal == signal:
-                _draw(axes, curve)
+                _curve(axes, curve)
     grid[0, 0].set_yscale("log")
     grid[0, 0].set_ylim(_limits(curves))
     figure.supxlabel("time (s)", fontsize="medium")
@@ -74,7 +113,7 @@ def _read(path: Path) -> _Curve | None:
     return _Curve(run, np.array(about["time_s"]), np.array(about["value"]))
 
 
-def _draw(axes: Axes, curve: _Curve) -> None:
+def _curve(axes: Axes, curve: _Curve) -> None:
     look = style.look(curve.run.model)
     axes.plot(curve.time, curve.value, **look.line)
     if curve.run.diverged:
