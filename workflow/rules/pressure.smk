@@ -102,7 +102,8 @@ if TWIN:
             twins=SETTINGS.twin_files,
             fits=rules.twin_fits.output,
             code=lambda wildcards: code(
-                "hystbench.commands.jobs.twin_runs", f"hystbench.filters.{wildcards.filter}"
+                "hystbench.commands.jobs.twin_runs",
+                f"hystbench.filters.{wildcards.filter}",
             ),
         output:
             f"{RESULTS}/twins/{{filter}}.json",
