@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.edges import Edge, write_margins
 from hystbench.compare.evidence import Evidence, read_evidence
 from hystbench.compare.off import OffCell, off_cells, write_off
+from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
 from hystbench.compare.tables import Table, paper_tables
 from hystbench.compare.verdict import (
@@ -22,7 +22,7 @@ from hystbench.compare.verdict import (
     verdict_markdown,
     verdict_rst,
 )
-from hystbench.files import write_csv, write_json, write_text
+from hystbench.files import write_json, write_text
 from hystbench.published import load, signals
 from hystbench.published.audit import write_audit
 
@@ -33,22 +33,8 @@ WRITTEN = (
     *("first.md", "verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
 )
 """Files of a comparison, as names or patterns."""
-CELL_COLUMNS = (
-    "table",
-    "signal",
-    "model",
-    "metric",
-    "half",
-    "published",
-    "ours",
-    "spread_low",
-    "spread_high",
-    "draws_low",
-    "draws_high",
-    "log10_ratio",
-    "published_consistent",
-    "status",
-)
+_FIELDS = [field.name for field in fields(ComparedCell)]
+CELL_COLUMNS = (*_FIELDS[:-2], "log10_ratio", *_FIELDS[-2:])
 
 
 @dataclass(frozen=True)
@@ -86,19 +72,7 @@ class Comparison:
 
 def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
     """Write the cells as CSV; a cell without a finite run has no ours."""
-    rows = ([_cell_text(cell, column) for column in CELL_COLUMNS] for cell in cells)
-    write_csv(path, CELL_COLUMNS, rows)
-
-
-def _cell_text(cell: ComparedCell, column: str) -> object:
-    value = getattr(cell, column)
-    if (
-        column.startswith(("spread", "draws"))
-        and value is not None
-        and math.isinf(value)
-    ):
-        return "diverged"
-    return value
+    write_fields(path, CELL_COLUMNS, cells)
 
 
 def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:

@@ -140,8 +140,7 @@ def print_tables(
     """Write ours beside theirs and the claims for a terminal."""
     parts = []
     for table in tables:
-        lines = table.frame.to_numpy().tolist()
-        body = _grid(lines, list(table.frame.columns), "simple")
+        body = table.grid("simple")
         parts.append("\n".join(filter(None, (table.caption, body, table.legend))))
     ledger = _grid(
         [(j.verdict, j.claim.id, j.published_bears_out) for j in judgements],

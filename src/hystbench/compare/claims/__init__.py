@@ -32,7 +32,7 @@ from hystbench.compare.claims.claim import (
 )
 from hystbench.compare.claims.halves import about_signals, on_signals
 from hystbench.compare.evidence import Evidence
-from hystbench.files import write_csv
+from hystbench.compare.rows import write_fields
 from hystbench.yaml_files import parse_yaml
 
 MEASURES = {
@@ -42,19 +42,12 @@ MEASURES = {
     if inspect.isfunction(function) and function.__module__ == module.__name__
 }
 
+#: Columns of the ledger; of a renamed one also the attribute of a Judgement.
 COLUMNS = (
-    "id",
-    "claim",
-    "where",
-    "kind",
-    "basis",
-    "reading",
-    "verdict",
-    "on_held_out",
-    "holds_on",
-    "evidence",
-    "published_bears_out",
-    "published_evidence",
+    *("id=claim.id", "claim=claim.claim", "where=claim.where", "kind=claim.kind"),
+    *("basis=claim.basis", "reading=claim.reading", "verdict"),
+    *("on_held_out=held_out_verdict", "holds_on", "evidence"),
+    *("published_bears_out", "published_evidence"),
 )
 
 
@@ -131,12 +124,4 @@ def _judge(claim: Claim, evidence: Evidence, alone: Evidence) -> Judgement:
 
 def write_claims(judgements: Iterable[Judgement], path: str | Path) -> None:
     """Write the ledger as CSV; see ``COLUMNS``."""
-    rows = (
-        (
-            *(j.claim.id, j.claim.claim, j.claim.where, j.claim.kind, j.claim.basis),
-            *(j.claim.reading, j.verdict, j.held_out_verdict, j.holds_on, j.evidence),
-            *(j.published_bears_out, j.published_evidence),
-        )
-        for j in judgements
-    )
-    write_csv(path, COLUMNS, rows)
+    write_fields(path, COLUMNS, judgements)
