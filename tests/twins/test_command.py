@@ -7,8 +7,8 @@ import pytest
 import yaml
 from click.testing import CliRunner
 
-from hystbench.commands.calibrate import calibrate
-from hystbench.commands.found import found
+from hystbench.commands.jobs.calibrate import calibrate
+from hystbench.commands.jobs.found import found
 from hystbench.files import read_json
 from hystbench.model import load_model
 from hystbench.settings import read_settings

@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from hystbench.commands.constants import constants
-from hystbench.commands.random_sum import random_sum
-from hystbench.commands.step_sweep import step_sweep
+from hystbench.commands.jobs.constants import constants
+from hystbench.commands.jobs.random_sum import random_sum
+from hystbench.commands.jobs.step_sweep import step_sweep
 from hystbench.compare.constants import read_constants
 from hystbench.compare.draws import read_draws
 from hystbench.compare.edges import read_edges

@@ -11,7 +11,7 @@ if TWIN:
         input:
             twin=PACKAGE / "plants/gma.yaml",
             others=sorted(PACKAGE.glob("plants/uncertainty/gma-*.yaml")),
-            code=code("hystbench.commands.found"),
+            code=code("hystbench.commands.jobs.found"),
         output:
             f"{COMPARE}/found.csv",
         log:
@@ -21,12 +21,13 @@ if TWIN:
         message:
             "what the calibration found"
         shell:
-            "hystbench found {input.twin:q} {input.others:q} --out {output:q} 2> {log:q}"
+            "hystbench job found {input.twin:q} {input.others:q} --out {output:q}"
+            " 2> {log:q}"
 
     rule calibration:
         input:
             published=PUBLISHED,
-            code=code("hystbench.commands.calibrate", *CALIBRATED_FILTERS),
+            code=code("hystbench.commands.jobs.calibrate", *CALIBRATED_FILTERS),
         output:
             model=f"{CALIBRATION}/gma.yaml",
             uncertainty=[
@@ -45,7 +46,7 @@ if TWIN:
             "calibration of the twin"
         shell:
             # Shown while it runs: it takes a minute or more.
-            "hystbench calibrate --settings {params.settings:q}"
+            "hystbench job calibrate --settings {params.settings:q}"
             " --out {params.folder:q} 2>&1 | tee {log:q}"
 
     rule calibrate:

@@ -10,6 +10,7 @@ import grimp
 
 import hystbench
 from hystbench.errors import InputError
+from hystbench.figures import module_of
 from hystbench.settings import read_settings
 from hystbench.written import check_replaceable, claim_logs
 
@@ -114,7 +115,7 @@ TWIN = SETTINGS.dataset is None
 
 
 def code(*modules):
-    """Files of modules and of all that they import, the compiled kernels included.
+    """Files of modules and of all that they import, with tables, words and kernels.
 
     As inputs of a rule they make an edited module rerun what depends on it.
     """
@@ -128,6 +129,10 @@ def code(*modules):
     for name in sorted(names):
         path = PACKAGE.joinpath(*name.split(".")[1:])
         files.append(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
+    if "hystbench.compare.claims" in names:
+        files.extend(sorted(PACKAGE.glob("compare/claims/*.yaml")))
+    if "hystbench.compare.verdict" in names:
+        files.extend(sorted(PACKAGE.glob("compare/*.j2")))
     if "hystbench.kernels" in names:
         files.extend(KERNELS)
     return [str(file) for file in files]

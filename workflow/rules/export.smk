@@ -4,7 +4,7 @@
 
 rule export_errors:
     input:
-        code=code("hystbench.commands.export_errors"),
+        code=code("hystbench.commands.jobs.export_errors"),
         # Copied into what is exported, and not imported.
         steps=PACKAGE / "export/steps.py",
     output:
@@ -14,4 +14,4 @@ rule export_errors:
     message:
         "exported code beside the simulation"
     shell:
-        "hystbench export-errors --out {output:q} 2> {log:q}"
+        "hystbench job export-errors --out {output:q} 2> {log:q}"

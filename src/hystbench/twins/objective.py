@@ -64,7 +64,7 @@ class Objective:
         Settings of each filter's job, as :func:`hystbench.adaptive.make_filter` takes
         them, but for the step sizes.
     seed : int
-        Seed of the noise, as of ``hystbench measure``.
+        Seed of the noise, as of ``hystbench job measure``.
     """
 
     signals: Mapping[str, Signal]
@@ -74,7 +74,7 @@ class Objective:
     _powers: dict[tuple[Any, ...], float] = field(default_factory=dict, repr=False)
 
     def record(self, name: str, model: Model, values: Values) -> Record:
-        """Measure a signal on a twin as ``hystbench measure`` does.
+        """Measure a signal on a twin as ``hystbench job measure`` does.
 
         Of the values only what the recorded input has beside the actuator's is taken.
         """

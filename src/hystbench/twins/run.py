@@ -43,7 +43,7 @@ def run_calibration(
     Parameters
     ----------
     job : mapping
-        ``signals`` (a signal's job by name, as of ``hystbench signal``; the
+        ``signals`` (a signal's job by name, as of ``hystbench job signal``; the
         calibration signals alone), ``filters`` (each filter's job), ``seed`` of the
         noise, ``starts``, ``search_seed`` and ``twins``.
     out : Path
