@@ -1,4 +1,4 @@
-"""``hystbench export-errors``: how far exported code is from the simulation."""
+"""``hystbench job export-errors``: how far exported code is from the simulation."""
 
 from __future__ import annotations
 

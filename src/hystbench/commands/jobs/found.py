@@ -1,4 +1,4 @@
-"""``hystbench found``: the values that the calibration found, as a table."""
+"""``hystbench job found``: the values that the calibration found, as a table."""
 
 from __future__ import annotations
 
