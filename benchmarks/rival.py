@@ -16,13 +16,13 @@ from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error
 from hystbench.model import load_model
 from hystbench.order_errors import filters_by_order, order_errors
-from hystbench.pressure.configured import run
-from hystbench.pressure.fits import fit
-from hystbench.pressure.twins import read_twins
 from hystbench.rdgpi import identify_rdgpi
 from hystbench.settings import read_settings
 from hystbench.signals import make_signal
 from hystbench.slow_loop import identify_slow_loop
+from hystbench.twins.fits import fit
+from hystbench.twins.parts import run
+from hystbench.twins.read import read_twins
 from hystbench.yaml_files import load_yaml
 
 

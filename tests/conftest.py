@@ -49,11 +49,8 @@ def shorten(config: dict[str, Any], duration_s: float) -> None:
     random["sines"] = min(random["sines"], round(100 * duration_s))
     config["random_sum"] |= {"draws": 2, "other_sines": [5]}
     config["step_sweep"] |= {"ratio": 2.0}
-    config["pressure"] |= {
-        "members": 1,
-        "zero_errors": [0.0],
-        "constant_taps": [0.0, 1.0],
-    }
+    config["pressure"] |= {"members": 1}
+    config["constants"] |= {"zero_errors": [0.0], "constant_taps": [0.0, 1.0]}
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,7 @@ import pytest
 
 from hystbench import group as group_module
 from hystbench.cli import COMMANDS, run
-from hystbench.group import group
+from hystbench.group import group, job_lines
 from hystbench.options import SettingsType
 from tests.conftest import run_hystbench
 
@@ -17,11 +17,45 @@ def test_every_command_is_there_and_has_help(name):
     assert command.help
 
 
+@pytest.mark.parametrize("name", job_lines())
+def test_every_job_is_there_and_has_help(name):
+    jobs = group(COMMANDS).get_command(None, "job")
+    command = jobs.get_command(None, name)
+    assert command.name == name
+    assert command.help
+    assert job_lines()[name]
+
+
 def test_help_lists_the_commands_and_imports_none_of_them():
     result = run_hystbench("--help")
     assert result.returncode == 0
     for name in COMMANDS:
         assert name in result.stdout
+    # jobs are the workflow's: listed where one asks for them, and only there
+    assert "blind-make" not in result.stdout
+    assert "blind-make" in run_hystbench("job", "-h").stdout
+
+
+@pytest.mark.parametrize("arguments", [(), ("gap",), ("job",), ("job", "filter")])
+def test_h_is_help_everywhere(arguments):
+    short = run_hystbench(*arguments, "-h")
+    assert short.returncode == 0
+    assert short.stdout == run_hystbench(*arguments, "--help").stdout
+    assert short.stdout.startswith("Usage: hystbench")
+
+
+@pytest.mark.parametrize(
+    ("words", "wanted"),
+    [("hystbench in", ["init", "invert"]), ("hystbench job twin", None)],
+)
+def test_the_shell_completes_a_command(monkeypatch, words, wanted):
+    if wanted is None:
+        wanted = [name for name in job_lines() if name.startswith("twin")]
+    monkeypatch.setenv("_HYSTBENCH_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
+    found = [line.partition(",")[2] for line in run_hystbench().stdout.splitlines()]
+    assert found == wanted
 
 
 def test_help_needs_no_numpy(root):
@@ -42,7 +76,8 @@ def test_help_needs_no_numpy(root):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["filtr"], "hystbench: no command 'filtr'; did you mean 'filter'?"),
+        (["chek"], "hystbench: no command 'chek'; did you mean 'check'?"),
+        (["job", "filtr"], "hystbench: no job 'filtr'; did you mean 'filter'?"),
         (["load", ".", "x", "--out", "y.npz"], "dataset.yaml"),
     ],
 )

@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.dataset import SCHEMA, load_dataset
+from hystbench.record import load_record
 from tests.conftest import csv_text
 from tests.messages import message
 
@@ -186,3 +188,31 @@ def test_the_tutorial_names_every_key(root):
     words = set(re.findall(r"\w+", section))
     assert len(found := set(keys_of(SCHEMA))) > 10
     assert found <= words
+
+
+def test_what_is_interpolated_is_marked_and_kept(write_dataset, tmp_path):
+    u, y = U.copy(), Y.copy()
+    u[7], y[[20, 21]] = np.nan, np.nan
+    folder = write_dataset(
+        {"slow.csv": csv_text(TIME, u, y)},
+        HEADER + "records: [{file: slow.csv, missing: interpolate}]\n",
+    )
+    found = load_dataset(folder).read("slow")
+    assert np.flatnonzero(found.interpolated).tolist() == [7, 20, 21]
+    assert np.flatnonzero(~found.counted).tolist() == [7, 20, 21]
+    assert found.u[7] == pytest.approx((U[6] + U[8]) / 2, rel=1e-7)
+    found.save(tmp_path / "kept.npz")
+    again = load_record(tmp_path / "kept.npz")
+    np.testing.assert_array_equal(again.interpolated, found.interpolated)
+    assert again.digest == found.digest
+    assert replace(found, interpolated=None).digest != found.digest
+
+
+def test_a_clock_that_misses_a_tick_leaves_samples_measured(write_dataset):
+    time = TIME.copy()
+    time[9] = np.nan
+    folder = write_dataset(
+        {"slow.csv": csv_text(time, U, Y)},
+        HEADER + "records: [{file: slow.csv, missing: interpolate}]\n",
+    )
+    assert load_dataset(folder).read("slow").interpolated is None

@@ -1,5 +1,8 @@
 """The command line: one small file a command in :mod:`hystbench.commands`.
 
+What only the rules of the workflow call is in :mod:`hystbench.commands.jobs`, as
+``hystbench job NAME``, and not listed.
+
 Commands are imported when they are called, so that a job pays for what it uses
 and ``hystbench --help`` for nothing. So is all else that takes time to import: a
 Ctrl-C is to be one line from the first moment on.
@@ -15,58 +18,17 @@ from collections.abc import Callable
 
 from hystbench import interrupt
 
-#: Each command and the line that ``--help`` shows for it.
+#: Each command of a user's and the line that ``--help`` shows for it.
 COMMANDS = {
-    "signal": "Make an excitation signal.",
-    "measure": "Simulate a model on a signal and record it.",
-    "simulate": "Run a model on one record.",
     "init": "Propose a dataset.yaml for files of measurements.",
     "check": "Say what records are like and which effects they can reveal.",
+    "gap": "Find what a simulator lacks, add it, show the gap shrink.",
+    "simulate": "Run a model on one record.",
+    "load": "Read and check one record of a measured dataset.",
     "export": "Write a model as C, a Python module or an FMU.",
     "invert": "Find the input that makes a model's output follow a reference.",
-    "tracking": "Follow references on the twin with and without the inverse.",
-    "load": "Read and check one record of a measured dataset.",
-    "identify": "Identify the envelope functions (Algorithm 1).",
-    "filter": "Run one LMS filter on one record.",
-    "envelopes": "Run the GPO filter with identified and published envelopes.",
-    "order-sweep": "Run the filters over a range of orders (Figure 7).",
-    "random-sum": "Run all models on many draws of the random sum.",
-    "step-sweep": "Find how far each step size can go (Eq. 19).",
-    "constants": "Rank the filters with other constants.",
-    "hypotheses": "Try what could explain errors that stay far off.",
-    "calibrate": "Fit the twin and the step sizes to the published tables.",
-    "tried": "Write what the calibration tried and found as tables.",
-    "structure": "Try one structure on the calibration signals.",
-    "structures": "Write a table of the structures that were tried.",
-    "held-out": "Judge the structures that were tried on the held-out signals.",
-    "families": "Fit twins with other hysteresis.",
-    "rdgpi-identify": "Identify the rate-dependent GPI model.",
-    "rdgpi": "Simulate the rate-dependent GPI model on one record.",
-    "rdgpi-published": "Simulate it with the eleven published values.",
-    "compare": "Write tables and claims, ours beside the published.",
-    "compare-measured": "Write the errors on a measured dataset.",
-    "twin-fits": "Fit what no step size changes on several twins.",
-    "twin-runs": "Run one filter on several twins.",
-    "twins": "Judge the claims on several twins as configured.",
-    "pressure": "Judge the claims on many twins, step sizes and seeds.",
-    "contest": "Give each filter its own best step size.",
-    "devices": "Run the paper's models on measured devices.",
-    "gap": "Find what a simulator lacks, add it, show the gap shrink.",
-    "gap-check": "Check all records of a gap before it is searched.",
-    "gap-decide": "Give the verdict on a gap, from the fit records alone.",
-    "gap-show": "Show on hold-out records how far a gap shrinks.",
-    "gap-report": "Write the page of a gap.",
-    "gap-summary": "Write the verdicts on several datasets as tables.",
-    "gap-twin": "Write the worked example of the gap as a dataset.",
     "hide": "Make records in which a plant hides effects.",
-    "blind-make": "Make the cases of a chunk of the blind contest.",
-    "blind-solve": "Run a solver on a chunk of the blind contest.",
-    "blind-judge": "Judge the answers to a chunk of the blind contest.",
-    "blind-summary": "Sum up the blind contest.",
     "rival": "Run a rival of the gap's solver on a dataset.",
-    "show": "Print the tables of a comparison.",
-    "figure": "Draw one figure.",
-    "report": "Write the front page of the results.",
     "docs": "Fill the tables of README.md and docs from results.",
     "clean": "Remove what hystbench wrote, and nothing else.",
 }

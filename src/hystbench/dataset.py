@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,22 +16,21 @@ from hystbench.device_kinds import KINDS, Kind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
 from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
+from hystbench.reading import (
+    UNIFORM_TOLERANCE,
+    check_moves,
+    check_period,
+    check_unit,
+    record_name,
+    rows_of,
+    sampling_interval,
+    whole,
+)
 from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.schema import check_against_schema
 from hystbench.units import check_known, check_same_unit, plain, seconds
 from hystbench.written import reads
 from hystbench.yaml_files import load_yaml
-
-#: Steps may differ from their mean by this share where dataset.yaml does not say:
-#: printed times are rounded, and a clock that is off by more is no uniform clock.
-UNIFORM_TOLERANCE = 0.01
-
-#: The smallest range of a channel; the largest value is one over it.
-SMALLEST = 1e-30
-
-#: An input repeats itself if two of its periods differ by no more than this share of
-#: its standard deviation, rms.
-UNLIKE = 0.2
 
 #: Names of records: they name results, and braces are Snakemake's own.
 RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
@@ -155,7 +154,7 @@ class Dataset:
     def record_files(self) -> dict[str, Path]:
         """File of each record, by the record's name: the one given, or the stem."""
         return {
-            _record_name(entry): _file_of(self.path, entry)
+            record_name(entry): _file_of(self.path, entry)
             for entry in self.about["records"]
         }
 
@@ -174,7 +173,7 @@ class Dataset:
 
     def entry(self, name: str) -> Mapping[str, Any]:
         """Give what dataset.yaml says of a record."""
-        entries = {_record_name(entry): entry for entry in self.about["records"]}
+        entries = {record_name(entry): entry for entry in self.about["records"]}
         entry: Mapping[str, Any] = entries[name]
         return entry
 
@@ -199,25 +198,29 @@ class Dataset:
         table = read_table(file, [item["column"] for item in abouts])
         columns = [table.column(x["column"], entry.get("group", "")) for x in abouts]
         for about, column in zip(abouts, columns, strict=True):
-            _check_unit(file, about, column)
-        rows = _rows(self.path, table, entry, columns)
+            check_unit(file, about, column)
+        rows = rows_of(self.path, table, entry, columns)
         signals = [
-            _whole(table, column, rows, entry.get("missing")) for column in columns
+            whole(table, column, rows, entry.get("missing")) for column in columns
         ]
         if time_about is not None:
             unit = seconds(f"{self.path}: time: unit", time_about["unit"])
             tolerance = time_about.get("tolerance", UNIFORM_TOLERANCE)
             time = signals.pop(0) * unit
-            dt = _sampling_interval(table, time, tolerance, rows.start)
+            dt = sampling_interval(table, time, tolerance, rows.start)
         else:
             dt = 1.0 / self._sampling_frequency(table, columns, entry)
         u, y, *others = signals
+        # Time alone may be interpolated without a loss: it is uniform anyway.
+        lost = ~np.all(
+            [np.isfinite(x.values[rows]) for x in columns[-len(signals) :]], 0
+        )
         for item, values in zip(channels, (u, y), strict=True):
-            _check_moves(file, item, values)
+            check_moves(file, item, values)
         given, measured = (Channel(_name(item), item["unit"]) for item in channels)
         period = entry.get("period_samples")
         if period is not None:
-            _check_period(f"{self.path}: records: {file.name}", period, u)
+            check_period(f"{self.path}: records: {file.name}", period, u)
         return Record(
             name,
             dt,
@@ -229,6 +232,7 @@ class Dataset:
             self.use(name),
             period,
             others[0] if others else None,
+            lost if lost.any() else None,
         )
 
     def _sampling_frequency(
@@ -374,14 +378,9 @@ def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
     """
     table = read_table(file, ["time_s", column])
     columns = [table.column(name) for name in ("time_s", column)]
-    rows = _rows(file, table, {}, columns)
-    time, u = (_whole(table, each, rows, None) for each in columns)
-    return _sampling_interval(table, time, UNIFORM_TOLERANCE, 0), u
-
-
-def _record_name(entry: Mapping[str, Any]) -> str:
-    """Give the name of a record: the one given, or its file's stem."""
-    return str(entry.get("name", Path(entry["file"]).stem))
+    rows = rows_of(file, table, {}, columns)
+    time, u = (whole(table, each, rows, None) for each in columns)
+    return sampling_interval(table, time, UNIFORM_TOLERANCE, 0), u
 
 
 def _file_of(about: Path, entry: Mapping[str, Any]) -> Path:
@@ -396,7 +395,7 @@ def _check_files(about: Path, entries: Sequence[Mapping[str, Any]]) -> None:
     """Refuse a record whose file is none, and two records of one name."""
     seen: dict[str, str] = {}
     for entry in entries:
-        name, record = entry["file"], _record_name(entry)
+        name, record = entry["file"], record_name(entry)
         place, file = f"{about}: records", _file_of(about, entry)
         if not RECORD_NAME.fullmatch(record):
             raise InputError(
@@ -459,147 +458,6 @@ def _check_digest(about: Path, file: Path, entry: Mapping[str, Any]) -> None:
             f"described: its SHA-256 begins {found[:12]}, not {entry['sha256'][:12]}; "
             "run 'hystbench init' again, or take 'sha256' away"
         )
-
-
-def _check_unit(file: Path, about: Mapping[str, Any], column: Column) -> None:
-    """Refuse a column whose file tells another unit, unless that is meant."""
-    if column.unit is None or about.get("meant"):
-        return
-    try:
-        check_known("", column.unit)
-    except InputError:
-        return  # words of an instrument, not a unit
-    check_same_unit(
-        f"dataset.yaml: {about['column']!r}: unit",
-        about["unit"],
-        f"{file.name} itself",
-        column.unit,
-    )
-
-
-def _rows(
-    about: Path, table: Table, entry: Mapping[str, Any], columns: Sequence[Column]
-) -> slice:
-    """Give the samples of a record, counted from 0.
-
-    Raises
-    ------
-    InputError
-        If columns differ in length, or there are no two samples.
-    """
-    lengths = [len(column.values) for column in columns]
-    if len(set(lengths)) > 1:
-        told = ", ".join(f"{column.name!r} {len(column.values)}" for column in columns)
-        raise InputError(
-            f"{table.path}: columns of different lengths ({told}); expected one length"
-        )
-    if lengths[0] < 2:
-        raise InputError(
-            f"{table.path}: {lengths[0]} rows; expected at least 2 samples"
-        )
-    first, last = entry.get("rows", (1, lengths[0]))
-    if not first < last <= lengths[0]:
-        raise InputError(
-            f"{about}: records: {_record_name(entry)}: rows: [{first}, {last}]; "
-            f"expected the first and the last of its {lengths[0]} samples, from 1 on"
-        )
-    return slice(first - 1, last)
-
-
-def _whole(
-    table: Table, column: Column, rows: slice, missing: str | None
-) -> FloatArray:
-    """Give the samples of a column, all finite.
-
-    Raises
-    ------
-    InputError
-        If one is missing, and it is not said that it may be interpolated; or the first
-        or last one is.
-    """
-    values = column.values[rows]
-    lost = np.flatnonzero(~np.isfinite(values))
-    if not len(lost):
-        return cast(FloatArray, np.ascontiguousarray(values))
-    ends = {0, len(values) - 1} & set(lost.tolist())
-    if missing is None or ends or not np.isnan(values[lost]).all():
-        at = int(min(ends) if missing is not None and ends else lost[0])
-        hint = (
-            "; at an end nothing can be interpolated: give 'rows' without it"
-            if missing is not None and ends
-            else " (for lone ones say 'missing: interpolate' of this record)"
-        )
-        raise InputError(
-            f"{table.path}: {table.place(rows.start + at)}: column {column.name!r} is "
-            f"{_shown(values[at])}; expected a finite number{hint}"
-        )
-    there = np.flatnonzero(np.isfinite(values))
-    return cast(FloatArray, np.interp(np.arange(len(values)), there, values[there]))
-
-
-def _shown(value: float) -> str:
-    return "'nan' or empty" if np.isnan(value) else repr(str(value))
-
-
-def _check_moves(file: Path, item: Mapping[str, str], values: FloatArray) -> None:
-    """Refuse a channel that does not move, or whose squares leave floating point."""
-    where = f"{file}: column {item['column']!r}"
-    span = float(np.ptp(values))
-    if span == 0:
-        raise InputError(
-            f"{where}: constant ({values[0]:g} {item['unit']}); "
-            "expected a signal that moves"
-        )
-    largest = float(np.abs(values).max())
-    if not (span > SMALLEST and largest < 1 / SMALLEST):
-        raise InputError(
-            f"{where}: a range of {span:g} and values up to {largest:g} "
-            f"{item['unit']}; expected {SMALLEST:g} to {1 / SMALLEST:g} in some unit"
-        )
-
-
-def _check_period(place: str, period: int, u: FloatArray) -> None:
-    """Refuse a period that does not fit twice, or with which no input repeats."""
-    if 2 * period > len(u):
-        raise InputError(
-            f"{place}: period_samples: {period}; expected at most {len(u) // 2}, "
-            f"half of its {len(u)} samples"
-        )
-    rounds = u[: len(u) // period * period].reshape(-1, period)
-    # The nearest two of them: the input may be faded in and out.
-    away = float(np.sqrt(np.mean(np.diff(rounds, axis=0) ** 2, axis=1)).min())
-    if away > UNLIKE * float(np.std(u)):
-        raise InputError(
-            f"{place}: period_samples: {period}; the input differs from one period to "
-            f"the next by {away / float(np.std(u)):.2g} of its standard deviation; "
-            f"expected at most {UNLIKE:g}"
-        )
-
-
-def _sampling_interval(
-    table: Table, time: FloatArray, tolerance: float, first: int
-) -> float:
-    """Mean step of a time column that increases uniformly within a tolerance."""
-    steps = np.diff(time)
-    backward = np.flatnonzero(steps <= 0)
-    if len(backward):
-        row = int(backward[0])
-        raise InputError(
-            f"{table.path}: {table.place(first + row + 1)}: time goes from "
-            f"{time[row]:g} s to {time[row + 1]:g} s; expected it to increase"
-        )
-    dt = float(time[-1] - time[0]) / len(steps)
-    # Printed times are rounded: what counts is the distance from the uniform grid.
-    away = np.abs(time - time[0] - dt * np.arange(len(time)))
-    step_error = np.abs(steps - dt)
-    row = int(np.argmax(step_error))
-    if step_error[row] > tolerance * dt or away.max() > max(tolerance, 0.5) * dt:
-        raise InputError(
-            f"{table.path}: {table.place(first + row + 1)}: a step of {steps[row]:g} s "
-            f"where the mean is {dt:g} s; expected uniform sampling within "
-            f"{tolerance:.3g} of a step (time: tolerance)"
-        )
-    return dt
 
 
 def _name(channel: Mapping[str, str]) -> str:

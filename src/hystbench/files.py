@@ -214,6 +214,17 @@ def write_csv(
         writer.writerows(rows)
 
 
+def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Write a Markdown table; a bar in a cell is escaped.
+
+    Cells are not padded, as tabulate pads them: one long cell would fill its whole
+    column with spaces, and a changed one would change every row.
+    """
+    lines = [columns, ["---"] * len(columns), *rows]
+    told = ([cell.replace("|", r"\|") for cell in cells] for cells in lines)
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in told)
+
+
 def digest(folder: str | Path, pattern: str = "*") -> str:
     """SHA-256 of all files below a folder that match: their names and contents.
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from importlib.resources import files
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 
 from hystbench import __version__
 from hystbench.errors import InputError, nearest
+
+COMMANDS = "hystbench.commands"
+JOBS = f"{COMMANDS}.jobs"
 
 
 @contextmanager
@@ -31,15 +37,18 @@ class LazyGroup(click.Group):
 
     Parameters
     ----------
+    name : str
+    package : str
+        Where the commands are, each in a module of its name.
     lines : mapping of str to str
         Each command and the line that ``--help`` shows for it.
     """
 
-    def __init__(self, lines: Mapping[str, str]) -> None:
-        super().__init__(
-            name="hystbench",
-            help="Benchmark rate-dependent hysteresis models of smart actuators.",
-        )
+    def __init__(
+        self, name: str, package: str, lines: Mapping[str, str], **extra: Any
+    ) -> None:
+        super().__init__(name=name, **extra)
+        self.package = package
         self.lines = lines
 
     def make_context(
@@ -55,30 +64,69 @@ class LazyGroup(click.Group):
             return super().invoke(ctx)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Name the commands in the order of the workflow."""
+        """Name the commands."""
         return list(self.lines)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Import a command; an unknown name gets the nearest one."""
+        if cmd_name == "job" and self.package == COMMANDS:
+            about = "Run a job of the workflow."
+            return LazyGroup("job", JOBS, job_lines(), help=about)
         if cmd_name not in self.lines:
             raise InputError(
-                f"no command {cmd_name!r}; {nearest(cmd_name, self.lines)}"
+                f"no {self.noun} {cmd_name!r}; {nearest(cmd_name, self.lines)}"
             )
         module = cmd_name.replace("-", "_")
         command: click.Command = getattr(
-            importlib.import_module(f"hystbench.commands.{module}"), module
+            importlib.import_module(f"{self.package}.{module}"), module
         )
         return command
+
+    @property
+    def noun(self) -> str:
+        """What a member of the group is called."""
+        return "command" if self.package == COMMANDS else "job"
 
     def format_commands(
         self, ctx: click.Context, formatter: click.HelpFormatter
     ) -> None:
         """List the commands without importing them."""
-        with formatter.section("Commands"):
+        with formatter.section(f"{self.noun.title()}s"):
             formatter.write_dl(list(self.lines.items()))
+
+    def shell_complete(
+        self, ctx: click.Context, incomplete: str
+    ) -> list[CompletionItem]:
+        """Complete the name of a command, or an option, without importing any."""
+        found = [
+            CompletionItem(name, help=line)
+            for name, line in self.lines.items()
+            if name.startswith(incomplete)
+        ]
+        return found + click.Command.shell_complete(self, ctx, incomplete)
+
+
+def job_lines() -> dict[str, str]:
+    """Read the names of the jobs, and what their files say of them, off the files."""
+    lines = {}
+    for file in sorted(files(JOBS).iterdir(), key=lambda file: file.name):
+        name, _, suffix = file.name.partition(".")
+        if suffix == "py" and name != "__init__":
+            told = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+            line = told.splitlines()[0].partition(": ")[2]
+            lines[name.replace("_", "-")] = line[:1].upper() + line[1:]
+    return lines
 
 
 def group(lines: Mapping[str, str]) -> click.Group:
-    """Make the group of the commands."""
-    made: click.Group = click.version_option(__version__)(LazyGroup(lines))
-    return made
+    """Make the group of the commands, and of the jobs below it."""
+    made = LazyGroup(
+        "hystbench",
+        COMMANDS,
+        lines,
+        help="Benchmark rate-dependent hysteresis models of smart actuators.",
+        epilog="'hystbench job -h' lists what the rules of the workflow call.",
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    whole: click.Group = click.version_option(__version__)(made)
+    return whole

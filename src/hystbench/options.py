@@ -100,6 +100,24 @@ def limits(command: Command) -> Command:
     return command
 
 
+def vocabulary(command: Command) -> Command:
+    """Add the effects that a search leaves out and puts in: ``without``, ``with_``."""
+    command = click.option(
+        "--with",
+        "with_",
+        multiple=True,
+        metavar="EFFECT",
+        help="An effect that you put in: it is fitted from the start, and is no "
+        "finding.",
+    )(command)
+    return click.option(
+        "--without",
+        multiple=True,
+        metavar="EFFECT",
+        help="An effect that the search must not name; may stand there several times.",
+    )(command)
+
+
 def calls(command: Command) -> Command:
     """Add what holds for a simulator that is a function: ``calls``, ``keep_calls``."""
     command = click.option(

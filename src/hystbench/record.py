@@ -17,6 +17,7 @@ from hystbench.files import atomic_path
 from hystbench.units import plain
 
 FloatArray = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 Origin = Literal["twin", "measured"]
 Use = Literal["fit", "hold-out"]
 
@@ -65,6 +66,10 @@ class Record:
         Samples of a period, where the input repeats itself.
     simulated : ndarray, shape (n,), optional
         What a simulator that ran elsewhere says of ``y``.
+    interpolated : ndarray of bool, shape (n,), optional
+        Samples at which ``u``, ``y`` or ``simulated`` was not measured but is a
+        straight line between its neighbours. Models run over them; scores leave them
+        out.
     """
 
     name: str
@@ -77,10 +82,11 @@ class Record:
     use: Use = "fit"
     period_samples: int | None = None
     simulated: FloatArray | None = None
+    interpolated: Mask | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays: a record is evidence."""
-        for array in (self.u, self.y, self.simulated):
+        for array in (self.u, self.y, self.simulated, self.interpolated):
             if array is not None:
                 array.setflags(write=False)
 
@@ -101,6 +107,13 @@ class Record:
         return cast(FloatArray, np.arange(len(self)) * self.dt)
 
     @property
+    def counted(self) -> Mask:
+        """Samples that were measured, shape (n,): those that a score may count."""
+        if self.interpolated is None:
+            return np.ones(len(self), dtype=np.bool_)
+        return ~self.interpolated
+
+    @property
     def rate(self) -> float:
         """How fast the input moves: rms(du/dt) / rms(u), in 1/s."""
         speed = np.gradient(self.u, self.dt)
@@ -114,6 +127,8 @@ class Record:
         whole = blake2b(json.dumps(about).encode(), digest_size=16)
         for array in (self.u, self.y, self.simulated):
             whole.update(b"none" if array is None else array.tobytes())
+        if self.interpolated is not None:
+            whole.update(self.interpolated.tobytes())
         return whole.hexdigest()
 
     def save(self, path: str | Path) -> None:
@@ -128,9 +143,11 @@ class Record:
             "period_samples": self.period_samples,
         }
         with atomic_path(path) as temporary, temporary.open("wb") as stream:
-            arrays = {"u": self.u, "y": self.y}
+            arrays: dict[str, FloatArray | Mask] = {"u": self.u, "y": self.y}
             if self.simulated is not None:
                 arrays["simulated"] = self.simulated
+            if self.interpolated is not None:
+                arrays["interpolated"] = self.interpolated
             np.savez(stream, **arrays, about=np.array(json.dumps(about)))  # type: ignore[arg-type]
 
 
@@ -147,6 +164,7 @@ def load_record(path: str | Path) -> Record:
             about = json.loads(str(archive["about"]))
             u, y = archive["u"], archive["y"]
             simulated = archive.get("simulated")
+            interpolated = archive.get("interpolated")
     except (OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: not a record of hystbench ({error})") from error
     return Record(
@@ -160,4 +178,5 @@ def load_record(path: str | Path) -> Record:
         use=about["use"],
         period_samples=about["period_samples"],
         simulated=simulated,
+        interpolated=interpolated,
     )

@@ -71,11 +71,14 @@ def run_result(
     window = min(window, len(error))
     smoothed = smoothed_squared_error(error, window) if window else error
     if diverged is None:
+        # A sample that was not measured has no error.
+        counted = record.counted
+        late = counted & (np.arange(len(record)) >= start)
         errors = {
-            "mse": mean_square_error(error),
-            "re": relative_error(error, record.y),
-            "mse_after_transient": mean_square_error(error[start:]),
-            "re_after_transient": relative_error(error[start:], record.y[start:]),
+            "mse": mean_square_error(error[counted]),
+            "re": relative_error(error[counted], record.y[counted]),
+            "mse_after_transient": mean_square_error(error[late]),
+            "re_after_transient": relative_error(error[late], record.y[late]),
             "convergence_s": _convergence(smoothed, record.dt),
         }
     kept = np.unique(

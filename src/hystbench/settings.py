@@ -153,9 +153,9 @@ class Settings:
         return self._files_of(self.config["pressure"]["twins"])
 
     @property
-    def contest_files(self) -> list[str]:
-        """Model files of the twins of the contest, the twin's first."""
-        return self._files_of(self.config["contest"]["twins"])
+    def constants_files(self) -> list[str]:
+        """Model files of the twins on which constants are varied, the twin's first."""
+        return self._files_of(self.config["constants"]["twins"])
 
     def _files_of(self, names: Iterable[str]) -> list[str]:
         files = [file for name in names for file in _model_files(name)]
@@ -197,24 +197,6 @@ class Settings:
         }
         return job | {"order": self.config["filters"]["order"]}
 
-    @property
-    def ensemble_job(self) -> dict[str, Any]:
-        """Settings of all models on a twin, in one job."""
-        rdgpi = self.rdgpi_job | {"fit_signals": self.rdgpi_fit_signals}
-        return {
-            "signals": {name: self.signal_job(name) for name in self.all_records},
-            "asked": self.signals,
-            "measure": self.measure_job,
-            "filters": {name: self.filter_job(name) for name in self.filters},
-            "identification": self.identification_job
-            | {"signal": self.identification_signal},
-            "order_sweep": {
-                key: self.config["order_sweep"][key]
-                for key in ("signal", "orders", "convergence_factor")
-            },
-            "rdgpi": rdgpi if "rdgpi" in self.models else None,
-        }
-
     def _twin_job(self, *more: str) -> dict[str, Any]:
         names = dict.fromkeys([*self.signals, *more])
         return {
@@ -226,15 +208,17 @@ class Settings:
     @property
     def twin_fits_job(self) -> dict[str, Any]:
         """Settings of what no step size changes, on all twins."""
-        whole = self.ensemble_job
-        fitted = whole["rdgpi"]["fit_signals"] if whole["rdgpi"] else []
-        return self._twin_job(self.identification_signal, *fitted) | {
-            key: whole[key] for key in ("identification", "rdgpi")
+        slow = self.identification_signal
+        fitted = self.rdgpi_fit_signals if "rdgpi" in self.models else []
+        return self._twin_job(slow, *fitted) | {
+            "identification": self.identification_job | {"signal": slow},
+            "rdgpi": self.rdgpi_job | {"fit_signals": fitted} if fitted else None,
         }
 
     def twin_runs_job(self, model: str) -> dict[str, Any]:
         """Give the settings of one filter on all twins."""
-        sweep = self.ensemble_job["order_sweep"]
+        keys = ("signal", "orders", "convergence_factor")
+        sweep = {key: self.config["order_sweep"][key] for key in keys}
         return self._twin_job(sweep["signal"]) | {
             "filters": {model: self.filter_job(model)},
             "order_sweep": sweep,
@@ -275,7 +259,7 @@ class Settings:
     @property
     def constants_job(self) -> dict[str, Any]:
         """Settings of the ranking with other constants."""
-        section = self.config["pressure"]
+        section = self.config["constants"]
         return {
             "signals": {name: self.signal_job(name) for name in self.signals},
             "measure": self.measure_job,
@@ -289,26 +273,6 @@ class Settings:
         """Settings of what could explain the errors that stay far off."""
         keys = ("signals", "measure", "filters")
         return {key: self.constants_job[key] for key in keys}
-
-    @property
-    def pressure_job(self) -> dict[str, Any]:
-        """Settings of the claims under pressure."""
-        keys = ("seeds", "step_factors", "step_choices")
-        design = {key: self.config["pressure"][key] for key in keys}
-        return self.ensemble_job | self.compare_job | {"design": design}
-
-    @property
-    def contest_job(self) -> dict[str, Any]:
-        """Settings of the contest of filters."""
-        grid = {k: v for k, v in self.config["contest"].items() if k != "twins"}
-        return {
-            "signals": {name: self.signal_job(name) for name in self.signals},
-            "asked": self.signals,
-            "measure": self.measure_job,
-            "filters": {name: self.filter_job(name) for name in self.filters},
-            **self.compare_job,
-            **grid,
-        }
 
     @property
     def compare_job(self) -> dict[str, Any]:
@@ -335,31 +299,6 @@ class Settings:
             "seed": self.config["twin"]["seed"],
             **{key: section[key] for key in ("starts", "search_seed", "twins")},
         }
-
-    @property
-    def structure_job(self) -> dict[str, Any]:
-        """Settings of a structure's trial; nothing in them was fitted."""
-        budget = {k: v for k, v in self.config["structures"].items() if k != "tried"}
-        loop = self.config["identification"]["signal"]
-        return {
-            **{k: self.calibration_job[k] for k in ("signals", "filters", "seed")},
-            "identification": self.identification_job,
-            "loop": {loop: self.signal_job(loop)},
-            "budget": budget,
-        }
-
-    @property
-    def structures(self) -> list[str] | None:
-        """Names of the structures to try; None for all."""
-        asked = self.config["structures"]["tried"]
-        return None if asked == "all" else list(asked)
-
-    @property
-    def held_out_job(self) -> dict[str, Any]:
-        """Settings of the structures' trial on the signals that no fit has seen."""
-        unseen = sorted({pair.signal for pair in load()} - set(CALIBRATION_SIGNALS))
-        signals = {name: self.signal_job(name) for name in unseen}
-        return {**self.structure_job, "signals": signals}
 
     @property
     def error_job(self) -> dict[str, Any]:
@@ -411,8 +350,8 @@ class Settings:
             filters[model] = job
         return {
             "filters": filters,
-            "fractions": self.config["contest"]["fractions"],
-            "constant_tap": max(self.config["pressure"]["constant_taps"]),
+            "fractions": measured["fractions"],
+            "constant_tap": max(self.config["constants"]["constant_taps"]),
             "identification": self.identification_job,
             "rdgpi": self.rdgpi_job,
         }
@@ -471,14 +410,14 @@ def read_settings(
     _check_limits(place, config)
     if config["source"] == "twin":
         _check_names(place, named, excitations)
-        # The calibration and the trial of structures run all signals of the tables.
+        # The calibration and the comparison take all signals of the tables.
         for pair in load():
             _check_names(place, [("excitations", pair.signal)], excitations)
         _check_names(place, _gap_signals(place, config), excitations)
         _check_lengths(place, config, excitations)
         _check_model(place, "twin: model", config["twin"]["model"])
         _check_twin(place, config)
-        for key in ("pressure", "contest"):
+        for key in ("pressure", "constants"):
             for name in config[key]["twins"]:
                 _check_model(place, f"{key}: twins", name)
         return Settings(config, None)
@@ -529,9 +468,7 @@ def _check_limits(place: str, config: Mapping[str, Any]) -> None:
 def packaged_models() -> dict[str, str]:
     """Files of the package's own model files, by name."""
     folder = Path(os.path.relpath(Path(__file__).parent / "plants"))
-    # choice.yaml beside them says which structure was chosen, and is no model.
-    files = [file for file in folder.glob("*.yaml") if file.name != "choice.yaml"]
-    return {file.stem: str(file) for file in sorted(files)}
+    return {file.stem: str(file) for file in sorted(folder.glob("*.yaml"))}
 
 
 def _model_files(name: str) -> list[str]:

@@ -1,10 +1,10 @@
-"""``hystbench gap-check``: what can be known of all files before a search is paid."""
+"""``hystbench job gap-check``: what can be known of all files before a search."""
 
 import numpy as np
 import pytest
 import yaml
 
-from hystbench.commands import gap_check as module
+from hystbench.commands.jobs import gap_check as module
 from hystbench.gap import bases
 from tests.gap.made import record, sine, write_folder
 from tests.gap.tiny import write_tiny

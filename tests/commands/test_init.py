@@ -357,6 +357,53 @@ def test_dates_and_times_are_seconds_from_the_first(run, tmp_path):
     assert len(record) == 800
 
 
+@pytest.mark.parametrize(
+    ("lost", "pieces"),
+    [(12, ["run"]), (13, ["run-1", "run-2"])],  # 20 Hz at 1 kHz: 50 samples a period
+)
+def test_a_gap_of_the_input_is_bridged_up_to_a_quarter_of_its_period(
+    run, tmp_path, lost, pieces
+):
+    file = lone(tmp_path)
+    lines = file.read_text().splitlines()
+    for k in range(601, 601 + lost):
+        time, _, y = lines[k].split(",")
+        lines[k] = f"{time},,{y}"
+    file.write_text("\n".join(lines) + "\n")
+    other = lone(tmp_path, "whole.csv", noise=0.02)
+    status, said, _ = run(
+        "init", file, other, "--missing", "interpolate", "--hold-out", "whole"
+    )
+    assert status == 0
+    assert ("quarter of its fastest period" in said) == (len(pieces) == 2)
+    assert names()[:-1] == pieces
+
+
+def test_a_long_gap_of_the_output_alone_costs_its_samples_only(run, tmp_path):
+    file = lone(tmp_path, missing=range(500, 700))
+    other = lone(tmp_path, "whole.csv", noise=0.02)
+    given = ("--missing", "interpolate", "--hold-out", "whole")
+    assert run("init", file, other, *given)[0] == 0
+    record = load_dataset(".").read("run")
+    assert len(record) == 1200
+    assert np.flatnonzero(~record.counted).tolist() == list(range(500, 700))
+
+
+@pytest.mark.parametrize(
+    ("first", "per_second", "unit", "rtol"),
+    [(1709208000000, 1000, "ms", 1e-6), (45351.5, 1 / 86400, "day", 1e-3)],
+)
+def test_times_that_count_from_a_date(run, tmp_path, first, per_second, unit, rtol):
+    stamps = [f"{first + DT * k * per_second:.12f}" for k in range(1200)]
+    file = lone(tmp_path, stamps=stamps)
+    file.write_text(file.read_text().replace("time_s", "Time"))
+    status, said, _ = run("init", file)
+    assert status == 0
+    assert "from 2024-02-29 12:00:00.000 on (--time-unit)" in said
+    assert written()["time"]["unit"] == unit
+    assert load_dataset(".").read("run-1").dt == pytest.approx(DT, rel=rtol)
+
+
 def test_the_kind_of_device_is_written(run, tmp_path):
     status, _, _ = run("init", *records(tmp_path), "--device", "piezoelectric")
     assert status == 0

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from hystbench.commands.devices import devices
+from hystbench.commands.jobs.devices import devices
 from hystbench.dataset import load_dataset
 from hystbench.devices.errors import (
     DeviceError,

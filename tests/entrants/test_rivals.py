@@ -255,7 +255,7 @@ def test_no_rival_knows_the_plant_the_truth_or_the_solver():
     graph = grimp.build_graph(
         "hystbench", cache_dir=None, exclude_type_checking_imports=True
     )
-    for command in ("rival", "blind_solve"):
+    for command in ("rival", "jobs.blind_solve"):
         known = graph.find_upstream_modules(f"hystbench.commands.{command}")
         assert not [
             m for m in known if m.startswith(("hystbench.challenge", "hystbench.gap"))

@@ -107,21 +107,6 @@ def write_cells(path: Path) -> None:
     _write(path, columns.split(","), rows)
 
 
-def write_contest(path: Path) -> None:
-    """Write entries of a contest on two twins, one of which diverged."""
-    columns = "twin,family,algorithm,protocol,signal,model,mse"
-    rows = [
-        [twin, family, algorithm, protocol, signal, model, (1 + k) / (1 + n)]
-        for twin, family in (("gma", "gpi"), ("other", "preisach"))
-        for algorithm in ("LMS", "NLMS")
-        for n, signal in enumerate(SIGNALS)
-        for protocol in ("held-out", "best")
-        for k, model in enumerate(MODELS[:4])
-    ]
-    rows[0][-1] = ""
-    _write(path, columns.split(","), rows)
-
-
 BLIND_EFFECTS = ("creep", "rate-dependent-hysteresis", "stiffness-hardening")
 BLIND_FAMILIES = ("gpi", "preisach", "jiles-atherton")
 
@@ -224,7 +209,6 @@ class Inputs:
         write_order_sweep(folder / "errors.csv")
         write_cells(folder / "cells.csv")
         write_step_edges(folder / "edges.csv")
-        write_contest(folder / "contest.csv")
         write_blind(folder / "blind")
         write_gap(folder / "gap", self.records[SIGNALS[0]])
         write_tracking(folder)
@@ -261,7 +245,6 @@ class Inputs:
             "identification": one | {"identified": self.folder / "identified.json"},
             "learning-curves": everything,
             "errors-heat-map": {"table": self.folder / "cells.csv"},
-            "contest": {"table": self.folder / "contest.csv"},
             "step-edges": {"table": self.folder / "edges.csv"},
             "gap-loop": one | {"table": self.folder / "gap/holdout" / TABLE},
             "blind-confusion": {"table": self.folder / "blind" / "confusion.csv"},

@@ -1,11 +1,11 @@
-"""``hystbench figure``, as the workflow calls it."""
+"""``hystbench job figure``, as the workflow calls it."""
 
 import os
 
 import pytest
 from click.testing import CliRunner
 
-from hystbench.commands.figure import figure
+from hystbench.commands.jobs.figure import figure
 from hystbench.errors import InputError
 from hystbench.figures import NAMES
 

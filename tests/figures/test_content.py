@@ -297,24 +297,6 @@ def test_step_edges_stand_beside_both_bounds(inputs):
     assert len(marked) == 5  # an edge that was not reached has no mark
 
 
-def test_contest_has_a_panel_for_each_twin_and_algorithm(inputs):
-    figure = draw("contest", **inputs.of("contest"))
-    assert [axes.get_title(loc="left") for axes in figure.axes] == [
-        "(a) LMS, twin gma (gpi)",
-        "(b) NLMS, twin gma (gpi)",
-        "(c) LMS, twin other (preisach)",
-        "(d) NLMS, twin other (preisach)",
-    ]
-    for number, axes in enumerate(figure.axes):
-        marks = [m for m in axes.get_lines() if m.get_marker() not in ("", "None")]
-        crosses = [m for m in marks if m.get_marker() == "x"]
-        assert len(crosses) == (number == 0)
-        hollow = [m for m in marks if m.get_markerfacecolor() == "none"]
-        assert len(hollow) == len(SIGNALS) * 4
-        assert len(marks) == 2 * len(hollow)
-    assert "diverged" in legend(figure)
-
-
 def test_a_gap_is_drawn_before_and_after_with_the_name(inputs):
     """The table's simulator lies 1 um above the record; nothing is left after."""
     before, after = draw("gap-loop", **inputs.of("gap-loop")).axes

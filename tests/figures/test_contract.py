@@ -2,6 +2,7 @@
 
 import inspect
 import itertools
+import re
 from pathlib import Path
 
 import matplotlib as mpl
@@ -13,7 +14,7 @@ from matplotlib.transforms import Bbox
 
 import hystbench.figures
 from hystbench.errors import InputError
-from hystbench.figures import NAMES, drawer, style
+from hystbench.figures import FIGURES, NAMES, drawer, style
 
 #: Axes that name categories, not a quantity.
 CATEGORIES = {"model", "signal", "effect", "hidden effect", "first answer"}
@@ -124,14 +125,16 @@ def test_has_a_caption(name):
     assert (REPORT / f"{name}.rst").read_text(encoding="utf-8").strip()
 
 
-def test_every_module_that_draws_is_registered():
+def test_every_function_that_draws_is_registered():
     folder = Path(hystbench.figures.__file__).parent
     drawing = {
-        path.stem.replace("_", "-")
+        (path.stem, function)
         for path in folder.glob("*.py")
-        if "\ndef draw(" in path.read_text(encoding="utf-8")
+        for function in re.findall(
+            r"^def (draw(?:_\w+)?)\(", path.read_text(encoding="utf-8"), re.MULTILINE
+        )
     }
-    assert drawing == set(NAMES)
+    assert drawing == {(module, function) for module, function, *_ in FIGURES.values()}
 
 
 def test_unknown_figure_gets_the_nearest_name():

@@ -16,8 +16,9 @@ from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import black_box
-from hystbench.gap.run import close_gap, show
+from hystbench.gap.run import close_gap
 from hystbench.gap.rungs import Rung
+from hystbench.gap.shown import show
 from hystbench.gap.start import start_state
 from hystbench.gap.summary import write_summary
 from hystbench.model import Model, load_model

@@ -11,6 +11,7 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.example import slow_loop_model
+from hystbench.gap.jobs import BASE as BASE_FILE
 from hystbench.gap.jobs import DECISION, decide_in, show_in
 from hystbench.gap.run import close_gap
 from hystbench.gap.summary import (
@@ -19,6 +20,7 @@ from hystbench.gap.summary import (
     write_records,
     write_summary,
 )
+from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
 
@@ -51,6 +53,25 @@ def test_nothing_of_hold_out_records_is_read_to_decide(decided, tmp_path):
     close_gap(load_evidence(data), load_model(base), tmp_path, report=False)
     for file in ("gap.json", "model.yaml", "curves.json", "holdout/unseen.csv"):
         assert (out / file).read_bytes() == (tmp_path / file).read_bytes(), file
+
+
+def test_effects_left_out_and_put_in_are_those_of_one_run(decided, tmp_path):
+    _, data, base, _ = decided
+    asked = Vocabulary.of(["sensor-lag", "input-delay"], ["asymmetry"])
+    model = load_model(base)
+    decide_in(tmp_path / "jobs", load_evidence(data, "fit"), model, vocabulary=asked)
+    begun = load_model(tmp_path / "jobs" / BASE_FILE)
+    assert begun.name == "tiny-base with asymmetry"
+    show_in(tmp_path / "jobs", load_evidence(data), begun)
+    close_gap(
+        load_evidence(data), model, tmp_path / "one", report=False, vocabulary=asked
+    )
+    for file in ("gap.json", "model.yaml", "curves.json"):
+        made = [(tmp_path / way / file).read_bytes() for way in ("jobs", "one")]
+        assert made[0] == made[1], file
+    content = json.loads((tmp_path / "jobs" / "gap.json").read_text())
+    assert content["asked"]["without"] == ["sensor-lag", "input-delay"]
+    assert content["built_in"]["effects"][0]["name"] == "asymmetry"
 
 
 def test_showing_changes_nothing_that_was_decided(decided, tmp_path):

@@ -278,6 +278,22 @@ def curves():
             "chance": [0.5, 0.5],
             "share": 0.7,
         },
+        "levels": {
+            "modes": [
+                {
+                    "kind": "hardening",
+                    "input": [1.0, 2.0, 4.0],
+                    "frequency": [70.0, 71.0, 74.0],
+                    "frequency_error": [0.1, 0.1, 0.2],
+                    "width": [0.02, 0.03, 0.05],
+                    "width_error": [0.001, 0.002, 0.004],
+                    "damping": [0.02, 0.02, 0.02],
+                    "damping_error": [0.001, 0.002, 0.004],
+                    "gain": [3.0, 3.1, 2.9],
+                    "gain_error": [0.1, 0.2, 0.3],
+                }
+            ]
+        },
     }
 
 
@@ -567,13 +583,14 @@ DRAWN = (
     "over_plane",
     "loops",
     "coherence",
+    "levels",
     "distortion",
     "slow",
     "records",
 )
 
 
-@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate", *DRAWN[4:8]])
+@pytest.mark.parametrize("key", ["spectrum", "records", "over_rate", *DRAWN[4:9]])
 def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
     folder = write_folder(tmp_path, small(), with_tables=False)
     there = {"units": curves()["units"], key: curves()[key]}

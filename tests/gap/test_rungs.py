@@ -7,8 +7,8 @@ import pytest
 from hystbench.gap.finding import find
 from hystbench.gap.name import Named
 from hystbench.gap.rounds import Round
-from hystbench.gap.run import show
 from hystbench.gap.rungs import BASE, RETUNED, rungs
+from hystbench.gap.shown import show
 from hystbench.gap.state import Added, Free
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT

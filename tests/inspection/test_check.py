@@ -1,10 +1,13 @@
 """What is said of records whose faults are known."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from hystbench.dataset import load_dataset
-from hystbench.inspection import words
+from hystbench.inspection import screen
 from hystbench.inspection.check import check
 from hystbench.inspection.page import page
 from tests.inspection.made import COUNT, DT, loop, sine, write
@@ -184,12 +187,67 @@ def test_lags_are_mistaken_for_each_other(plain):
 
 
 def test_the_text_is_one_screen_and_the_page_says_the_same(plain):
-    lines = words.text(plain)
-    assert len(lines) < 50
-    assert lines[0].endswith("effects.")
+    lines = screen.lines(plain)
+    assert len(lines) <= 40
+    assert "effects." in " ".join(lines[:3])
     made = page(plain)
     for item in plain.effects:
         assert item.effect in made
         assert any(item.effect in line for line in lines)
     assert "period_samples: 200" in made
     assert 'src="http' not in made
+
+
+def many(names):
+    """Thirty records of which many are wrong in the same few ways."""
+    made, entries = {}, {}
+    for k, name in enumerate(names):
+        u = sine((4, 5, 8, 10, 20)[k % 5], 0.3 + 0.1 * (k % 7))
+        y = noisy(loop(u), k)
+        if k % 6 == 1:
+            y = np.minimum(y, 0.6 * y.max())
+        elif k % 6 == 2:
+            y[300:303] = np.nan
+            entries[name] = ", missing: interpolate"
+        elif k % 6 == 3:
+            u = np.minimum(u, 0.95 * u.max())
+        made[name] = (u, y)
+    held = dict.fromkeys(names[::7], "hold-out")
+    return made, held, entries
+
+
+@pytest.mark.parametrize("name", ["r{}", "a-record-with-quite-a-long-name-{}"])
+def test_thirty_records_are_one_screen_and_the_page_has_all(
+    plain, tmp_path, monkeypatch, name
+):
+    monkeypatch.chdir(tmp_path)
+    names = [name.format(k) for k in range(30)]
+    made, held, entries = many(names)
+    write(Path("d"), made, roles=held, entries=entries)
+    found = check(load_dataset("d/dataset.yaml"), effects=False)
+    found = replace(found, effects=plain.effects)
+    lines = screen.lines(found)
+    assert len(lines) <= 40
+    assert max(map(len, lines)) <= 100
+    said = " ".join(" ".join(lines).split())
+    assert "likewise" in said
+    for topic in ("not clipped", "missing and interpolated", "looks clipped"):
+        assert topic in said
+    everything = page(found)
+    for each in names:
+        assert f"{each}.csv" in everything or f">{each}<" in everything
+
+
+def test_a_lightly_clipped_input_is_a_note_unless_it_is_real(tmp_path):
+    made = records()
+    u, y = made["sine-5"]
+    made["sine-5"] = (np.minimum(u, 0.98 * u.max()), y)
+
+    def told(entries):
+        place = write(tmp_path, made, roles=HELD, entries=entries)
+        found = check(load_dataset(place), False)
+        return [x.text for x in of_kind(found, "note") if "looks clipped" in x.text]
+
+    (text,) = told({})
+    assert text.startswith("sine-5: current is exactly 0.588 A for ")
+    assert told({"sine-5": ", stands_still: [input]"}) == []

@@ -33,7 +33,7 @@ def small_config() -> dict:
     config["rdgpi"] |= {"fit_signals": ["sine-100hz"], "starts": 1}
     config["order_sweep"] |= {"signal": "sine-050hz", "orders": [1, 3]}
     config["pressure"] |= {"twins": []}
-    config["contest"] |= {"twins": []}
+    config["constants"] |= {"twins": []}
     return config
 
 

@@ -104,6 +104,38 @@ def test_the_next_experiment_is_written_within_the_limits_of_its_dataset(
     assert asked.returncode != 0
 
 
+def test_effects_that_a_dataset_leaves_out_and_puts_in_reach_its_search(
+    workflow, config
+):
+    write_tiny(workflow.folder / "tiny")
+    rig = {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
+    asked = {"without": ["sensor-lag", "input-delay"], "with": ["asymmetry"]}
+    config["gap"] |= {"datasets": [rig | asked]}
+    workflow.configure(config)
+    shown = workflow.snakemake(GAP, "--dry-run", "--printshellcmds")
+    assert shown.returncode == 0
+    told = " ".join((shown.stdout + shown.stderr).split())
+    assert "--without sensor-lag --without input-delay --with asymmetry" in told
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"without": ["fricton"]}, "no effect 'fricton'; did you mean 'friction'?"),
+        ({"with": ["creep"], "without": ["creep"]}, "'creep' in both"),
+    ],
+)
+def test_an_effect_that_is_none_is_one_line(workflow, config, asked, said):
+    write_tiny(workflow.folder / "tiny")
+    rig = {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
+    config["gap"] |= {"datasets": [rig | asked]}
+    workflow.configure(config)
+    refused = workflow.snakemake(GAP)
+    assert refused.returncode != 0
+    assert said in refused.stdout + refused.stderr
+    assert "Traceback" not in refused.stderr
+
+
 def test_limits_between_which_nothing_lies_are_one_line(workflow, config):
     config["gap"]["twin"] |= {"limits": {"low": 0.4, "high": 0.1}}
     workflow.configure(config)

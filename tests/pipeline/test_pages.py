@@ -28,7 +28,7 @@ def reproduced(tmp_path_factory) -> Workflow:
 
 
 def test_pages_hold_the_numbers_of_the_results(reproduced):
-    # Pages on `snakemake pressure` and the like name results that `all` does not make.
+    # Pages on `snakemake blind` and the like name results that `all` does not make.
     pages = [
         page
         for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

@@ -1,7 +1,7 @@
 # The jobs of the blind contest; its plan is in blind_plan.smk.
 rule blind_make:
     input:
-        code=code("hystbench.commands.blind_make"),
+        code=code("hystbench.commands.jobs.blind_make"),
         kernels=PLANT_KERNELS,
     output:
         blind_data(f"{BLIND}/data/{{set}}/{{chunk}}"),
@@ -16,7 +16,7 @@ rule blind_make:
     message:
         "blind: cases {wildcards.set} {wildcards.chunk}"
     shell:
-        "hystbench blind-make --settings {params.settings:q} --out {output:q} 2> {log:q}"
+        "hystbench job blind-make --settings {params.settings:q} --out {output:q} 2> {log:q}"
 
 
 rule blind_solve:
@@ -40,7 +40,7 @@ rule blind_solve:
     message:
         "blind: {wildcards.solver} on {wildcards.set} {wildcards.chunk}"
     shell:
-        "{params.begun:q} blind-solve {input.data:q} --settings {params.settings:q}"
+        "{params.begun:q} job blind-solve {input.data:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"
 
 
@@ -50,7 +50,7 @@ rule blind_judge:
             f"{BLIND}/answers/{wildcards.set}/{solver}/{wildcards.chunk}.json"
             for solver in blind_entrants(wildcards)
         ],
-        code=code("hystbench.commands.blind_judge"),
+        code=code("hystbench.commands.jobs.blind_judge"),
         kernels=PLANT_KERNELS,
     output:
         f"{BLIND}/judged/{{set}}/{{chunk}}.csv",
@@ -65,7 +65,7 @@ rule blind_judge:
     message:
         "blind: judging {wildcards.set} {wildcards.chunk}"
     shell:
-        "hystbench blind-judge {input.answers:q} --settings {params.settings:q}"
+        "hystbench job blind-judge {input.answers:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"
 
 
@@ -83,7 +83,7 @@ rule blind_summary:
             if CONTEST["transfer_scale"]
             else []
         ),
-        code=code("hystbench.commands.blind_summary"),
+        code=code("hystbench.commands.jobs.blind_summary"),
     output:
         summary=f"{BLIND}/summary.json",
         tables=[
@@ -121,7 +121,7 @@ rule blind_summary:
     message:
         "blind: the score"
     shell:
-        "hystbench blind-summary {input.judged:q} {params.transfer}"
+        "hystbench job blind-summary {input.judged:q} {params.transfer}"
         " --settings {params.settings:q} --out {params.folder:q} 2> {log:q}"
 
 
@@ -141,8 +141,8 @@ for NAME, TABLE in BLIND_FIGURES.items():
         input:
             table=f"{BLIND}/{TABLE}.csv",
             code=code(
-                "hystbench.commands.figure",
-                f"hystbench.figures.{NAME.replace('-', '_')}",
+                "hystbench.commands.jobs.figure",
+                module_of(NAME),
             ),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
@@ -155,7 +155,7 @@ for NAME, TABLE in BLIND_FIGURES.items():
         message:
             f"figure {NAME}"
         shell:
-            "hystbench figure {params.name:q} --table {input.table:q}"
+            "hystbench job figure {params.name:q} --table {input.table:q}"
             " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
 
 

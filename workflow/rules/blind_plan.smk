@@ -92,7 +92,7 @@ def blind_solver_minutes(wildcards):
 def blind_solver_code(wildcards):
     """Source of a solver of hystbench's own; of others only the command is known."""
     command = CONTEST["solvers"][wildcards.solver]["command"]
-    modules = ["hystbench.commands.blind_solve"]
+    modules = ["hystbench.commands.jobs.blind_solve"]
     if command[0] == "hystbench":
         called = f"hystbench.commands.{command[1].replace('-', '_')}"
         modules += [called] if called in GRAPH.modules else []

@@ -10,6 +10,7 @@ import grimp
 
 import hystbench
 from hystbench.errors import InputError
+from hystbench.figures import module_of
 from hystbench.settings import read_settings
 from hystbench.written import check_replaceable, claim_logs
 
@@ -81,7 +82,7 @@ def keep_out(key, files):
 if SETTINGS.dataset is None:
     keep_out("twin: model", [SETTINGS.model_file])
     keep_out("pressure: twins", SETTINGS.twin_files)
-    keep_out("contest: twins", SETTINGS.contest_files)
+    keep_out("constants: twins", SETTINGS.constants_files)
 else:
     keep_out("source", [SETTINGS.dataset.path, *SETTINGS.dataset.record_files.values()])
 
@@ -114,7 +115,7 @@ TWIN = SETTINGS.dataset is None
 
 
 def code(*modules):
-    """Files of modules and of all that they import, the compiled kernels included.
+    """Files of modules and of all that they import, with tables, words and kernels.
 
     As inputs of a rule they make an edited module rerun what depends on it.
     """
@@ -128,6 +129,10 @@ def code(*modules):
     for name in sorted(names):
         path = PACKAGE.joinpath(*name.split(".")[1:])
         files.append(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
+    if "hystbench.compare.claims" in names:
+        files.extend(sorted(PACKAGE.glob("compare/claims/*.yaml")))
+    if "hystbench.compare.verdict" in names:
+        files.extend(sorted(PACKAGE.glob("compare/*.j2")))
     if "hystbench.kernels" in names:
         files.extend(KERNELS)
     return [str(file) for file in files]
@@ -162,18 +167,6 @@ def identified(wildcards):
     if wildcards.filter == "gpo" and SETTINGS.envelopes == "identified":
         return rules.identify.output
     return []
-
-
-def structures_tried(wildcards):
-    """Results of the structures that the settings ask for."""
-    # Imported only where they are asked for: it takes a quarter of a second.
-    from hystbench.calibration.structures import asked_structures
-
-    try:
-        asked = asked_structures(SETTINGS.structures)
-    except InputError as error:
-        refuse(f"{PLACE}: structures: tried: {error}")
-    return [f"{RESULTS}/structures/{each.name}.json" for each in asked]
 
 
 def figure(name, suffix):

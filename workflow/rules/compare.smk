@@ -16,7 +16,7 @@ if TWIN:
             twin_errors=rules.twins.output.errors,
             twin_claims=rules.twins.output.claims,
             published=PUBLISHED,
-            code=code("hystbench.commands.compare"),
+            code=code("hystbench.commands.jobs.compare"),
         output:
             cells=report(
                 f"{COMPARE}/cells.csv",
@@ -65,7 +65,7 @@ if TWIN:
         message:
             "tables, claims and audit"
         shell:
-            "hystbench compare {params.runs} {params.records}"
+            "hystbench job compare {params.runs} {params.records}"
             " --order-sweep {input.order_sweep:q} --identified {input.identified:q}"
             " --order-sweep-other {input.order_sweep_other:q} --draws {input.draws:q}"
             " --edges {input.edges:q} --constants {input.constants:q}"
@@ -80,7 +80,7 @@ else:
             runs=runs(),
             envelopes=rules.envelopes.output,
             order_sweep=rules.order_sweep.output.configured,
-            code=code("hystbench.commands.compare_measured"),
+            code=code("hystbench.commands.jobs.compare_measured"),
         output:
             errors=report(
                 f"{COMPARE}/errors.csv",
@@ -103,7 +103,7 @@ else:
         message:
             "tables, claims and audit"
         shell:
-            "hystbench compare-measured {params.dataset:q} {params.runs}"
+            "hystbench job compare-measured {params.dataset:q} {params.runs}"
             " --out {params.folder:q} 2> {log:q}"
 
 
@@ -116,4 +116,4 @@ rule compare:
     message:
         "ours beside theirs"
     shell:
-        "hystbench show {input:q} 2> {log:q}"
+        "cat {input:q} 2> {log:q}"

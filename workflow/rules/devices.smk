@@ -15,7 +15,7 @@ if DEVICE_CASES:
             gaps=rules.gap_summary.output.summary,
             published=PACKAGE / "published/baselines.csv",
             code=code(
-                "hystbench.commands.devices",
+                "hystbench.commands.jobs.devices",
                 *[f"hystbench.filters.{name}" for name in SETTINGS.filters],
             ),
         output:
@@ -39,7 +39,7 @@ if DEVICE_CASES:
         message:
             "the paper's models on measured devices"
         shell:
-            "hystbench devices {input.datasets:q} --gaps {input.gaps:q}"
+            "hystbench job devices {input.datasets:q} --gaps {input.gaps:q}"
             " --settings {params.settings:q} --out {params.folder:q} 2> {log:q}"
 
 

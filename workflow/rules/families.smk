@@ -14,7 +14,7 @@ rule family_twins:
         loop=f"{RESULTS}/signals/{config['identification']['signal']}.npz",
         model=PACKAGE / "plants/gma.yaml",
         published=PUBLISHED,
-        code=code("hystbench.commands.families"),
+        code=code("hystbench.commands.jobs.families"),
     output:
         twins=FAMILY_TWINS,
         report=f"{RESULTS}/families/families.json",
@@ -28,7 +28,7 @@ rule family_twins:
     message:
         "twins with Preisach and Jiles-Atherton hysteresis"
     shell:
-        "hystbench families {input.signals:q} --model {input.model:q} --loop {input.loop:q}"
+        "hystbench job families {input.signals:q} --model {input.model:q} --loop {input.loop:q}"
         " --settings {params.settings:q} --out {params.folder:q} 2> {log:q}"
 
 

@@ -79,8 +79,8 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
             **GIVEN,
             published=PUBLISHED,
             code=code(
-                "hystbench.commands.figure",
-                f"hystbench.figures.{NAME.replace('-', '_')}",
+                "hystbench.commands.jobs.figure",
+                module_of(NAME),
             ),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
@@ -102,7 +102,7 @@ for NAME, GIVEN in FIGURE_INPUTS.items():
         message:
             f"figure {NAME}"
         shell:
-            "hystbench figure {params.name:q} {params.given}"
+            "hystbench job figure {params.name:q} {params.given}"
             " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
 
 

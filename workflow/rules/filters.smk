@@ -4,7 +4,7 @@ rule filter:
         record=record("{signal}"),
         identified=identified,
         code=lambda wildcards: code(
-            "hystbench.commands.filter", f"hystbench.filters.{wildcards.filter}"
+            "hystbench.commands.jobs.filter", f"hystbench.filters.{wildcards.filter}"
         ),
     output:
         run=run("{signal}", "{filter}"),
@@ -21,7 +21,7 @@ rule filter:
     message:
         "{wildcards.filter} on {wildcards.signal}"
     shell:
-        "hystbench filter {input.record:q} --model {wildcards.filter:q}"
+        "hystbench job filter {input.record:q} --model {wildcards.filter:q}"
         " {params.identified} --settings {params.settings:q}"
         " --out {output.run:q} --arrays {output.arrays:q} 2> {log:q}"
 
@@ -32,7 +32,7 @@ rule order_sweep:
         record=record(SETTINGS.order_sweep_signal),
         identified=rules.identify.output,
         code=code(
-            "hystbench.commands.order_sweep",
+            "hystbench.commands.jobs.order_sweep",
             *[f"hystbench.filters.{name}" for name in SETTINGS.filters],
         ),
     output:
@@ -47,6 +47,6 @@ rule order_sweep:
     message:
         "error against order"
     shell:
-        "hystbench order-sweep {input.record:q} --identified {input.identified:q}"
+        "hystbench job order-sweep {input.record:q} --identified {input.identified:q}"
         " --settings {params.settings:q} --threads {threads}"
         " --out {output.configured:q} --other {output.other:q} 2> {log:q}"

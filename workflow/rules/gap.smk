@@ -3,6 +3,7 @@
 # there; `all` leaves it out for its time.
 from hystbench.dataset import load_dataset
 from hystbench.gap.asked import check_base
+from hystbench.gap.vocabulary import Vocabulary
 
 GAP = f"{RESULTS}/gap"
 GAP_CASE = f"{GAP}/{{case}}"
@@ -34,7 +35,7 @@ if TWIN:
             fit=[record(signal) for signal in config["gap"]["twin"]["fit"]],
             hold_out=[record(signal) for signal in config["gap"]["twin"]["hold_out"]],
             identified=rules.identify.output,
-            code=code("hystbench.commands.gap_twin"),
+            code=code("hystbench.commands.jobs.gap_twin"),
         output:
             dataset=GAP_CASES["twin"]["dataset"],
             records=[*GAP_CASES["twin"]["fit"], *GAP_CASES["twin"]["hold_out"]],
@@ -52,7 +53,7 @@ if TWIN:
         message:
             "the twin's records and the model of its slow loop"
         shell:
-            "hystbench gap-twin {params.fit} {params.hold_out}"
+            "hystbench job gap-twin {params.fit} {params.hold_out}"
             " --identified {input.identified:q} --out {params.folder:q} 2> {log:q}"
 
 
@@ -62,6 +63,7 @@ for GIVEN in config["gap"]["datasets"]:
         if GAP_DATASET.name in GAP_CASES:
             raise InputError(f"a second dataset {GAP_DATASET.name!r}; expected one")
         check_base(GIVEN["model"])
+        Vocabulary.of(GIVEN.get("without", ()), GIVEN.get("with", ()))
     except InputError as error:
         refuse(f"{PLACE}: gap: datasets: {error}")
     GAP_CASES[GAP_DATASET.name] = {
@@ -78,6 +80,8 @@ for GIVEN in config["gap"]["datasets"]:
         ],
         "model": GIVEN["model"],
         "limits": GIVEN.get("limits", {}),
+        "without": GIVEN.get("without", []),
+        "with": GIVEN.get("with", []),
     }
     keep_out("gap: datasets", [GAP_DATASET.path, *GAP_DATASET.record_files.values()])
     keep_out("gap: datasets: model", model_files(GIVEN["model"]))
@@ -96,7 +100,7 @@ rule gap_check:
         fit=of_case("fit"),
         hold_out=of_case("hold_out"),
         model=model_of_case,
-        code=code("hystbench.commands.gap_check"),
+        code=code("hystbench.commands.jobs.gap_check"),
     output:
         f"{STAGES}/checked",
     log:
@@ -109,7 +113,7 @@ rule gap_check:
     message:
         "files of {wildcards.case}"
     shell:
-        "hystbench gap-check {input.dataset:q} --model {params.model:q} --out {output:q}"
+        "hystbench job gap-check {input.dataset:q} --model {params.model:q} --out {output:q}"
         " 2> {log:q}"
 
 
@@ -119,7 +123,7 @@ rule gap_decide:
         dataset=of_case("dataset"),
         fit=of_case("fit"),
         model=model_of_case,
-        code=code("hystbench.commands.gap_decide", *EFFECTS),
+        code=code("hystbench.commands.jobs.gap_decide", *EFFECTS),
     output:
         base=f"{STAGES}/base.yaml",
         curves=f"{GAP_CASE}/curves.json",
@@ -133,6 +137,7 @@ rule gap_decide:
     params:
         model=of_case("model"),
         limits=limits_of_case,
+        effects=effects_of_case,
         unnamed_share=config["gap"]["unnamed_share"],
         experiment=lambda wildcards, output: (
             options("--write-experiment", [Path(output.experiment[0], "signal.csv")])
@@ -143,8 +148,9 @@ rule gap_decide:
     message:
         "verdict on {wildcards.case}"
     shell:
-        "hystbench gap-decide {input.dataset:q} --model {params.model:q}"
-        " {params.limits} --unnamed-share {params.unnamed_share} {params.experiment}"
+        "hystbench job gap-decide {input.dataset:q} --model {params.model:q}"
+        " {params.limits} {params.effects} --unnamed-share {params.unnamed_share}"
+        " {params.experiment}"
         " --out {params.folder:q} 2> {log:q}"
 
 
@@ -159,7 +165,7 @@ rule gap_show:
         base=rules.gap_decide.output.base,
         named=rules.gap_decide.output.named,
         decision=rules.gap_decide.output.decision,
-        code=code("hystbench.commands.gap_show", *EFFECTS),
+        code=code("hystbench.commands.jobs.gap_show", *EFFECTS),
     output:
         gap=f"{GAP_CASE}/gap.json",
         model=f"{GAP_CASE}/model.yaml",
@@ -173,7 +179,7 @@ rule gap_show:
     message:
         "hold-out records of {wildcards.case}"
     shell:
-        "hystbench gap-show {input.dataset:q} --base {input.base:q}"
+        "hystbench job gap-show {input.dataset:q} --base {input.base:q}"
         " --out {params.folder:q} 2> {log:q}"
 
 
@@ -182,7 +188,7 @@ rule gap_report:
         gap=rules.gap_show.output.gap,
         hold_out=rules.gap_show.output.hold_out,
         curves=rules.gap_decide.output.curves,
-        code=code("hystbench.commands.gap_report"),
+        code=code("hystbench.commands.jobs.gap_report"),
         page=PACKAGE / "gap/report/report.html.j2",
     output:
         f"{GAP_CASE}/report.html",
@@ -195,7 +201,7 @@ rule gap_report:
     message:
         "page of {wildcards.case}"
     shell:
-        "hystbench gap-report {params.folder:q} 2> {log:q}"
+        "hystbench job gap-report {params.folder:q} 2> {log:q}"
 
 
 if TWIN:
@@ -210,7 +216,7 @@ if TWIN:
             record=record(SHOWN),
             gap=f"{GAP}/twin/gap.json",
             hold_out=f"{GAP}/twin/holdout",
-            code=code("hystbench.commands.figure", "hystbench.figures.gap_loop"),
+            code=code("hystbench.commands.jobs.figure", module_of("gap-loop")),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
             png=f"{GAP}/gap-loop.png",
@@ -222,7 +228,7 @@ if TWIN:
         message:
             f"{SHOWN} before and after"
         shell:
-            "hystbench figure gap-loop --record {input.record:q}"
+            "hystbench job figure gap-loop --record {input.record:q}"
             " --table {params.table:q} --out {output.png:q} --out {output.svg:q}"
             " 2> {log:q}"
 
@@ -233,7 +239,7 @@ rule gap_summary:
     input:
         gaps=expand(rules.gap_show.output.gap, case=GAP_CASES),
         twin=SETTINGS.model_file if TWIN else [],
-        code=code("hystbench.commands.gap_summary"),
+        code=code("hystbench.commands.jobs.gap_summary"),
     output:
         summary=f"{GAP}/summary.csv",
         effects=f"{GAP}/effects.csv",
@@ -252,7 +258,7 @@ rule gap_summary:
     message:
         "verdicts side by side"
     shell:
-        "hystbench gap-summary {input.gaps:q} {params.twin}"
+        "hystbench job gap-summary {input.gaps:q} {params.twin}"
         " --effects {output.effects:q} --records {output.records:q}"
         " --out {output.summary:q} 2> {log:q}"
 

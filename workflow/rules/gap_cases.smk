@@ -27,6 +27,14 @@ def model_files(model):
     return [str(path) for path in sources if function and path.is_file()]
 
 
+def effects_of_case(wildcards):
+    """Effects that the search of a case leaves out and puts in, as options."""
+    case = GAP_CASES[wildcards.case]
+    return " ".join(
+        options(f"--{key}", case.get(key, [])) for key in ("without", "with")
+    ).strip()
+
+
 def limits_of_case(wildcards):
     """What the next experiment of a case may ask of the actuator, as options."""
     limits = GAP_CASES[wildcards.case]["limits"]

@@ -1,7 +1,7 @@
 rule identify:
     input:
         record=record(SETTINGS.identification_signal),
-        code=code("hystbench.commands.identify"),
+        code=code("hystbench.commands.jobs.identify"),
     output:
         f"{RESULTS}/identify/identified.json",
     log:
@@ -13,7 +13,7 @@ rule identify:
     message:
         "identification by Algorithm 1"
     shell:
-        "hystbench identify {input.record:q} --settings {params.settings:q}"
+        "hystbench job identify {input.record:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"
 
 
@@ -22,7 +22,7 @@ rule envelopes:
     input:
         records=[record(signal) for signal in SETTINGS.signals],
         identified=rules.identify.output,
-        code=code("hystbench.commands.envelopes", "hystbench.filters.gpo"),
+        code=code("hystbench.commands.jobs.envelopes", "hystbench.filters.gpo"),
     output:
         report(
             f"{RESULTS}/identify/envelopes.csv",
@@ -38,5 +38,5 @@ rule envelopes:
     message:
         "GPO filter with identified and published envelopes"
     shell:
-        "hystbench envelopes {input.records:q} --identified {input.identified:q}"
+        "hystbench job envelopes {input.records:q} --identified {input.identified:q}"
         " --settings {params.settings:q} --out {output:q} 2> {log:q}"

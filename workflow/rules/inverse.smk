@@ -12,7 +12,7 @@ if TWIN:
             plant=SETTINGS.model_file,
             base=rules.gap_twin.output.base,
             augmented=f"{GAP}/twin/model.yaml",
-            code=code("hystbench.commands.tracking"),
+            code=code("hystbench.commands.jobs.tracking"),
         output:
             table=f"{INVERSE}/tracking.csv",
             raster=f"{INVERSE}/raster.csv",
@@ -28,7 +28,7 @@ if TWIN:
         message:
             "open-loop tracking with and without the inverse"
         shell:
-            "hystbench tracking {input.signals:q} --slow {input.slow:q}"
+            "hystbench job tracking {input.signals:q} --slow {input.slow:q}"
             " --plant {input.plant:q} --base {input.base:q}"
             " --augmented {input.augmented:q} --settings {params.settings:q}"
             " --out {params.folder:q} 2> {log:q}"
@@ -37,7 +37,7 @@ if TWIN:
         input:
             table=rules.tracking.output.table,
             raster=rules.tracking.output.raster,
-            code=code("hystbench.commands.figure", "hystbench.figures.tracking_errors"),
+            code=code("hystbench.commands.jobs.figure", module_of("tracking-errors")),
             style=PACKAGE / "figures" / "hystbench.mplstyle",
         output:
             png=f"{INVERSE}/tracking-errors.png",
@@ -47,7 +47,7 @@ if TWIN:
         message:
             "figure tracking-errors"
         shell:
-            "hystbench figure tracking-errors --table {input.table:q}"
+            "hystbench job figure tracking-errors --table {input.table:q}"
             " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
 
 

@@ -5,7 +5,7 @@ if TWIN:
         input:
             signal=rules.signal.output,
             model=SETTINGS.model_file,
-            code=code("hystbench.commands.measure"),
+            code=code("hystbench.commands.jobs.measure"),
         output:
             f"{RESULTS}/records/{{signal}}.npz",
         log:
@@ -17,7 +17,7 @@ if TWIN:
         message:
             "record {wildcards.signal}"
         shell:
-            "hystbench measure {input.signal:q} --model {input.model:q}"
+            "hystbench job measure {input.signal:q} --model {input.model:q}"
             " --settings {params.settings:q} --out {output:q} 2> {log:q}"
 
 else:

@@ -1,4 +1,4 @@
-# The claims on other twins, with other step sizes and seeds, and the fair contest.
+# The claims on other twins and in other experiments, and what else could be otherwise.
 # One job runs all models on all twins in memory: a file for each run would cost more
 # than the runs.
 PRESSURE = f"{RESULTS}/pressure"
@@ -14,7 +14,7 @@ if TWIN:
             identified=rules.identify.output,
             rdgpi=rules.rdgpi_identify.output if "rdgpi" in SETTINGS.models else [],
             published=PUBLISHED,
-            code=code("hystbench.commands.random_sum", *FILTER_MODULES),
+            code=code("hystbench.commands.jobs.random_sum", *FILTER_MODULES),
         output:
             draws=f"{RESULTS}/random-sum/draws.csv",
             readings=f"{RESULTS}/random-sum/readings.csv",
@@ -28,7 +28,7 @@ if TWIN:
         message:
             "draws of the random sum"
         shell:
-            "hystbench random-sum {input.twin:q} --identified {input.identified:q}"
+            "hystbench job random-sum {input.twin:q} --identified {input.identified:q}"
             " {params.rdgpi} --settings {params.settings:q}"
             " --draws {output.draws:q} --readings {output.readings:q} 2> {log:q}"
 
@@ -37,7 +37,7 @@ if TWIN:
         input:
             records=[record(signal) for signal in SETTINGS.signals],
             identified=rules.identify.output,
-            code=code("hystbench.commands.step_sweep", *FILTER_MODULES),
+            code=code("hystbench.commands.jobs.step_sweep", *FILTER_MODULES),
         output:
             edges=f"{RESULTS}/step-sweep/edges.csv",
             points=f"{RESULTS}/step-sweep/points.csv",
@@ -50,17 +50,17 @@ if TWIN:
         message:
             "how far each step size can go"
         shell:
-            "hystbench step-sweep {input.records:q} --identified {input.identified:q}"
+            "hystbench job step-sweep {input.records:q} --identified {input.identified:q}"
             " --settings {params.settings:q}"
             " --edges {output.edges:q} --points {output.points:q} 2> {log:q}"
 
     # The ranking with other zero errors, and with a constant tap.
     rule constants:
         input:
-            twins=SETTINGS.contest_files,
+            twins=SETTINGS.constants_files,
             identified=rules.identify.output,
             published=PUBLISHED,
-            code=code("hystbench.commands.constants", *FILTER_MODULES),
+            code=code("hystbench.commands.jobs.constants", *FILTER_MODULES),
         output:
             f"{PRESSURE}/constants.csv",
         log:
@@ -72,7 +72,7 @@ if TWIN:
         message:
             "the ranking with other constants"
         shell:
-            "hystbench constants {input.twins:q} --identified {input.identified:q}"
+            "hystbench job constants {input.twins:q} --identified {input.identified:q}"
             " --settings {params.settings:q} --out {output:q} 2> {log:q}"
 
     # As configured, for the spread of each cell and for where each claim holds. A
@@ -81,7 +81,7 @@ if TWIN:
     rule twin_fits:
         input:
             twins=SETTINGS.twin_files,
-            code=code("hystbench.commands.twin_fits"),
+            code=code("hystbench.commands.jobs.twin_fits"),
         output:
             f"{RESULTS}/twins/fits.json",
         log:
@@ -94,7 +94,7 @@ if TWIN:
         message:
             "identification and RDGPI model on each twin"
         shell:
-            "hystbench twin-fits {input.twins:q} --settings {params.settings:q}"
+            "hystbench job twin-fits {input.twins:q} --settings {params.settings:q}"
             " --out {output:q} 2> {log:q}"
 
     rule twin_runs:
@@ -102,7 +102,8 @@ if TWIN:
             twins=SETTINGS.twin_files,
             fits=rules.twin_fits.output,
             code=lambda wildcards: code(
-                "hystbench.commands.twin_runs", f"hystbench.filters.{wildcards.filter}"
+                "hystbench.commands.jobs.twin_runs",
+                f"hystbench.filters.{wildcards.filter}",
             ),
         output:
             f"{RESULTS}/twins/{{filter}}.json",
@@ -118,7 +119,7 @@ if TWIN:
         message:
             "{wildcards.filter} on each twin"
         shell:
-            "hystbench twin-runs {input.twins:q} --fits {input.fits:q}"
+            "hystbench job twin-runs {input.twins:q} --fits {input.fits:q}"
             " --settings {params.settings:q} --out {output:q} 2> {log:q}"
 
     rule twins:
@@ -126,7 +127,7 @@ if TWIN:
             twins=SETTINGS.twin_files,
             fits=rules.twin_fits.output,
             runs=[f"{RESULTS}/twins/{name}.json" for name in SETTINGS.filters],
-            code=code("hystbench.commands.twins"),
+            code=code("hystbench.commands.jobs.twins"),
         output:
             errors=f"{RESULTS}/twins/errors.csv",
             claims=f"{RESULTS}/twins/claims.csv",
@@ -141,75 +142,9 @@ if TWIN:
         message:
             "all models on each twin"
         shell:
-            "hystbench twins {input.twins:q} --fits {input.fits:q} {params.runs}"
+            "hystbench job twins {input.twins:q} --fits {input.fits:q} {params.runs}"
             " --settings {params.settings:q}"
             " --errors {output.errors:q} --claims {output.claims:q} 2> {log:q}"
-
-    rule press:
-        input:
-            twins=SETTINGS.twin_files,
-            code=code("hystbench.commands.pressure", *FILTER_MODULES),
-        output:
-            claims=f"{PRESSURE}/claims.csv",
-            by_twin=f"{PRESSURE}/by-twin.csv",
-            summary=f"{PRESSURE}/summary.json",
-            markdown=f"{PRESSURE}/claims.md",
-        log:
-            f"{RESULTS}/logs/pressure/claims.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/press.tsv"
-        params:
-            settings=settings_text(SETTINGS.pressure_job),
-            folder=lambda wildcards, output: Path(output.claims).parent,
-        message:
-            "claims on many twins, step sizes and seeds"
-        shell:
-            "hystbench pressure {input.twins:q} --settings {params.settings:q}"
-            " --out {params.folder:q} 2> {log:q}"
-
-    rule contest:
-        input:
-            twins=SETTINGS.contest_files,
-            published=PUBLISHED,
-            code=code("hystbench.commands.contest", *FILTER_MODULES),
-        output:
-            table=f"{PRESSURE}/contest.csv",
-            ranking=f"{PRESSURE}/ranking.csv",
-            markdown=f"{PRESSURE}/contest.md",
-        log:
-            f"{RESULTS}/logs/pressure/contest.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/contest.tsv"
-        params:
-            settings=settings_text(SETTINGS.contest_job),
-            folder=lambda wildcards, output: Path(output.table).parent,
-        message:
-            "each filter with its best step size"
-        shell:
-            "hystbench contest {input.twins:q} --settings {params.settings:q}"
-            " --out {params.folder:q} 2> {log:q}"
-
-    rule draw_contest:
-        input:
-            table=rules.contest.output.table,
-            code=code("hystbench.commands.figure", "hystbench.figures.contest"),
-            style=PACKAGE / "figures" / "hystbench.mplstyle",
-        output:
-            png=report(
-                figure("contest", "png"),
-                caption="../report/contest.rst",
-                category="Figures",
-            ),
-            svg=figure("contest", "svg"),
-        log:
-            f"{RESULTS}/logs/figures/contest.log",
-        benchmark:
-            f"{RESULTS}/logs/benchmarks/draw_contest.tsv"
-        message:
-            "figure contest"
-        shell:
-            "hystbench figure contest --table {input.table:q}"
-            " --out {output.png:q} --out {output.svg:q} 2> {log:q}"
 
     # What could explain the errors that stay far off; for docs/.
     HYPOTHESES = []
@@ -221,7 +156,7 @@ if TWIN:
             input:
                 twin=SETTINGS.model_file,
                 published=PUBLISHED,
-                code=code("hystbench.commands.hypotheses", *FILTER_MODULES),
+                code=code("hystbench.commands.jobs.hypotheses", *FILTER_MODULES),
             output:
                 chirp=f"{RESULTS}/hypotheses/chirp.csv",
                 volterra=f"{RESULTS}/hypotheses/volterra.csv",
@@ -234,16 +169,7 @@ if TWIN:
             message:
                 "what could explain the errors that stay far off"
             shell:
-                "hystbench hypotheses {input.twin:q} --settings {params.settings:q}"
+                "hystbench job hypotheses {input.twin:q} --settings {params.settings:q}"
                 " --chirp {output.chirp:q} --volterra {output.volterra:q} 2> {log:q}"
 
         HYPOTHESES = rules.hypotheses.output
-
-        # `snakemake pressure`; `all` leaves it out for its time.
-    rule pressure:
-        input:
-            rules.press.output,
-            rules.contest.output,
-            rules.draw_contest.output,
-        message:
-            f"{PRESSURE} is up to date"

@@ -1,7 +1,7 @@
 rule rdgpi_identify:
     input:
         records=[record(signal) for signal in SETTINGS.rdgpi_fit_signals],
-        code=code("hystbench.commands.rdgpi_identify"),
+        code=code("hystbench.commands.jobs.rdgpi_identify"),
     output:
         f"{RESULTS}/rdgpi/identified.json",
     log:
@@ -13,7 +13,7 @@ rule rdgpi_identify:
     message:
         "identification of the RDGPI model"
     shell:
-        "hystbench rdgpi-identify {input.records:q} --settings {params.settings:q}"
+        "hystbench job rdgpi-identify {input.records:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"
 
 
@@ -21,7 +21,7 @@ rule rdgpi:
     input:
         record=record("{signal}"),
         identified=rules.rdgpi_identify.output,
-        code=code("hystbench.commands.rdgpi"),
+        code=code("hystbench.commands.jobs.rdgpi"),
     output:
         run=run("{signal}", "rdgpi"),
         arrays=run("{signal}", "rdgpi", "npz"),
@@ -34,7 +34,7 @@ rule rdgpi:
     message:
         "rdgpi on {wildcards.signal}"
     shell:
-        "hystbench rdgpi {input.record:q} --identified {input.identified:q}"
+        "hystbench job rdgpi {input.record:q} --identified {input.identified:q}"
         " --settings {params.settings:q}"
         " --out {output.run:q} --arrays {output.arrays:q} 2> {log:q}"
 
@@ -43,7 +43,7 @@ rule rdgpi:
 rule rdgpi_published:
     input:
         records=[record(signal) for signal in SETTINGS.signals],
-        code=code("hystbench.commands.rdgpi_published"),
+        code=code("hystbench.commands.jobs.rdgpi_published"),
     output:
         report(
             f"{RESULTS}/rdgpi/published-parameters.csv",
@@ -57,4 +57,4 @@ rule rdgpi_published:
     message:
         "RDGPI model with the published parameters"
     shell:
-        "hystbench rdgpi-published {input.records:q} --out {output:q} 2> {log:q}"
+        "hystbench job rdgpi-published {input.records:q} --out {output:q} 2> {log:q}"

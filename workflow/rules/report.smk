@@ -15,7 +15,7 @@ rule page:
         pictures=[figure(name, "png") for name in FIGURE_INPUTS],
         tables=PAGE_TABLES,
         captions=sorted(str(file) for file in CAPTIONS.glob("*.rst")),
-        code=code("hystbench.commands.report"),
+        code=code("hystbench.commands.jobs.report"),
         look=sorted(
             str(file)
             for suffix in ("j2", "css", "js")
@@ -36,6 +36,6 @@ rule page:
     message:
         "front page"
     shell:
-        "hystbench report {params.compare:q} {params.figures} {params.tables}"
+        "hystbench job report {params.compare:q} {params.figures} {params.tables}"
         " --captions {params.captions:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"

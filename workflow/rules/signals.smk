@@ -1,6 +1,6 @@
 rule signal:
     input:
-        code=code("hystbench.commands.signal"),
+        code=code("hystbench.commands.jobs.signal"),
     output:
         f"{RESULTS}/signals/{{signal}}.npz",
     log:
@@ -12,5 +12,5 @@ rule signal:
     message:
         "signal {wildcards.signal}"
     shell:
-        "hystbench signal {wildcards.signal:q} --settings {params.settings:q}"
+        "hystbench job signal {wildcards.signal:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"

@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step, central_difference, foretold
+from hystbench.blocks.step import Sampling, Step, foretold, sample_rate
 from hystbench.record import FloatArray
 
 
@@ -49,8 +49,14 @@ class Friction(Block):
             "coulomb": self.coulomb,
             "velocity_scale": self.velocity_scale,
             "points": sampling.points,
-            "rate": central_difference(sampling.points, 0.0, 1.0) / sampling.dt,
+            "rate": sample_rate(sampling, sampling.late),
         }
         history = {"history": 1 + sampling.points}
-        differs = foretold(sampling.points)
-        return Step("friction", constants, history, takes_input=True, differs=differs)
+        return Step(
+            "friction",
+            constants,
+            history,
+            watches=True,
+            forward=True,
+            differs=foretold(sampling.points, sampling.late),
+        )

@@ -172,7 +172,9 @@ def linear_step(
     settled : bool
         Whether the first value is to have stood there for ever before.
     """
-    points = sampling.points if hold == "band-limited" else 2
+    smooth = hold == "band-limited"
+    points = sampling.points if smooth else 2
+    ahead = sampling.ahead if smooth else 0
     diagonal = system.is_diagonal
     if diagonal:
         phi, moments = moments_of_modes(system, sampling.dt, points)
@@ -181,18 +183,20 @@ def linear_step(
     if hold == "zero-order":
         drive = np.array([np.zeros(len(system.b)), moments[0]])
     else:
-        # The moments count from the start of the interval, one before the newest.
-        ahead = [
-            sum(comb(m, j) * (-1.0) ** (m - j) * moments[j] for j in range(m + 1))
+        # The moments count from the start of the interval, one before its end.
+        start = -1.0 - ahead
+        moved = [
+            sum(comb(m, j) * start ** (m - j) * moments[j] for j in range(m + 1))
             for m in range(points)
         ]
-        drive = through_samples(points, lambda m: ahead[m])
+        drive = through_samples(points, lambda m: moved[m])
     static = 0.0
     if settled:
         static = float(system.d - system.c @ np.linalg.solve(system.a, system.b))
     constants = {
         "size": len(system.b),
         "points": points,
+        "ahead": ahead,
         "phi": phi.ravel(),
         "drive": drive.ravel(),
         "output": system.c,
@@ -202,9 +206,9 @@ def linear_step(
     }
     own = ("x",) if diagonal else ("x", "next")
     states = {**dict.fromkeys(own, len(system.b)), "history": 1 + points, "offset": 1}
-    differs = smooth_curve(points) if hold == "band-limited" else ""
+    differs = smooth_curve(points, ahead) if smooth else ""
     function = "modes" if diagonal else "linear"
-    return Step(function, constants, states, differs=differs)
+    return Step(function, constants, states, forward=smooth, differs=differs)
 
 
 def moments_of(

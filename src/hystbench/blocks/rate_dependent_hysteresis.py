@@ -117,7 +117,8 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         """
         points = sampling.points
         fine = OVERSAMPLING if self.holding == "band-limited" else 1
-        places = np.arange(1 - fine, 1) / fine
+        ahead = sampling.ahead
+        places = np.arange(1 - fine, 1) / fine - ahead
         rates = [central_difference(points, place, 1 / fine) for place in places]
         constants = {
             "form": FORMS.index(self.form),
@@ -126,14 +127,21 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
             "dt": sampling.dt / fine,
             "fine": fine,
             "points": points,
+            "ahead": ahead,
             "values": np.array([value_at(points, place) for place in places]).ravel(),
             "rates": np.array(rates).ravel() / sampling.dt,
         }
         states = {"history": 1 + points, "growth_before": 1, "field": 2}
         function = "rate_dependent_hysteresis"
-        differs = smooth_curve(points) if fine > 1 else ""
+        told = [smooth_curve(points, ahead)] if fine > 1 else []
         if self.form != "acting-field":
-            differs += f"{'; ' if differs else ''}{foretold(points)}"
+            told.append(foretold(points, ahead))
         return Step(
-            function, constants, states, grows=True, drives=fine, differs=differs
+            function,
+            constants,
+            states,
+            grows=True,
+            drives=fine,
+            forward=bool(told),
+            differs="; ".join(filter(None, told)),
         )

@@ -12,8 +12,8 @@ from hystbench.blocks.step import (
     PASSED_ONCE,
     Sampling,
     Step,
-    central_difference,
     foretold,
+    sample_rate,
 )
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
@@ -78,11 +78,13 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
             "envelope_gain": self.envelope_gain,
             "envelope_offset": self.envelope_offset,
             "points": sampling.points,
-            "rate": central_difference(sampling.points, 0.0, 1.0) / sampling.dt,
+            "ahead": sampling.ahead,
+            "rate": sample_rate(sampling, sampling.ahead),
             "count": count,
         }
         states = {"history": 1 + sampling.points, "w": count}
-        differs = foretold(sampling.points)
+        told = [foretold(sampling.points, sampling.ahead)]
         if self.start == "settled":
-            differs += f"; {PASSED_ONCE}"
-        return Step("rdgpi", constants, states, differs=differs)
+            told.append(PASSED_ONCE)
+        differs = "; ".join(filter(None, told))
+        return Step("rdgpi", constants, states, forward=True, differs=differs)

@@ -32,11 +32,20 @@ class Sampling:
         the newest so many: code that runs sample by sample knows none to come.
     duration_s : float, optional
         Length of the record to which a path of drift belongs.
+    delay : int
+        Samples by which the output may be late: so many to come are then known.
+    ahead : int
+        Of a block: samples that are known beyond the one that it is asked for.
+    late : int
+        Of a block: samples by which what it is asked for is behind the model's input.
     """
 
     dt: float
     points: int = 6
     duration_s: float | None = None
+    delay: int = 0
+    ahead: int = 0
+    late: int = 0
 
 
 @dataclass(frozen=True)
@@ -51,8 +60,11 @@ class Step:
         In the order of the function's arguments.
     states : mapping of str to int
         Name and length of each state, an array of numbers; zero at the start.
-    takes_input : bool
-        Whether the function takes the model's input beside what enters the block.
+    watches : bool
+        Whether its state ``history`` is of the model's input; it is filled, with as
+        many samples as the constant ``points`` says, before anything else is done.
+    forward : bool
+        Whether the step is nearer to the simulation where samples to come are known.
     grows : bool
         Whether it takes a factor on its thresholds.
     drives : int
@@ -66,7 +78,8 @@ class Step:
     function: str
     constants: Mapping[str, Any] = field(default_factory=dict)
     states: Mapping[str, int] = field(default_factory=dict)
-    takes_input: bool = False
+    watches: bool = False
+    forward: bool = False
     grows: bool = False
     drives: int = 0
     differs: str = ""
@@ -107,13 +120,28 @@ def value_at(points: int, place: float) -> FloatArray:
     return through_samples(points, lambda m: place**m)
 
 
+def sample_rate(sampling: Sampling, ahead: int) -> FloatArray:
+    """Weights of the samples for the central difference at a sample, per second.
+
+    Where the next sample is known it is that of the two neighbours alone.
+    """
+    if ahead:
+        weights = np.zeros(sampling.points)
+        weights[[ahead - 1, ahead + 1]] = 0.5, -0.5
+    else:
+        weights = central_difference(sampling.points, 0.0, 1.0)
+    return np.asarray(weights / sampling.dt)
+
+
 def central_difference(points: int, place: float, half_width: float) -> FloatArray:
     """Weights of the samples for a central difference of the curve, per sample."""
     ahead, back = place + half_width, place - half_width
     return through_samples(points, lambda m: (ahead**m - back**m) / (2 * half_width))
 
 
-def line_corners(hold: str, points: int) -> tuple[int, int, FloatArray]:
+def line_corners(
+    hold: str, points: int, ahead: int = 0
+) -> tuple[int, int, FloatArray]:
     """Give what straight lines between two samples take of the newest samples.
 
     Parameters
@@ -122,6 +150,8 @@ def line_corners(hold: str, points: int) -> tuple[int, int, FloatArray]:
         A band-limited input is taken as :func:`straight_lines` twice as fine.
     points : int
         Samples that a band-limited curve goes through.
+    ahead : int
+        So many of them are later than the one that the output is for.
 
     Returns
     -------
@@ -134,7 +164,7 @@ def line_corners(hold: str, points: int) -> tuple[int, int, FloatArray]:
     """
     if hold != "band-limited":
         return 1, 2, np.concatenate([value_at(2, -1.0), value_at(2, 0.0)])
-    each = [_smooth_corner(points, at) for at in (-1.0, -0.5, 0.0)]
+    each = [_smooth_corner(points, at - ahead) for at in (-1.0, -0.5, 0.0)]
     return 2, points, np.concatenate(each)
 
 
@@ -163,16 +193,19 @@ def second_difference(points: int) -> FloatArray:
     return through_samples(points, lambda m: 1.0 + (-1.0) ** m - 2 * 0.0**m)
 
 
-def smooth_curve(points: int) -> str:
+def smooth_curve(points: int, ahead: int = 0) -> str:
     """Say what becomes of a band-limited input."""
+    later = f" ({ahead} of them later)" if ahead else ""
     return (
         "takes its input between two samples from the polynomial through the newest "
-        f"{points}, and not from all samples of a record"
+        f"{points}{later}, and not from all samples of a record"
     )
 
 
-def foretold(points: int) -> str:
-    """Say what becomes of a central difference."""
+def foretold(points: int, ahead: int = 0) -> str:
+    """Say what becomes of a central difference; nothing where it knows both sides."""
+    if ahead:
+        return ""
     return (
         f"foretells the next sample by the polynomial through the newest {points}, "
         "for its rate"

@@ -66,7 +66,9 @@ class StiffnessHardening(HeldBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Integrate the mode over the interval that has passed."""
-        segments, points, corners = line_corners(self.holding, sampling.points)
+        smooth = self.holding == "band-limited"
+        ahead = sampling.ahead if smooth else 0
+        segments, points, corners = line_corners(self.holding, sampling.points, ahead)
         constants = {
             "participation": self.participation,
             "phase": 2 * np.pi * self.frequency_hz * sampling.dt / segments,
@@ -75,8 +77,11 @@ class StiffnessHardening(HeldBlock):
             "ramp": float(self.holding != "zero-order"),
             "segments": segments,
             "points": points,
+            "ahead": ahead,
             "corners": corners,
         }
         states = {"mode": 2, "history": 1 + points}
-        differs = smooth_curve(points) if points > 2 else ""
-        return Step("stiffness_hardening", constants, states, differs=differs)
+        differs = smooth_curve(points, ahead) if smooth else ""
+        return Step(
+            "stiffness_hardening", constants, states, forward=smooth, differs=differs
+        )

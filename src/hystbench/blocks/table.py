@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
+from hystbench import files
 from hystbench.blocks import registry
 from hystbench.blocks.parameter import HUGE, Parameter
 
-HEADER = """\
-| block | place | parameter | unit | values | meaning |
-|---|---|---|---|---|---|
-"""
+COLUMNS = ("block", "place", "parameter", "unit", "values", "meaning")
 
 
 def markdown_table() -> str:
@@ -17,10 +15,10 @@ def markdown_table() -> str:
     for name, block in registry().items():
         first = [f"`{name}`", str(block.place)]
         for key, about in block.parameters().items():
-            cells = (*first, f"`{key}`", about.unit, _values(about), about.meaning)
-            rows.append("| " + " | ".join(cells) + " |\n")
+            values = _values(about)
+            rows.append((*first, f"`{key}`", about.unit, values, about.meaning))
             first = ["", ""]
-    return HEADER + "".join(rows)
+    return files.markdown_table(COLUMNS, rows) + "\n"
 
 
 def _values(about: Parameter) -> str:

@@ -57,6 +57,9 @@ class ThermalDrift(Block):
             "coefficient": self.coefficient,
             "count": len(lags),
             "lags": np.concatenate(lags),
+            "points": 1 + sampling.late,
         }
-        states = {"started": 1, "before": len(lags), "x": len(lags)}
-        return Step("thermal_drift", constants, states, takes_input=True)
+        count = len(lags)
+        states = {"history": 2 + sampling.late, "started": 1}
+        states |= {"before": count, "x": count}
+        return Step("thermal_drift", constants, states, watches=True)

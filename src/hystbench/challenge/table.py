@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 
+from hystbench import files
 from hystbench.challenge.plant.effects import KINDS
 from hystbench.challenge.plant.kind import Range
 
-HEADER = """\
-| effect | place | form | parameter | range | unit | limits | right views |
-|---|---|---|---|---|---|---|---|
-"""
+COLUMNS = (
+    *("effect", "place", "form", "parameter"),
+    *("range", "unit", "limits", "right views"),
+)
 
 
 def markdown_table() -> str:
@@ -37,9 +38,9 @@ def markdown_table() -> str:
                         item.unit,
                         _bounds(item),
                     ]
-                rows.append("| " + " | ".join(cells) + " |\n")
+                rows.append(cells)
                 first, second, views = ["", ""], "", ""
-    return HEADER + "".join(rows)
+    return files.markdown_table(COLUMNS, rows) + "\n"
 
 
 def _bounds(item: Range) -> str:

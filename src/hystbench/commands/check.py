@@ -9,7 +9,7 @@ import click
 from hystbench import options
 from hystbench.dataset import load_dataset
 from hystbench.files import write_text
-from hystbench.inspection import words
+from hystbench.inspection import screen
 from hystbench.inspection.check import check as look
 
 
@@ -29,7 +29,7 @@ def check(dataset: Path, out: Path | None, effects: bool) -> None:
     it; and how strong each effect must be to be seen, and told from the others.
     """
     found = look(load_dataset(dataset), effects)
-    for line in words.text(found):
+    for line in screen.lines(found):
         click.echo(line)
     if out is not None:
         from hystbench.inspection.page import page  # late: it draws

@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from hystbench.errors import InputError, nearest
-from hystbench.files import atomic_path, write_text
+from hystbench.files import atomic_path, markdown_table, write_text
 
 #: What stands between the two lines is what the named file holds.
 BLOCK = re.compile(
@@ -29,11 +29,8 @@ MAKERS = (
     ("results/blind/", "snakemake blind"),
     ("results/gap/", "snakemake gap"),
     ("results/devices/", "snakemake devices"),
+    ("results/export/", "snakemake export_errors"),
     ("results/inverse/", "snakemake inverse"),
-    ("results/pressure/", "snakemake pressure"),
-    ("results/figures/contest.", "snakemake pressure"),
-    ("results/structures/held-out", "snakemake held_out"),
-    ("results/structures/", "snakemake structures"),
     ("", "make reproduce"),
 )
 #: Made of measured records that the project does not ship: where they are missing, a
@@ -130,13 +127,8 @@ def _table(page: Path, source: Path, choice: str) -> str:
         if name not in known:
             near = nearest(name, known)
             raise InputError(f"{page}: from {source}: no column {name!r}; {near}")
-    lines = [columns, ["---"] * len(columns)]
-    lines += [
-        [row[name].replace("|", r"\|") for name in columns]
-        for row in rows
-        if not wanted or row[wanted] == value
-    ]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+    chosen = (row for row in rows if not wanted or row[wanted] == value)
+    return markdown_table(columns, ([row[name] for name in columns] for row in chosen))
 
 
 def _copy(source: Path, copy: Path) -> None:

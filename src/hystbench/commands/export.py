@@ -12,6 +12,7 @@ from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
 from hystbench.export.described import describe
+from hystbench.export.inverse import Ends, describe_inverse
 from hystbench.files import whole_folder
 from hystbench.model import load_model
 
@@ -34,6 +35,13 @@ from hystbench.model import load_model
     "samples or its rate; fewer for an input with noise.",
 )
 @click.option(
+    "--delay",
+    type=click.IntRange(0, LARGEST_POINTS - 2),
+    default=0,
+    help="Samples by which the output may be late: values between samples, and rates, "
+    "are then taken with samples on both sides.",
+)
+@click.option(
     "--duration", type=float, help="Length in seconds of the record of a path of drift."
 )
 @click.option(
@@ -41,14 +49,25 @@ from hystbench.model import load_model
     type=click.Choice(HOLDS),
     help="How the input moves between samples where MODEL does not say.",
 )
+@click.option(
+    "--inverse",
+    is_flag=True,
+    help="Write code that turns a wanted output into the input; give both limits.",
+)
+@click.option("--limit-low", type=float, help="Lowest input of the actuator.")
+@click.option("--limit-high", type=float, help="Highest input of the actuator.")
 @options.out_folder
 def export(
     model: Path,
     to: str,
     dt: float,
     points: int,
+    delay: int,
     duration: float | None,
     hold: Hold | None,
+    inverse: bool,
+    limit_low: float | None,
+    limit_high: float | None,
     out: Path,
 ) -> None:
     """Write MODEL as code that is called once a sample and needs no hystbench.
@@ -59,8 +78,16 @@ def export(
     system = load_model(model)
     if hold is not None:
         system = system.with_hold(hold)
+    limits = (limit_low, limit_high)
+    if not inverse and limits != (None, None):
+        raise InputError("--limit-low and --limit-high: expected them with --inverse")
+    sampling = Sampling(dt, points, duration, delay)
     try:
-        described = describe(system, Sampling(dt, points, duration))
+        described = (
+            describe_inverse(system, sampling, _both(*limits))
+            if inverse
+            else describe(system, sampling)
+        )
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None
@@ -82,3 +109,10 @@ def export(
     click.echo(f"{', '.join(told)}: {described.about}")
     for line in [described.memory, *described.differences]:
         click.echo(line)
+
+
+def _both(low: float | None, high: float | None) -> Ends:
+    for name, value in (("low", low), ("high", high)):
+        if value is None:
+            raise InputError(f"--limit-{name}: expected it beside --inverse")
+    return (low or 0.0, high or 0.0)

@@ -25,19 +25,7 @@ from hystbench.interface.gap import find_gap
     help="Model file, gpi, linear, column, or package.module:function.",
 )
 @options.out_folder
-@click.option(
-    "--without",
-    multiple=True,
-    metavar="EFFECT",
-    help="An effect that the search must not name; may stand there several times.",
-)
-@click.option(
-    "--with",
-    "with_",
-    multiple=True,
-    metavar="EFFECT",
-    help="An effect that you put in: it is fitted from the start, and is no finding.",
-)
+@options.vocabulary
 @options.write_experiment
 @options.limits
 @options.unnamed_share

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.edges import Edge, write_margins
 from hystbench.compare.evidence import Evidence, read_evidence
 from hystbench.compare.off import OffCell, off_cells, write_off
+from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
 from hystbench.compare.tables import Table, paper_tables
 from hystbench.compare.verdict import (
@@ -22,7 +22,7 @@ from hystbench.compare.verdict import (
     verdict_markdown,
     verdict_rst,
 )
-from hystbench.files import write_csv, write_json, write_text
+from hystbench.files import write_json, write_text
 from hystbench.published import load, signals
 from hystbench.published.audit import write_audit
 
@@ -33,22 +33,8 @@ WRITTEN = (
     *("first.md", "verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
 )
 """Files of a comparison, as names or patterns."""
-CELL_COLUMNS = (
-    "table",
-    "signal",
-    "model",
-    "metric",
-    "half",
-    "published",
-    "ours",
-    "spread_low",
-    "spread_high",
-    "draws_low",
-    "draws_high",
-    "log10_ratio",
-    "published_consistent",
-    "status",
-)
+_FIELDS = [field.name for field in fields(ComparedCell)]
+CELL_COLUMNS = (*_FIELDS[:-2], "log10_ratio", *_FIELDS[-2:])
 
 
 @dataclass(frozen=True)
@@ -86,19 +72,7 @@ class Comparison:
 
 def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
     """Write the cells as CSV; a cell without a finite run has no ours."""
-    rows = ([_cell_text(cell, column) for column in CELL_COLUMNS] for cell in cells)
-    write_csv(path, CELL_COLUMNS, rows)
-
-
-def _cell_text(cell: ComparedCell, column: str) -> object:
-    value = getattr(cell, column)
-    if (
-        column.startswith(("spread", "draws"))
-        and value is not None
-        and math.isinf(value)
-    ):
-        return "diverged"
-    return value
+    write_fields(path, CELL_COLUMNS, cells)
 
 
 def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
@@ -137,16 +111,8 @@ def compare(
     out_dir: str | Path,
     runs: Iterable[str | Path],
     records: Iterable[str | Path] = (),
-    order_sweep: str | Path | None = None,
-    identified: str | Path | None = None,
-    envelopes: str | Path | None = None,
     held_out: Iterable[str] = (),
-    twin_errors: str | Path | None = None,
-    twin_claims: str | Path | None = None,
-    draws: str | Path | None = None,
-    edges: str | Path | None = None,
-    constants: str | Path | None = None,
-    order_sweep_other: str | Path | None = None,
+    **files: str | Path | None,
 ) -> Comparison:
     """Read the files of the runs, compare them with the paper, write what came out.
 
@@ -161,40 +127,17 @@ def compare(
         One JSON file for each signal and model.
     records : iterable of paths
         Records of the signals.
-    order_sweep, identified, envelopes : path, optional
-        Order sweep, identification, and errors by envelopes; claims on what is left
-        out are not testable.
     held_out : iterable of str
         Signals whose published errors were not used in choosing the twin; the
         summary then tells both groups apart.
-    twin_errors, twin_claims : path, optional
-        Errors and claims on other twins, for the spread of each cell and for the
-        families of twins on which each claim holds.
-
-    draws, edges, constants, order_sweep_other : path, optional
-        Draws of the random sum, edges of the step sizes, the ranking with other
-        constants, and the order sweep under the other rule for the step size.
+    **files : path or None
+        As for :func:`read_evidence`; claims on what is left out are not testable.
 
     Raises
     ------
     InputError
         If a file is not what it should be.
     """
-    found = compare_evidence(
-        read_evidence(
-            runs,
-            records,
-            order_sweep,
-            identified,
-            envelopes,
-            twin_errors,
-            twin_claims,
-            draws,
-            edges,
-            constants,
-            order_sweep_other,
-        ),
-        held_out,
-    )
+    found = compare_evidence(read_evidence(runs, records, **files), held_out)
     found.write(out_dir)
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -258,20 +258,32 @@ def identification_of(content: Mapping[str, Any], path: str | Path) -> Identific
     )
 
 
+FILES: dict[str, tuple[str, Callable[[str | Path], Any]]] = {
+    "order_sweep": ("order_sweep", read_order_sweep),
+    "order_sweep_other": ("order_sweep_other", read_order_sweep),
+    "identified": ("identification", read_identification),
+    "envelopes": ("envelope_errors", read_envelope_errors),
+    "twin_errors": ("spreads", read_spreads),
+    "twin_claims": ("holdings", read_holdings),
+    "draws": ("drawn", read_draws),
+    "edges": ("edges", read_edges),
+    "constants": ("constants", read_constants),
+}
+"""What evidence is read from beside runs and records: its field, and the reader."""
+
+
 def read_evidence(
     runs: Iterable[str | Path],
     records: Iterable[str | Path] = (),
-    order_sweep: str | Path | None = None,
-    identified: str | Path | None = None,
-    envelopes: str | Path | None = None,
-    twin_errors: str | Path | None = None,
-    twin_claims: str | Path | None = None,
-    draws: str | Path | None = None,
-    edges: str | Path | None = None,
-    constants: str | Path | None = None,
-    order_sweep_other: str | Path | None = None,
+    **files: str | Path | None,
 ) -> Evidence:
-    """Read the files of a comparison; a path left out was not run.
+    """Read the files of a comparison.
+
+    Parameters
+    ----------
+    runs, records : iterable of path
+    **files : path or None
+        By the names in ``FILES``; one left out, or None, was not run.
 
     Raises
     ------
@@ -284,18 +296,10 @@ def read_evidence(
         if (run.signal, run.model) in found:
             raise InputError(f"{path}: a second run of {run.model} on {run.signal}")
         found[run.signal, run.model] = run
-    return Evidence(
-        runs=found,
-        records={r.name: r for r in map(load_record, records)},
-        order_sweep=() if order_sweep is None else read_order_sweep(order_sweep),
-        identification=None if identified is None else read_identification(identified),
-        envelope_errors={} if envelopes is None else read_envelope_errors(envelopes),
-        spreads={} if twin_errors is None else read_spreads(twin_errors),
-        holdings={} if twin_claims is None else read_holdings(twin_claims),
-        drawn={} if draws is None else read_draws(draws),
-        edges=() if edges is None else read_edges(edges),
-        constants=() if constants is None else read_constants(constants),
-        order_sweep_other=(
-            () if order_sweep_other is None else read_order_sweep(order_sweep_other)
-        ),
-    )
+    read = {
+        FILES[name][0]: FILES[name][1](path)
+        for name, path in files.items()
+        if path is not None
+    }
+    named = {record.name: record for record in map(load_record, records)}
+    return Evidence(runs=found, records=named, **read)

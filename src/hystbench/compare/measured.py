@@ -6,27 +6,18 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pandas as pd
-from tabulate import tabulate
 
 from hystbench.compare.evidence import Run, read_run
+from hystbench.compare.rows import write_fields
 from hystbench.compare.tables import Table, error_kind
 from hystbench.files import write_text
 from hystbench.published import MODELS
 
 #: Columns of errors.csv: one row a record and model.
 COLUMNS = (
-    "signal",
-    "model",
-    "error_kind",
-    "mse",
-    "re",
-    "mse_after_transient",
-    "re_after_transient",
-    "unit",
-    "status",
+    *("signal", "model", "error_kind", "mse", "re"),
+    *("mse_after_transient", "re_after_transient", "unit", "status"),
 )
-
-
 WRITTEN = ("errors.csv", "tables.txt", "verdict.rst", "tables/errors.*")
 """Files of a comparison, as names or patterns."""
 
@@ -49,18 +40,9 @@ def compare_measured(
     out = Path(out_dir)
     found = [read_run(path) for path in runs]
     table = errors_table(dataset, found)
-    rows = [[getattr(run, column) for column in COLUMNS] for run in found]
-    frame = pd.DataFrame(rows, columns=list(COLUMNS))
-    write_text(out / "errors.csv", frame.to_csv(index=False))
+    write_fields(out / "errors.csv", COLUMNS, found)
     table.write(out / "tables")
-    said = finite_sentence(found)
-    body = tabulate(
-        table.frame.to_numpy().tolist(),
-        list(table.frame.columns),
-        tablefmt="rst",
-        disable_numparse=True,
-    )
-    parts = [table.caption, body, table.legend, said]
+    parts = [table.caption, table.grid("rst"), table.legend, finite_sentence(found)]
     text = "\n\n".join(part for part in parts if part) + "\n"
     write_text(out / "tables.txt", text)
     write_text(out / "verdict.rst", text)
@@ -108,4 +90,4 @@ def _cell(run: Run | None, metric: str) -> str:
         return "not run"
     if run.diverged is not None:
         return "diverged"
-    return f"{run.error('mse' if metric == 'mse' else 're'):.4g}"
+    return f"{run.error(metric):.4g}"

@@ -13,20 +13,14 @@ from pathlib import Path
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.evidence import Evidence
+from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import FACTOR, rms_error_percent
-from hystbench.files import write_csv
 from hystbench.published import FILTERS
 
 COLUMNS = (
-    "table",
-    "signal",
-    "model",
-    "half",
-    "published",
-    "ours",
-    "ratio",
-    "published_consistent",
-    "known",
+    *("table=cell.table", "signal=cell.signal", "model=cell.model", "half=cell.half"),
+    *("published=cell.published", "ours=cell.ours", "ratio"),
+    *("published_consistent=cell.published_consistent", "known"),
 )
 
 
@@ -36,6 +30,12 @@ class OffCell:
 
     cell: ComparedCell
     known: str
+
+    @property
+    def ratio(self) -> float | None:
+        """Ours over the published; None where the run diverged."""
+        ours = self.cell.ours
+        return None if ours is None else ours / float(self.cell.published)
 
 
 def off_cells(cells: Sequence[ComparedCell], evidence: Evidence) -> tuple[OffCell, ...]:
@@ -50,17 +50,7 @@ def off_cells(cells: Sequence[ComparedCell], evidence: Evidence) -> tuple[OffCel
 
 def write_off(off: Iterable[OffCell], path: str | Path) -> None:
     """Write the cells that are off as CSV; see ``COLUMNS``."""
-    rows = [[_value(each, column) for column in COLUMNS] for each in off]
-    write_csv(path, COLUMNS, rows)
-
-
-def _value(off: OffCell, column: str) -> object:
-    if column == "known":
-        return off.known
-    if column == "ratio":
-        ours = off.cell.ours
-        return None if ours is None else ours / float(off.cell.published)
-    return getattr(off.cell, column)
+    write_fields(path, COLUMNS, off)
 
 
 def _sentence(

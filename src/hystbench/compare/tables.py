@@ -50,6 +50,13 @@ class Table:
     legend: str
     frame: pd.DataFrame
 
+    def grid(self, style: str) -> str:
+        """Give the cells alone in one of the styles of tabulate."""
+        told = self.frame.to_markdown(
+            index=False, tablefmt=style, disable_numparse=True
+        )
+        return str(told)
+
     def csv(self) -> str:
         """Give the table as CSV, with the caption in a column of its own."""
         caption = f"{self.caption} {self.legend}".strip()

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any, Literal
 
 import numpy as np
@@ -22,8 +23,8 @@ from hystbench.adaptive import (
     with_fraction_of_bound,
 )
 from hystbench.dataset import Dataset
-from hystbench.filters import MOST_CORRECTION, AdaptiveFilter
-from hystbench.pressure.contest import geometric_mean, run_grid
+from hystbench.filters import MOST_CORRECTION, AdaptiveFilter, run_many
+from hystbench.metrics import mean_square_error
 from hystbench.rdgpi.fit import identify_rdgpi
 from hystbench.record import FloatArray, Record
 from hystbench.slow_loop import identify_slow_loop
@@ -33,6 +34,8 @@ Question = Literal["tracking", "simulation"]
 LAST = "last-output"
 """No model: what tracks the output by repeating it."""
 
+BATCH = 32
+"""Runs held in memory at a time."""
 PENALTIES = (1e-9, 1e-7, 1e-5, 1e-3, 1e-1)
 """Charges for the square of a weight, in units of the mean square of its own column."""
 TRAINED = 2 / 3
@@ -155,24 +158,37 @@ def best_fractions(
         for all: those of the least geometric mean of the MSE over the fit records, each
         begun with zero weights.
     """
-    columns = []
-    for record in fit:
-        alone = {record.name: record}
-        grid = run_grid(adaptive, "LMS", alone, [record.name], fractions, 0.0)
-        columns.append(grid.mse[:, 0])
     names = step_names(adaptive.name)
-    choices = [dict(zip(names, parts, strict=True)) for parts in grid.fractions]
+    grid = product(sorted(fractions), repeat=len(names))
+    choices = [dict(zip(names, parts, strict=True)) for parts in grid]
     steady = np.ones(len(choices), dtype=bool)
-    for record in (*fit, *held):
-        power = adaptive.largest_power(record.u)
+    errors = []
+    for place, record in enumerate((*fit, *held)):
         bounds = step_bounds(adaptive, record.u)
-        for k, parts in enumerate(choices):
+        power = adaptive.largest_power(record.u)
+        filters = []
+        for parts in choices:
             steps: dict[str, Any] = {
                 own: parts[name] * bounds[name] for name, own in names.items()
             }
-            steady[k] &= replace(adaptive, **steps).correction(power) < MOST_CORRECTION
-    mean = np.where(steady, geometric_mean(np.array(columns).T), math.inf)
-    return choices[int(np.argmin(mean))]
+            filters.append(replace(adaptive, **steps))
+        steady &= [each.correction(power) < MOST_CORRECTION for each in filters]
+        if place < len(fit):
+            errors.append(_mean_squares(filters, record))
+    with np.errstate(divide="ignore"):
+        mean = np.exp(np.log(np.array(errors).T.copy()).mean(axis=-1))
+    return choices[int(np.argmin(np.where(steady, mean, math.inf)))]
+
+
+def _mean_squares(filters: Sequence[AdaptiveFilter], record: Record) -> list[float]:
+    """Run filters on a record; infinite where one diverged."""
+    errors = []
+    for start in range(0, len(filters), BATCH):
+        batch = ((f, record.u, record.y) for f in filters[start : start + BATCH])
+        for result in run_many(batch, workers=1):
+            finite = result.diverged_at is None
+            errors.append(mean_square_error(result.error) if finite else math.inf)
+    return errors
 
 
 def fixed_weights(adaptive: AdaptiveFilter, fit: Sequence[Record]) -> FloatArray:

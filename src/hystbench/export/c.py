@@ -84,7 +84,19 @@ def body(model: Described) -> str:
     ]
     for piece in model.pieces:
         parts += [_wrapped(model, part) for part in piece.all_inside() if piece.inner]
-    lines = [_chained(model, piece) for piece in model.pieces]
+    lines = [
+        f"    hb_remember({piece.step.constants['points']}, s->{piece.history}, input);"
+        for piece in model.watching
+    ]
+    if model.sampling.delay:
+        lines += [
+            "    const double call = *s->calls;",
+            f"    if (call < {model.sampling.delay}) *s->calls += 1;",
+        ]
+    for piece in model.pieces:
+        lines.append(_chained(model, piece))
+        if piece.wait:
+            lines.append(f"    if (call < {piece.wait}) return 0; /* none yet */")
     used = [] if any(model.all_states()) else ["    (void)s;"]
     name = model.name
     parts += [
@@ -110,8 +122,6 @@ def _chained(model: Described, piece: Piece) -> str:
         growth = ", 1" if piece.step.grows else ""
         return f"    y = {model.name}_{piece.label}(s, y{growth});"
     own = ["y"]
-    if piece.step.takes_input:
-        own.append("input")
     if piece.step.grows:
         own.append("1")
     return f"    y = {_call(model, piece, own)};"

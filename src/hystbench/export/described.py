@@ -5,8 +5,9 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from hystbench.blocks.base import Block
@@ -44,11 +45,27 @@ TAKEN = (
 
 @dataclass(frozen=True)
 class Piece:
-    """One block's step, and for one that wraps hysteresis what is inside."""
+    """One block's step, and for one that wraps hysteresis what is inside.
+
+    Parameters
+    ----------
+    label : str
+    step : Step
+    inner : Piece, optional
+    wait : int
+        Calls, from the first on, in which nothing comes out of it yet; none where what
+        is before it waits as long.
+    """
 
     label: str
     step: Step
     inner: Piece | None = None
+    wait: int = 0
+
+    @property
+    def history(self) -> str:
+        """Name the state that the model's input is kept in."""
+        return f"{self.label}_history"
 
     def all_inside(self) -> Iterator[Piece]:
         """Give the piece and what is inside it, the innermost first."""
@@ -86,6 +103,8 @@ class Described:
 
     def all_states(self) -> Iterator[tuple[str, int]]:
         """Give the name and length of every state."""
+        if self.sampling.delay:
+            yield "calls", 1
         for piece in self.all_pieces():
             for name, length in piece.step.states.items():
                 yield f"{piece.label}_{name}", length
@@ -93,12 +112,24 @@ class Described:
     @property
     def functions(self) -> set[str]:
         """Name the functions that are called."""
-        return {piece.step.function for piece in self.all_pieces()}
+        called = {piece.step.function for piece in self.all_pieces()}
+        return called | {"remember" for piece in self.watching}
+
+    @property
+    def watching(self) -> list[Piece]:
+        """Give the pieces whose history is of the model's input."""
+        return [piece for piece in self.all_pieces() if piece.step.watches]
 
     @property
     def differences(self) -> list[str]:
         """Say how the steps differ from :meth:`Model.simulate`, a sentence each."""
-        return [
+        delay = self.sampling.delay
+        late = [
+            f"The output is late by {delay} sample{'s' * (delay > 1)} "
+            f"({delay * self.sampling.dt:.12g} s), as asked; the first "
+            f"{f'{delay} are' if delay > 1 else 'is'} 0."
+        ]
+        return late[: bool(delay)] + [
             f"{piece.label} {piece.step.differs}."
             for piece in self.all_pieces()
             if piece.step.differs
@@ -119,6 +150,36 @@ class Described:
         )
 
 
+Maker = Callable[[Sampling], Piece]
+"""Makes a piece for what is known of the signal at its place."""
+
+
+def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
+    """Divide a delay among the pieces that gain by it, the first ones get the rest.
+
+    What looks at the model's input itself gains by the delay of a piece before it, and
+    gets none of its own then.
+
+    Raises
+    ------
+    InputError
+        If no piece gains.
+    """
+    gain: list[int] = []
+    for place, piece in enumerate(pieces):
+        if piece.step.forward and not (piece.step.watches and gain):
+            gain.append(place)
+    if not gain:
+        raise InputError(
+            f"--delay: {delay}; expected none, as no step of this model is nearer to "
+            "the simulation where samples to come are known"
+        )
+    shares = [0] * len(pieces)
+    for k in range(delay):
+        shares[gain[k % len(gain)]] += 1
+    return shares
+
+
 def describe(model: Model, sampling: Sampling) -> Described:
     """Ask every block for its step.
 
@@ -127,16 +188,8 @@ def describe(model: Model, sampling: Sampling) -> Described:
     InputError
         If the interval or the points make no sense, or a block cannot be exported.
     """
-    if not 0 < sampling.dt < float("inf"):
-        raise InputError(f"--dt: {sampling.dt:g} s; expected a time above 0")
-    duration = sampling.duration_s
-    if duration is not None and not 0 < duration < float("inf"):
-        raise InputError(f"--duration: {duration:g} s; expected a time above 0")
-    if not 2 <= sampling.points <= LARGEST_POINTS:
-        raise InputError(
-            f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
-        )
-    labels = {id(block): _plain(label) for label, block in model.labelled()}
+    _check_sampling(sampling)
+    labels = labels_of(model)
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
 
     def of_block(
@@ -165,17 +218,78 @@ def describe(model: Model, sampling: Sampling) -> Described:
         outer: WrappingBlock = step.by
         around = of_block(outer, outer, sampling)
         times = max(around.step.drives, 1)
-        inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times))
+        inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times, ahead=0))
         return replace(around, inner=inner)
 
+    makers: list[Maker] = [partial(of_step, step) for step in model.steps]
+    return arranged(model.name, model.input, model.output, makers, sampling)
+
+
+def labels_of(model: Model) -> dict[int, str]:
+    """Give an identifier for each block, by the block's ``id``."""
+    return {id(block): _plain(label) for label, block in model.labelled()}
+
+
+def arranged(
+    name: str,
+    enters: Channel,
+    leaves: Channel,
+    makers: Sequence[Maker],
+    sampling: Sampling,
+) -> Described:
+    """Make the pieces of a chain, and divide its delay among them.
+
+    Parameters
+    ----------
+    name : str
+    enters, leaves : Channel
+    makers : sequence of callable
+        Each gives a piece, from what is known of the signal there.
+    sampling : Sampling
+
+    Raises
+    ------
+    InputError
+        If the interval, the points or the delay make no sense.
+    """
+    _check_sampling(sampling)
+    pieces = [make(sampling) for make in makers]
+    if sampling.delay:
+        shares, late = _shares(sampling.delay, pieces), 0
+        plain, pieces = pieces, []
+        for make, usual, share in zip(makers, plain, shares, strict=True):
+            watches = usual.step.watches
+            late += share
+            own = make(replace(sampling, ahead=0 if watches else share, late=late))
+            if watches and share:  # what enters it waits; what it looks at does not
+                ring = Step("late", {"samples": share}, {"kept": share})
+                pieces.append(Piece(f"{own.label}_late", ring, wait=late))
+            pieces.append(replace(own, wait=late if share and not watches else 0))
     return Described(
-        identifier(model.name),
-        one_line(model.name) or "model",
-        Channel(one_line(model.input.name) or "input", one_line(model.input.unit)),
-        Channel(one_line(model.output.name) or "output", one_line(model.output.unit)),
+        identifier(name),
+        one_line(name) or "model",
+        Channel(one_line(enters.name) or "input", one_line(enters.unit)),
+        Channel(one_line(leaves.name) or "output", one_line(leaves.unit)),
         sampling,
-        tuple(of_step(step, sampling) for step in model.steps),
+        tuple(pieces),
     )
+
+
+def _check_sampling(sampling: Sampling) -> None:
+    if not 0 < sampling.dt < float("inf"):
+        raise InputError(f"--dt: {sampling.dt:g} s; expected a time above 0")
+    duration = sampling.duration_s
+    if duration is not None and not 0 < duration < float("inf"):
+        raise InputError(f"--duration: {duration:g} s; expected a time above 0")
+    if not 2 <= sampling.points <= LARGEST_POINTS:
+        raise InputError(
+            f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
+        )
+    if not 0 <= sampling.delay <= sampling.points - 2:
+        raise InputError(
+            f"--delay: {sampling.delay}; expected 0 to {sampling.points - 2}, two less "
+            "than --points"
+        )
 
 
 def identifier(name: str) -> str:

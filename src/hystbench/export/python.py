@@ -51,7 +51,16 @@ def module(model: Described) -> str:
         if isinstance(value, np.ndarray)
     ]
     reset = [f"self.{name} = np.zeros({size})" for name, size in model.all_states()]
-    steps = [_line(model, piece) for piece in model.pieces]
+    steps = [
+        f"remember({piece.step.constants['points']}, self.{piece.history}, y)"
+        for piece in model.watching
+    ]
+    if model.sampling.delay:
+        steps += ["call = self.calls[0]", "self.calls[0] += 1"]
+    for piece in model.pieces:
+        steps.append(_line(piece))
+        if piece.wait:
+            steps.append(f"if call < {piece.wait}:\n    return 0.0  # none yet")
     for piece in model.pieces:
         if piece.inner is not None:
             steps += [""]  # the methods below are part of the class
@@ -80,13 +89,11 @@ def _quoted(line: str) -> str:
     return line.replace("\\", "\\\\").replace('"', '\\"')
 
 
-def _line(model: Described, piece: Piece) -> str:
+def _line(piece: Piece) -> str:
     if piece.inner is not None:
         growth = ", 1.0" if piece.step.grows else ""
         return f"y = self._{piece.label}(y{growth})"
     given = ["y"]
-    if piece.step.takes_input:
-        given.append("float(u)")
     if piece.step.grows:
         given.append("1.0")
     return f"y = {_call(piece, given)}"
@@ -102,7 +109,7 @@ def _method(piece: Piece) -> str:
             lines = [f"return self._{inner.label}({given}) + {_call(piece, own)}"]
         else:
             lines = [
-                f"inside = {_call(piece, own)}",
+                f"y, inside = 0.0, {_call(piece, own)}",
                 "for v, growth in inside:",
                 f"    y = self._{inner.label}({given})",
                 "return y",

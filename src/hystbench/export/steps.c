@@ -81,10 +81,31 @@ static double hb_backlash(double half_width, double *started, double *w, double 
     return hb_play(z, z, half_width, w);
 }
 
-static double hb_friction(double coulomb, double velocity_scale, int points,
-                          const double *rate, double *history, double z, double u)
+/* Stand at a limit where the signal is beyond it. */
+static double hb_limited(double low, double high, double z)
 {
-    hb_remember(points, history, u);
+    return hb_most(low, hb_least(high, z));
+}
+
+/* Weigh the newest samples. */
+static double hb_at_samples(int points, const double *taps, double *history, double z)
+{
+    hb_remember(points, history, z);
+    return hb_weighted(points, taps, history + 1);
+}
+
+/* What entered so many samples before. */
+static double hb_late(int samples, double *kept, double z)
+{
+    const double before = kept[samples - 1];
+    for (int i = samples - 1; i > 0; i--) kept[i] = kept[i - 1];
+    kept[0] = z;
+    return before;
+}
+
+static double hb_friction(double coulomb, double velocity_scale, int points,
+                          const double *rate, double *history, double z)
+{
     const double velocity =
         history[0] > 1 ? hb_weighted(points, rate, history + 1) : 0;
     return z + coulomb * tanh(velocity / velocity_scale);
@@ -134,16 +155,15 @@ static double hb_slew_limit(double rate, double *started, double *before, double
 }
 
 /* x(k) = phi x(k-1) + sum_j drive_j v(k-j), y = output x + direct v. */
-static double hb_linear(int size, int points, const double *phi, const double *drive,
-                        const double *output, double direct, int settled,
+static double hb_linear(int size, int points, int ahead, const double *phi,
+                        const double *drive, const double *output, double direct, int settled,
                         double statics, double *x, double *next, double *history,
                         double *offset, double z)
 {
-    const int moves = history[0] > 0;
-    if (settled && !moves) *offset = z;
-    const double v = z - *offset;
-    hb_remember(points, history, v);
-    double y = direct * v + statics * *offset;
+    const int moves = history[0] > ahead;
+    if (settled && history[0] == 0) *offset = z;
+    hb_remember(points, history, z - *offset);
+    double y = direct * history[1 + ahead] + statics * *offset;
     for (int i = 0; i < size; i++) {
         next[i] = 0;
         if (!moves) continue;
@@ -158,15 +178,14 @@ static double hb_linear(int size, int points, const double *phi, const double *d
 }
 
 /* The same where phi is diagonal. */
-static double hb_modes(int size, int points, const double *phi, const double *drive,
-                       const double *output, double direct, int settled, double statics,
+static double hb_modes(int size, int points, int ahead, const double *phi,
+                       const double *drive, const double *output, double direct, int settled, double statics,
                        double *x, double *history, double *offset, double z)
 {
-    const int moves = history[0] > 0;
-    if (settled && !moves) *offset = z;
-    const double v = z - *offset;
-    hb_remember(points, history, v);
-    double y = direct * v + statics * *offset;
+    const int moves = history[0] > ahead;
+    if (settled && history[0] == 0) *offset = z;
+    hb_remember(points, history, z - *offset);
+    double y = direct * history[1 + ahead] + statics * *offset;
     for (int i = 0; i < size && moves; i++) {
         x[i] *= phi[i];
         for (int j = 0; j < points; j++) x[i] += drive[j * size + i] * history[1 + j];
@@ -177,10 +196,10 @@ static double hb_modes(int size, int points, const double *phi, const double *dr
 
 /* lags holds what is left of each state, then what the last and the new input add. */
 static double hb_thermal_drift(double coefficient, int count, const double *lags,
-                               double *started, double *before, double *x, double z,
-                               double u)
+                               int points, double *history, double *started,
+                               double *before, double *x, double z)
 {
-    double heat = u * u;
+    double heat = history[points] * history[points];
     for (int i = 0; i < count; i++) {
         const double *lag = lags + 3 * i;
         if (*started != 0) x[i] = lag[0] * x[i] + lag[1] * before[i] + lag[2] * heat;
@@ -212,12 +231,12 @@ static double hb_input_delay(double shift, int first, int points, const double *
  * which the force goes straight from corner to corner. mode: displacement, velocity. */
 static double hb_stiffness_hardening(double participation, double phase, double damping,
                                      double coefficient, double ramp, int segments,
-                                     int points, const double *corners, double *mode,
-                                     double *history, double z)
+                                     int points, int ahead, const double *corners,
+                                     double *mode, double *history, double z)
 {
 #define HB_BEND(x, v, f) ((f) - (x) * (1 + coefficient * (x) * (x)) - 2 * damping * (v))
     double x = mode[0], v = mode[1];
-    const int moves = history[0] > 0;
+    const int moves = history[0] > ahead;
     hb_remember(points, history, z);
     for (int i = 0; i < segments && moves; i++) {
         const double now = hb_weighted(points, corners + i * points, history + 1);
@@ -244,7 +263,7 @@ static double hb_stiffness_hardening(double participation, double phase, double 
     }
     mode[0] = x;
     mode[1] = v;
-    return (1 - participation) * z + participation * x;
+    return (1 - participation) * history[1 + ahead] + participation * x;
 #undef HB_BEND
 }
 
@@ -331,14 +350,16 @@ static double hb_acting_field(double c, double a, double dt, double *field, doub
 /* Fields and growths that what is inside gets, one after the other; gives how many.
  * form: 0 growing thresholds, 1 excess field, 2 acting field. */
 static int hb_rate_dependent_hysteresis(int form, double coefficient, double exponent,
-                                        double dt, int fine, int points,
+                                        double dt, int fine, int points, int ahead,
                                         const double *values, const double *rates,
                                         double *history, double *growth_before,
                                         double *field, double v, double growth,
                                         double *fields, double *growths)
 {
-    const int first = history[0] == 0, count = first ? 1 : fine;
+    const int first = history[0] == ahead, count = first ? 1 : fine;
     hb_remember(points, history, v);
+    if (history[0] <= ahead) return 0;
+    v = history[1 + ahead];
     if (first) {
         *growth_before = growth;
         field[0] = v;
@@ -346,7 +367,7 @@ static int hb_rate_dependent_hysteresis(int form, double coefficient, double exp
     for (int i = 0; i < count; i++) {
         const int row = first ? fine - 1 : i;
         const double *taps = rates + row * points, *samples = history + 1;
-        const double rate = first ? 0 : hb_weighted(points, taps, samples);
+        const double rate = history[0] > 1 ? hb_weighted(points, taps, samples) : 0;
         const double effect = coefficient * pow(fabs(rate), exponent);
         double now = row == fine - 1 ? v : hb_weighted(points, values + row * points, samples);
         double factor = *growth_before + (growth - *growth_before) * (row + 1) / fine;
@@ -366,10 +387,12 @@ static int hb_rate_dependent_hysteresis(int form, double coefficient, double exp
 /* Thresholds and weights that follow the rate: docs/rdgpi.md of hystbench. */
 static double hb_rdgpi(const double *spacing, const double *loss, double weight,
                        double tau, double envelope_gain, double envelope_offset,
-                       int points, const double *rate, int count, double *history,
-                       double *w, double z)
+                       int points, int ahead, const double *rate, int count,
+                       double *history, double *w, double z)
 {
     hb_remember(points, history, z);
+    if (history[0] <= ahead) return 0;
+    z = history[1 + ahead];
     const double speed =
         history[0] > 1 ? fabs(hb_weighted(points, rate, history + 1)) : 0;
     const double apart = spacing[0] * log(spacing[1] + spacing[2] * speed);
@@ -524,4 +547,68 @@ static double hb_store(double gain, double bias, int segments, int points,
     *level = h;
     const double spilt = over / (segments * parts * t);
     return outflow ? hb_outflow(rate, exponent, h) + caught * spilt : h;
+}
+
+/* What plays make of an input, their states being w: moved, where it is given, gets the
+ * states then. */
+static double hb_of_plays(double path, int own, const double *envelope, int count,
+                          const double *thresholds, const double *terms,
+                          const double *w, double *moved, double v)
+{
+    const double *a = envelope;
+    const double left = own ? a[0] * tanh(a[1] * v + a[2]) + a[3] : v;
+    const double right = own ? a[4] * tanh(a[5] * v + a[6]) + a[7] : v;
+    double y = path * v;
+    for (int i = 0; i < count; i++) {
+        double p = w[i];
+        hb_play(left, right, thresholds[i], &p);
+        y += p * (terms[i] + p * (terms[count + i] + p * terms[2 * count + i]));
+        if (moved) moved[i] = p;
+    }
+    return y;
+}
+
+/* The input of plays: regula falsi, the end that stays halved (Illinois). at: the input
+ * before, and how far it had moved. */
+static double hb_undo_plays(double path, int own, const double *envelope, int count,
+                            const double *thresholds, const double *terms, double low,
+                            double high, double *w, double *at, double z)
+{
+#define HB_OFF(v) \
+    (hb_of_plays(path, own, envelope, count, thresholds, terms, w, 0, v) - z)
+    double one = hb_most(low, hb_least(high, at[0])), other = one;
+    const double began = one;
+    double off_one = HB_OFF(one), off_other = off_one;
+    double step = at[1] > 0 ? at[1] : 1e-6 * (fabs(one) + 1e-6);
+    while (off_one != 0 && off_other != 0 && (off_other > 0) == (off_one > 0)) {
+        if (other == (off_other > 0 ? low : high)) break;
+        one = other;
+        off_one = off_other;
+        other = off_one > 0 ? hb_most(one - step, low) : hb_least(one + step, high);
+        off_other = HB_OFF(other);
+        step *= 2;
+    }
+    const int between = (off_other > 0) != (off_one > 0);
+    for (int turn = 0; turn < 200 && between && off_one != 0 && off_other != 0; turn++) {
+        const double least = hb_least(one, other), most = hb_most(one, other);
+        double middle = other - off_other * (other - one) / (off_other - off_one);
+        if (turn % 3 == 2 || !(middle > least && middle < most))
+            middle = 0.5 * (one + other);
+        if (!(middle > least && middle < most)) break;
+        if (most - least <= 1e-15 * (fabs(least) + fabs(most))) break;
+        const double off_middle = HB_OFF(middle);
+        if ((off_middle > 0) == (off_other > 0)) {
+            off_one *= 0.5;
+        } else {
+            one = other;
+            off_one = off_other;
+        }
+        other = middle;
+        off_other = off_middle;
+    }
+    at[0] = other;
+    at[1] = fabs(other - began);
+    hb_of_plays(path, own, envelope, count, thresholds, terms, w, w, other);
+    return other;
+#undef HB_OFF
 }

@@ -71,9 +71,27 @@ def backlash(half_width, started, w, z):
     return play(z, z, half_width, w)[0]
 
 
-def friction(coulomb, velocity_scale, points, rate, history, z, u):
+def late(samples, kept, z):
+    """Give what entered so many samples before."""
+    before = kept[-1]
+    kept[1:] = kept[:-1].copy()
+    kept[0] = z
+    return before
+
+
+def limited(low, high, z):
+    """Stand at a limit where the signal is beyond it."""
+    return min(max(z, low), high)
+
+
+def at_samples(points, taps, history, z):
+    """Weigh the newest samples."""
+    remember(points, history, z)
+    return taps @ history[1:]
+
+
+def friction(coulomb, velocity_scale, points, rate, history, z):
     """Add a force against the motion."""
-    remember(points, history, u)
     velocity = rate @ history[1:] if history[0] > 1 else 0.0
     return z + coulomb * math.tanh(velocity / velocity_scale)
 
@@ -122,6 +140,7 @@ def slew_limit(rate, started, before, now, z):
 def linear(
     size,
     points,
+    ahead,
     phi,
     drive,
     output,
@@ -134,37 +153,50 @@ def linear(
     offset,
     z,
 ):
-    """Do ``x(k) = phi x(k-1) + sum_j drive_j v(k-j)``, ``y = output x + direct v``."""
-    moves = history[0] > 0
-    if settled and not moves:
+    """Do ``x(k) = phi x(k-1) + sum_j drive_j v(k-j)``, ``y = output x + direct v``.
+
+    Of the newest sample's time less those that are known ahead.
+    """
+    moves = history[0] > ahead
+    if settled and history[0] == 0:
         offset[0] = z
-    v = z - offset[0]
-    remember(points, history, v)
+    remember(points, history, z - offset[0])
     if moves:
         x_next[:] = phi.reshape(size, size) @ x + history[1:] @ drive.reshape(
             points, size
         )
         x[:] = x_next
-    return direct * v + static * offset[0] + output @ x
+    return direct * history[1 + ahead] + static * offset[0] + output @ x
 
 
 def modes(
-    size, points, phi, drive, output, direct, settled, static, x, history, offset, z
+    size,
+    points,
+    ahead,
+    phi,
+    drive,
+    output,
+    direct,
+    settled,
+    static,
+    x,
+    history,
+    offset,
+    z,
 ):
     """Do the same where phi is diagonal."""
-    moves = history[0] > 0
-    if settled and not moves:
+    moves = history[0] > ahead
+    if settled and history[0] == 0:
         offset[0] = z
-    v = z - offset[0]
-    remember(points, history, v)
+    remember(points, history, z - offset[0])
     if moves:
         x[:] = phi * x + history[1:] @ drive.reshape(points, size)
-    return direct * v + static * offset[0] + output @ x
+    return direct * history[1 + ahead] + static * offset[0] + output @ x
 
 
-def thermal_drift(coefficient, count, lags, started, before, x, z, u):
+def thermal_drift(coefficient, count, lags, points, history, started, before, x, z):
     """Let the heat go through low-passes."""
-    heat = u * u
+    heat = history[points] * history[points]
     for i in range(count):
         lag = lags[3 * i : 3 * i + 3]
         if started[0] != 0:
@@ -198,6 +230,7 @@ def stiffness_hardening(
     ramp,
     segments,
     points,
+    ahead,
     corners,
     mode,
     history,
@@ -209,7 +242,7 @@ def stiffness_hardening(
         return force - x * (1 + coefficient * x * x) - 2 * damping * v
 
     x, v = mode
-    moves = history[0] > 0
+    moves = history[0] > ahead
     remember(points, history, z)
     places = corners.reshape(segments + 1, points) @ history[1:]
     for i in range(segments if moves else 0):
@@ -237,7 +270,7 @@ def stiffness_hardening(
             x += h / 6 * (v + 2 * (v2 + v3) + v4)
             v += h / 6 * (a1 + 2 * (a2 + a3) + a4)
     mode[:] = x, v
-    return (1 - participation) * z + participation * x
+    return (1 - participation) * history[1 + ahead] + participation * x
 
 
 def gpi(envelope, count, thresholds, weights, w, v, growth):
@@ -307,6 +340,7 @@ def rate_dependent_hysteresis(
     dt,
     fine,
     points,
+    ahead,
     values,
     rates,
     history,
@@ -316,14 +350,17 @@ def rate_dependent_hysteresis(
     growth,
 ):
     """Give the fields and growths that what is inside gets, one after the other."""
-    first = history[0] == 0
+    first = history[0] == ahead
     remember(points, history, v)
+    if history[0] <= ahead:
+        return []
+    v = history[1 + ahead]
     if first:
         growth_before[0], field[0] = growth, v
     inside = []
     for row in [fine - 1] if first else range(fine):
         taps = slice(row * points, (row + 1) * points)
-        rate = 0.0 if first else rates[taps] @ history[1:]
+        rate = rates[taps] @ history[1:] if history[0] > 1 else 0.0
         effect = coefficient * abs(rate) ** exponent
         now = v if row == fine - 1 else values[taps] @ history[1:]
         factor = growth_before[0] + (growth - growth_before[0]) * (row + 1) / fine
@@ -346,6 +383,7 @@ def rdgpi(
     envelope_gain,
     envelope_offset,
     points,
+    ahead,
     rate,
     count,
     history,
@@ -354,6 +392,9 @@ def rdgpi(
 ):
     """Let thresholds and weights follow the rate: docs/rdgpi.md of hystbench."""
     remember(points, history, z)
+    if history[0] <= ahead:
+        return 0.0
+    z = history[1 + ahead]
     speed = abs(rate @ history[1:]) if history[0] > 1 else 0.0
     apart = spacing[0] * math.log(spacing[1] + spacing[2] * speed)
     ratio, envelope = math.exp(-tau * apart), envelope_gain * z + envelope_offset
@@ -502,3 +543,55 @@ def store(
     if not outflow:
         return h
     return flow_out(rate, exponent, h) + caught * (over / (segments * parts * t))
+
+
+def of_plays(path, own, envelope, count, thresholds, terms, w, v):
+    """Give what plays make of an input, their states being w, and the states then."""
+    a, left, right = envelope, v, v
+    if own:
+        left = a[0] * math.tanh(a[1] * v + a[2]) + a[3]
+        right = a[4] * math.tanh(a[5] * v + a[6]) + a[7]
+    p = play(left, right, thresholds, w.copy())
+    first, second, third = terms.reshape(3, count)
+    return path * v + np.sum(p * (first + p * (second + p * third))), p
+
+
+def undo_plays(path, own, envelope, count, thresholds, terms, low, high, w, at, z):
+    """Find the input of plays: regula falsi, the end that stays halved (Illinois)."""
+
+    def off(v):
+        return of_plays(path, own, envelope, count, thresholds, terms, w, v)[0] - z
+
+    one = min(max(at[0], low), high)
+    other, began = one, one
+    off_one = off_other = off(one)
+    step = at[1] if at[1] > 0 else 1e-6 * (abs(one) + 1e-6)
+    while off_one != 0 and off_other != 0 and (off_other > 0) == (off_one > 0):
+        limit = low if off_other > 0 else high
+        if other == limit:
+            break
+        one, off_one = other, off_other
+        other = max(one - step, low) if off_one > 0 else min(one + step, high)
+        off_other = off(other)
+        step *= 2
+    if (off_other > 0) != (off_one > 0):
+        for turn in range(200):
+            if off_one == 0 or off_other == 0:
+                break
+            least, most = min(one, other), max(one, other)
+            middle = other - off_other * (other - one) / (off_other - off_one)
+            if turn % 3 == 2 or not least < middle < most:
+                middle = 0.5 * (one + other)
+            if not least < middle < most:
+                break
+            if most - least <= 1e-15 * (abs(least) + abs(most)):
+                break
+            off_middle = off(middle)
+            if (off_middle > 0) == (off_other > 0):
+                off_one *= 0.5
+            else:
+                one, off_one = other, off_other
+            other, off_other = middle, off_middle
+    at[0], at[1] = other, abs(other - began)
+    w[:] = of_plays(path, own, envelope, count, thresholds, terms, w, other)[1]
+    return other

@@ -1,57 +1,74 @@
-"""Figures: one small file each, drawn from the files of results.
+"""Figures, drawn from the files of results.
 
-A figure is a module here with a function ``draw`` that takes the files it needs by
-keyword (``records``, ``runs``, ``table``, ``identified``) and returns a
-``matplotlib.figure.Figure``. To add one, write the module and name it in
-:data:`NAMES`; a module is imported when its figure is drawn.
+A figure is a function of a module here. It takes the files it needs by keyword
+(``records``, ``runs``, ``table``, ``identified``) and returns a
+``matplotlib.figure.Figure``. To add one, write the function and name it in
+:data:`FIGURES`; a module is imported when its figure is drawn.
 """
 
 from __future__ import annotations
 
 import importlib
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from hystbench.errors import InputError, nearest
 
-#: Those with a number redraw the figure of the paper with that number.
-NAMES = (
-    "figure-03-play",
-    "figure-04-generalized-play",
-    "figure-07-order",
-    "figure-08-loops",
-    "figure-09-chirp",
-    "figure-10-sum",
-    "figure-11-sum",
-    "figure-12-random-sum",
-    "headline",
-    "identification",
-    "learning-curves",
-    "errors-heat-map",
-    "contest",
-    "step-edges",
-    "loops",
-    "errors-by-record",
-    "gap-loop",
-    "blind-confusion",
-    "blind-effects",
-    "blind-power",
-    "blind-reliability",
-    "blind-where",
-    "tracking-errors",
-)
+#: Module, function and first arguments of each. Those with a number redraw the figure
+#: of the paper with that number.
+FIGURES: dict[str, tuple[Any, ...]] = {
+    "figure-03-play": ("characteristics", "draw_play"),
+    "figure-04-generalized-play": ("characteristics", "draw_generalized_play"),
+    "figure-07-order": ("filters", "draw_order"),
+    "figure-08-loops": ("loops", "draw_with_errors", 5),
+    "figure-09-chirp": ("chirp", "draw"),
+    # Two periods of each sum, in seconds.
+    "figure-10-sum": ("sums", "draw_curves", 0.2),
+    "figure-11-sum": ("sums", "draw_curves", 0.4),
+    # Enough to see single swings of the fastest sine, 100 Hz.
+    "figure-12-random-sum": ("sums", "draw_errors", 0.5),
+    "headline": ("loops", "draw_with_errors", 3),
+    "identification": ("identification", "draw"),
+    "learning-curves": ("filters", "draw_learning"),
+    "errors-heat-map": ("errors_heat_map", "draw"),
+    "step-edges": ("step_edges", "draw"),
+    "loops": ("loops", "draw"),
+    "errors-by-record": ("rows_of_errors", "draw_by_record"),
+    "gap-loop": ("gap_loop", "draw"),
+    "blind-confusion": ("blind_confusion", "draw"),
+    "blind-effects": (
+        "blind",
+        "draw_shares",
+        {"top1": "named first", "exact": "named, and nothing beside it"},
+    ),
+    "blind-power": ("blind", "draw_power"),
+    "blind-reliability": ("blind", "draw_reliability"),
+    "blind-where": (
+        "blind",
+        "draw_shares",
+        {"where_hit": "first view is the right one"},
+    ),
+    "tracking-errors": ("tracking_errors", "draw"),
+}
+NAMES = tuple(FIGURES)
 
 
-def drawer(name: str) -> Callable[..., Any]:
-    """Give the function that draws a figure.
+def module_of(name: str) -> str:
+    """Give the module that draws a figure, by its full name.
 
     Raises
     ------
     InputError
         If there is no such figure.
     """
-    if name not in NAMES:
-        raise InputError(f"no figure {name!r}; {nearest(name, NAMES)}")
-    module = importlib.import_module(f"{__name__}.{name.replace('-', '_')}")
-    draw: Callable[..., Any] = module.draw
-    return draw
+    if name not in FIGURES:
+        raise InputError(f"no figure {name!r}; {nearest(name, FIGURES)}")
+    return f"{__name__}.{FIGURES[name][0]}"
+
+
+def drawer(name: str) -> Callable[..., Any]:
+    """Give the function that draws a figure; raises as :func:`module_of`."""
+    module = importlib.import_module(module_of(name))
+    _, function, *first = FIGURES[name]
+    return partial(getattr(module, function), *first)

@@ -7,11 +7,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from hystbench.compare.rows import read_rows
-from hystbench.errors import InputError
 from hystbench.figures import style
+from hystbench.figures.data import read_table
 
 _COLUMNS = ("kind", "hidden", "answered", "right", "cases")
 #: Answers that are no effect, at the right end.
@@ -31,9 +29,7 @@ def draw(*, table: Path) -> Figure:
     table : Path
         ``kind, hidden, answered, right, cases``.
     """
-    rows = read_rows(table, _COLUMNS)
-    if not rows:
-        raise InputError(f"{table}: no case of the blind contest")
+    rows = read_table(table, _COLUMNS, "case of the blind contest")
     lines = list(dict.fromkeys(row["hidden"] for row in rows))
     listed = [row["hidden"] for row in rows if row["kind"] == "single"]
     answers = {row["answered"] for row in rows}
@@ -65,19 +61,9 @@ def draw(*, table: Path) -> Figure:
     axes.set_yticks(range(len(lines)), lines)
     axes.set_xlabel("first answer")
     axes.set_ylabel("hidden effect")
-    style.legend_above(
-        figure, [_patch("right", style.GREEN), _patch("wrong", style.VERMILION)]
-    )
+    patch = {"marker": "s", "markersize": 6, "linestyle": "none"}
+    counted = "right (number of cases in each cell)"
+    right_key = style.key(counted, color=style.GREEN, **patch)
+    wrong_key = style.key("wrong", color=style.VERMILION, **patch)
+    style.legend_above(figure, [right_key, wrong_key])
     return figure
-
-
-def _patch(label: str, color: str) -> Line2D:
-    return Line2D(
-        [],
-        [],
-        color=color,
-        marker="s",
-        markersize=6,
-        linestyle="none",
-        label=f"{label} (number of cases in each cell)" if label == "right" else label,
-    )

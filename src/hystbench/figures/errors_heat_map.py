@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 
-from hystbench.errors import InputError
 from hystbench.figures import style
+from hystbench.figures.data import read_table
 
 _COLUMNS = (
     "signal",
@@ -40,7 +38,8 @@ def draw(*, table: Path) -> Figure:
     table : Path
         The compared cells, one row a signal, model and metric.
     """
-    rows = [row for row in _read(table) if row["metric"] == "mse"]
+    cells = read_table(table, _COLUMNS, "compared cell")
+    rows = [row for row in cells if row["metric"] == "mse"]
     signals = list(dict.fromkeys(row["signal"] for row in rows))
     models = style.in_order(row["model"] for row in rows)
     figure = Figure(figsize=(5.0, 1.5 + 0.24 * len(signals)))
@@ -89,13 +88,11 @@ def draw(*, table: Path) -> Figure:
         handles=[
             Patch(fill=False, label="published pair of MSE and RE inconsistent"),
             Patch(fill=False, label="perhaps inconsistent", linestyle=":"),
-            Line2D(
-                [],
-                [],
+            style.key(
+                "held out of the calibration",
                 color=style.BLACK,
                 linestyle="none",
                 marker=f"${_HELD_OUT}$",
-                label="held out of the calibration",
             ),
         ],
         loc="outside lower center",
@@ -127,12 +124,3 @@ def _number(value: float) -> str:
 
 def _word(status: str) -> str:
     return status if status == "not run" else "diverged"
-
-
-def _read(table: Path) -> list[dict[str, str]]:
-    with table.open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
-    for column in _COLUMNS:
-        if not rows or column not in rows[0]:
-            raise InputError(f"{table}: no column {column!r}; expected compared cells")
-    return rows

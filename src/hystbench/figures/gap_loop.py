@@ -9,14 +9,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from hystbench.errors import InputError
 from hystbench.figures import style
-from hystbench.figures.data import last_cycles
-from hystbench.record import load_record
-
-_CYCLES = 1
+from hystbench.figures.data import last_cycles, read_one
 
 
 def draw(*, records: Sequence[Path], table: Path) -> Figure:
@@ -34,9 +30,7 @@ def draw(*, records: Sequence[Path], table: Path) -> Figure:
     InputError
         If there is not one record, or its samples are not those of the table.
     """
-    if len(records) != 1:
-        raise InputError(f"{len(records)} records; expected one --record")
-    record = load_record(records[0])
+    record = read_one(records, "one --record")
     before, after = np.loadtxt(
         table, delimiter=",", skiprows=1, usecols=(2, 3), unpack=True, ndmin=2
     )
@@ -47,7 +41,7 @@ def draw(*, records: Sequence[Path], table: Path) -> Figure:
         )
     gap = json.loads((table.parents[1] / "gap.json").read_text(encoding="utf-8"))
     names = " and ".join(item["name"] for item in gap["effects"]) or "nothing added"
-    part = last_cycles(record, _CYCLES)
+    part = last_cycles(record, 1)
     figure = Figure(figsize=(style.PAGE, 3.0))
     panels = figure.subplots(1, 2, sharex=True, sharey=True)
     lines = {"the simulator": before, f"with {names}": after}
@@ -64,9 +58,9 @@ def draw(*, records: Sequence[Path], table: Path) -> Figure:
     style.legend_above(
         figure,
         [
-            Line2D([], [], label=title, **style.BEHIND),
-            Line2D([], [], label="simulator", **looks[0]),
-            Line2D([], [], label=f"simulator with {names}", **looks[1]),
+            style.key(title, **style.BEHIND),
+            style.key("simulator", **looks[0]),
+            style.key(f"simulator with {names}", **looks[1]),
         ],
     )
     return figure

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
 from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope
 from hystbench.errors import InputError
 from hystbench.figures import style
+from hystbench.figures.data import read_one
 from hystbench.files import read_json
 from hystbench.identification import Identification, fit_weights
-from hystbench.record import Record, load_record
+from hystbench.record import Record
 
 _IDENTIFIED: dict[str, Any] = {"color": style.BLUE, "linestyle": "-"}
 _PUBLISHED: dict[str, Any] = {"color": style.VERMILION, "linestyle": (0, (4, 2))}
@@ -36,9 +36,8 @@ def draw(*, identified: Path, records: Sequence[Path]) -> Figure:
     records : sequence of Path
         The slow record.
     """
-    if len(records) != 1:
-        raise InputError(f"{len(records)} records; expected the slow one (--record)")
-    record, found = load_record(records[0]), _read(identified)
+    record = read_one(records, "the slow one (--record)")
+    found = _read(identified)
     if not np.isclose(found.amplitude, np.abs(record.u).max()):
         raise InputError(
             f"{identified}: amplitude {found.amplitude:g}, of another record than "
@@ -60,12 +59,12 @@ def draw(*, identified: Path, records: Sequence[Path]) -> Figure:
     progress, envelopes, loop = figure.subplots(1, 3)
     _progress(progress, found, record)
     loop.plot(record.u, record.y, **style.BEHIND)
-    handles = [Line2D([], [], label=f"{record.origin}, {record.name}", **style.BEHIND)]
+    handles = [style.key(f"{record.origin}, {record.name}", **style.BEHIND)]
     for name, (model, line) in models.items():
         _envelopes(envelopes, model, record, **line)
         loop.plot(record.u, model.simulate(record.u), **line)
         label = f"{name} envelopes (RE {model.relative_error:.2g})"
-        handles.append(Line2D([], [], label=label, **line))
+        handles.append(style.key(label, **line))
     envelopes.set(
         xlabel=style.axis_label(record.input),
         ylabel=r"envelope / $\max\{\gamma_r, \gamma_l\}$ (-)",

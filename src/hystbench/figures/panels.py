@@ -71,6 +71,6 @@ def say_diverged(axes: Axes, record: Record, output: Output) -> None:
 def handles(record: Record, models: Iterable[str]) -> list[Line2D]:
     """Legend of a record, named by its origin, and of models."""
     return [
-        Line2D([], [], label=record.origin, **style.BEHIND),
+        style.key(record.origin, **style.BEHIND),
         *style.handles(models),
     ]

@@ -6,8 +6,6 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from hystbench.compare.edges import Edge, read_edges
 from hystbench.errors import InputError
@@ -39,8 +37,7 @@ def draw(*, table: Path) -> Figure:
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
     for axes, model in zip(panels.flat, models, strict=False):
         _panel(axes, [edge for edge in edges if edge.model == model], signals)
-        name = style.look(model).label
-        axes.set_title(name, loc="left")
+        axes.set_title(style.look(model).label, loc="left")
         axes.set_xlabel(
             "step size µ of first order (1/A²)"
             if model == "volterra"
@@ -52,10 +49,10 @@ def draw(*, table: Path) -> Figure:
         line[0].set_ylabel("signal")
     style.letter(list(panels.flat)[: len(models)])
     handles = [
-        Line2D([], [], color=color, marker=marker, linestyle="none", label=label)
+        style.key(label, color=color, marker=marker, linestyle="none")
         for label, marker, color in _MARKS.values()
     ]
-    handles.append(Line2D([], [], color=style.BLACK, label="µ as configured"))
+    handles.append(style.key("µ as configured", color=style.BLACK))
     style.legend_above(figure, handles)
     return figure
 
@@ -66,20 +63,8 @@ def _panel(axes: Axes, edges: list[Edge], signals: list[str]) -> None:
         for name, (_, marker, color) in _MARKS.items():
             value = getattr(edge, name)
             if value is not None:
-                axes.plot(
-                    [value],
-                    [y],
-                    marker=marker,
-                    color=color,
-                    linestyle="none",
-                    markersize=4,
-                )
+                (mark,) = axes.plot([value], [y], marker, color=color)
+                mark.set_markersize(4)
     axes.axvline(edges[0].mu, color=style.BLACK, linewidth=0.9)
-    axes.set_xscale("log")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_yticks(range(len(signals)), [*map(style.signal_title, signals)])
-    axes.set_ylim(len(signals) - 0.5, -0.5)
-    axes.tick_params(axis="y", length=0)
-    axes.grid(visible=False, axis="y")
+    style.logarithmic(axes, (1.0, 2.0, 5.0))
+    style.name_rows(axes, [*map(style.signal_title, signals)], ruled=False)

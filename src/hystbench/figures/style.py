@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
 from numpy.typing import ArrayLike
 
 from hystbench.errors import InputError, nearest
@@ -163,6 +164,34 @@ def handles(
     if diverged:
         lines.append(Line2D([], [], color=BLACK, label="diverged", **DIVERGED))
     return lines
+
+
+def key(label: str, **line: Any) -> Line2D:
+    """Make an entry of a legend."""
+    return Line2D([], [], label=label, **line)
+
+
+def name_rows(axes: Axes, names: Sequence[str], *, ruled: bool = True) -> None:
+    """Name rows on the vertical axis, the first above, with lines between them."""
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(visible=False, axis="y")
+    for edge in range(1, len(names) if ruled else 0):
+        axes.axhline(edge - 0.5, color=GREY, linewidth=0.4)
+
+
+def in_row(index: int, count: int, spread: float) -> float:
+    """Place one of several marks in a row, off its middle, over a part of the row."""
+    return (index - (count - 1) / 2) * spread / count
+
+
+def logarithmic(axes: Axes, subs: Sequence[float] = (1.0,)) -> None:
+    """Make the horizontal axis logarithmic, with plain numbers at these multiples."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(subs=subs))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter("")
 
 
 def mark_above(axes: Axes, x: ArrayLike, color: str) -> None:

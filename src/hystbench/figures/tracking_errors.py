@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -11,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hystbench.errors import InputError
 from hystbench.figures import style
+from hystbench.figures.data import read_table
 from hystbench.inverse.told import GOAL
 from hystbench.inverse.tracking import DRIVES, LINEAR, OWN, WITH, WITHOUT
 
@@ -32,7 +31,9 @@ def draw(*, table: Path) -> Figure:
     table : Path
         Errors, one row a reference and drive; the raster scan lies beside it.
     """
-    rows = _read(table, ("reference", "drive", "rms_percent", "unit"))
+    rows = read_table(
+        table, ("reference", "drive", "rms_percent", "unit"), "tracking error"
+    )
     names = list(dict.fromkeys(row["reference"] for row in rows))
     figure = Figure(figsize=(style.PAGE, max(1.1 + 0.24 * len(names), 3.4)))
     grid = figure.add_gridspec(2, 2)
@@ -76,7 +77,7 @@ def _errors(axes: Axes, rows: Sequence[dict[str, str]], names: Sequence[str]) ->
 
 
 def _scan(above: Axes, below: Axes, table: Path, unit: str) -> None:
-    rows = _read(table, ("time_s", "reference", *DRIVES))
+    rows = read_table(table, ("time_s", "reference", *DRIVES), "tracking error")
     columns = {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
     time, reference = 1e3 * columns["time_s"], columns["reference"]
     above.plot(time, reference, **style.BEHIND)
@@ -96,12 +97,3 @@ def _title(name: str) -> str:
     if words[0] == "raster":
         return f"raster, {words[1]} lines a second"
     return style.signal_title(name)
-
-
-def _read(table: Path, columns: Sequence[str]) -> list[dict[str, str]]:
-    with table.open(encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
-    for column in columns:
-        if not rows or column not in rows[0]:
-            raise InputError(f"{table}: no column {column!r}; expected tracking errors")
-    return rows

@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.formats.table import Column, FloatArray, Table, as_numbers
+from hystbench.formats.stamps import since_first
+from hystbench.formats.table import Column, FloatArray, Table
 from hystbench.text_files import decoded
 
 COMMENTS = ("#", "%", "//", "!", '"#')
@@ -35,9 +36,6 @@ NO_NUMBER = frozenset({"", "nan", "-nan", "na", "n/a", "null", "none", "#n/a", "
 """What stands in a cell that has no number, in small letters."""
 NAMES = {";": "semicolons", "\t": "tabs", "|": "bars", " ": "spaces", ",": "commas"}
 
-_STAMP = re.compile(
-    r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d([.,]\d+)?)?\s?(Z|[+-]\d\d:?\d\d)?"
-)
 _UNIT_CELL = re.compile(r"\s*(?:\[(?P<square>[^\]]*)\]|\((?P<round>[^)]*)\))\s*")
 
 
@@ -107,7 +105,10 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
         unit = layout.units[k] if layout.units else None
         if k in stamps:
             unit = "s"
-            notes.append(f"{layout.names[k]}: dates and times; seconds from the first")
+            notes.append(
+                f"{layout.names[k]}: dates and times, taken as {stamps[k]}; seconds "
+                "from the first"
+            )
         found.append(Column(layout.names[k], column, unit or None))
     if layout.separator != "," or layout.decimal != ".":
         comma = ", decimal commas" if layout.decimal == "," else ""
@@ -281,13 +282,13 @@ def _numbers(
     columns: Sequence[int],
     *,
     strict: bool,
-) -> tuple[list[FloatArray | None], set[int]]:
-    """Read columns, and tell which hold dates and times.
+) -> tuple[list[FloatArray | None], dict[int, str]]:
+    """Read columns, and tell which hold dates and times, and in what form.
 
     A column that holds no numbers is None, unless that is an error.
     """
     if not columns:
-        return [], set()
+        return [], {}
     separator, decimal = layout.separator, layout.decimal
     texts = [lines[k] for k in rows]
     if not any('"' in line for line in texts):
@@ -301,19 +302,21 @@ def _numbers(
                 ndmin=2,
             )
             if not (strict and np.isinf(table).any()):
-                return [np.ascontiguousarray(part) for part in table.T], set()
+                return [np.ascontiguousarray(part) for part in table.T], {}
         except ValueError:
             pass  # a cell is empty or no number
     cut = [_cells(line, separator) for line in texts]
     found: list[FloatArray | None] = []
-    stamps = set()
+    stamps = {}
     for column in columns:
-        times = _since_first(
-            [cells[column].strip() if column < len(cells) else "" for cells in cut]
+        said = [cells[column].strip() if column < len(cells) else "" for cells in cut]
+        times = since_first(
+            ["" if cell.lower() in NO_NUMBER else cell for cell in said],
+            f"{path}: column {layout.names[column]!r}",
         )
         if times is not None:
-            found.append(times)
-            stamps.add(column)
+            values, stamps[column] = times
+            found.append(values)
             continue
         values, bad, spoilt = np.full(len(rows), np.nan), ("", ""), 0
         for k, cells in enumerate(cut):
@@ -340,23 +343,6 @@ def _numbers(
             )
         found.append(None if words else values)
     return found, stamps
-
-
-def _since_first(cells: Sequence[str]) -> FloatArray | None:
-    """Give dates and times of ISO 8601 as seconds from the first; None of others."""
-    said = ["" if cell.lower() in NO_NUMBER else cell for cell in cells]
-    there = [cell for cell in said if cell]
-    if not there or not all(map(_STAMP.fullmatch, there)):
-        return None
-    import pandas as pd  # late: a third of a second
-
-    try:
-        times = pd.to_datetime(
-            [cell.replace(",", ".") for cell in said], format="ISO8601", utc=True
-        )
-    except ValueError:
-        return None  # no day or hour of that number
-    return as_numbers(times.tz_localize(None).to_numpy())
 
 
 def _no_numbers(lines: Sequence[str], wanted: Collection[str] | None) -> str:

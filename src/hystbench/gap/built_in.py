@@ -7,7 +7,7 @@ gap is told beside that, and is never added to it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -51,6 +51,16 @@ class BuiltIn:
     def names(self) -> tuple[str, ...]:
         """Names of the effects, in the order in which they were put in."""
         return tuple(str(item["name"]) for item in self.effects)
+
+    def mapping(self) -> dict[str, Any]:
+        """Give the same as JSON holds it."""
+        return {"alone": self.alone.to_mapping(), "effects": list(self.effects)}
+
+    @classmethod
+    def of_mapping(cls, content: Mapping[str, Any]) -> BuiltIn:
+        """Give back what :meth:`mapping` gave."""
+        alone = Model.from_mapping(content["alone"], "the simulator alone")
+        return cls(alone, tuple(content["effects"]))
 
 
 def put_in(

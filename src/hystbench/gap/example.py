@@ -41,7 +41,7 @@ def write_example(
     fit, hold_out : sequence of Record
         Records of the twin.
     identified : mapping
-        What ``hystbench identify`` wrote.
+        What ``hystbench job identify`` wrote.
     folder : Path
         Gets ``dataset/`` and ``base.yaml``.
     """
@@ -101,7 +101,7 @@ def slow_loop_model(
     Parameters
     ----------
     identified : mapping
-        What ``hystbench identify`` wrote.
+        What ``hystbench job identify`` wrote.
     given, measured : Channel
         Input and output of the records.
     """

@@ -1,6 +1,7 @@
 """Cross-validation over the fit records: what is fitted and what only judges.
 
-A simulation always runs freely over a whole record; only the scoring is masked.
+A simulation always runs freely over a whole record; only the scoring is masked. Samples
+that were not measured neither fit nor judge.
 """
 
 from __future__ import annotations
@@ -9,12 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.errors import InputError
-from hystbench.record import FloatArray, Record
-
-Mask = NDArray[np.bool_]
+from hystbench.record import FloatArray, Mask, Record
 
 #: With so many records whole ones are held out; with fewer, blocks of each.
 RECORDS = 3
@@ -38,7 +36,7 @@ class Fold:
     ----------
     train, validation : tuple of ndarray of bool
         One mask a record, in the records' order, shape (n,) each. No sample is in
-        both; the samples of a guard gap are in neither.
+        both; the samples of a guard gap are in neither, nor are interpolated ones.
     """
 
     train: tuple[Mask, ...]
@@ -57,7 +55,7 @@ def make_folds(
     has as many, and a fold holds out one block of each record. A guard gap of a tenth
     of a block keeps what a block remembers of its neighbours out of the fit.
 
-    Every sample judges in exactly one fold.
+    Every measured sample judges in exactly one fold.
 
     Parameters
     ----------
@@ -90,7 +88,11 @@ def make_folds(
                 f"record {record.name}: {len(record)} samples; cross-validation "
                 f"expects at least {shortest}"
             )
-    return _by_record(records) if whole else _by_block(records)
+    folds = _by_record(records) if whole else _by_block(records)
+    return tuple(
+        Fold(_measured(fold.train, records), _measured(fold.validation, records))
+        for fold in folds
+    )
 
 
 def chosen(values: Sequence[FloatArray], masks: Sequence[Mask]) -> FloatArray:
@@ -107,6 +109,12 @@ def chosen(values: Sequence[FloatArray], masks: Sequence[Mask]) -> FloatArray:
     """
     return np.concatenate(
         [item[mask] for item, mask in zip(values, masks, strict=True)]
+    )
+
+
+def _measured(masks: Sequence[Mask], records: Sequence[Record]) -> tuple[Mask, ...]:
+    return tuple(
+        mask & record.counted for mask, record in zip(masks, records, strict=True)
     )
 
 

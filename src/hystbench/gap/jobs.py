@@ -8,6 +8,7 @@ from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
+from hystbench.gap.built_in import BuiltIn, put_in
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.finding import Finding, black_box, decide
 from hystbench.gap.floor import Floor
@@ -15,14 +16,13 @@ from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
 from hystbench.gap.named_apart import named_apart
-from hystbench.gap.outcome import with_what_was_asked
 from hystbench.gap.own_values import OwnValues
-from hystbench.gap.run import DECISIVE, SHOWN, outcome, write_shown
+from hystbench.gap.run import DECISIVE, SHOWN, as_asked, outcome, write_shown
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.start import start_state
 from hystbench.gap.unnamed import SHARE
-from hystbench.gap.vocabulary import EVERYTHING
+from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.model import Model
 from hystbench.written import writes
 
@@ -40,6 +40,7 @@ def decide_in(
     limits: Mapping[str, float] | None = None,
     say: Say = silent,
     unnamed_share: float = SHARE,
+    vocabulary: Vocabulary = EVERYTHING,
 ) -> Finding:
     """Decide on the fit records; write the decision and the curves to a folder.
 
@@ -55,11 +56,14 @@ def decide_in(
         Told a line of progress at a time.
     unnamed_share : float
         Share of the power of the gap that may stay unnamed beside a name.
+    vocabulary : Vocabulary
+        Effects that may be named, and those that are in the model from the start.
     """
     writes(*(folder / name for name in DECIDED))
     asked = Limits.within(evidence.fit, limits) if limits else None
     say = say_in_words(say)
-    vocabulary = EVERYTHING.in_device(evidence.device_kind)
+    vocabulary = vocabulary.in_device(evidence.device_kind)
+    base, built_in = put_in(base, evidence, vocabulary.fixed, say)
     start, floor = start_state(
         evidence.fit, base, evidence.hold, evidence.noise_rms, vocabulary.offered
     )
@@ -77,6 +81,9 @@ def decide_in(
             {"name": item.name, "state": state_mapping(item.state)}
             for item in finding.rungs
         ],
+        "without": list(vocabulary.without),
+        "with": list(vocabulary.fixed),
+        "built_in": None if built_in is None else built_in.mapping(),
     }
     with whole_folder(folder, DECIDED) as fresh:
         write_json(fresh / "curves.json", finding.curves)
@@ -123,10 +130,11 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
         own,
         evidence.warnings,
     )
-    content = with_what_was_asked(
-        shown.content, EVERYTHING.in_device(evidence.device_kind)
-    )
-    content = with_device(content, evidence.device_kind, evidence.quantities)
+    vocabulary = Vocabulary.of(kept["without"], kept["with"])
+    vocabulary = vocabulary.in_device(evidence.device_kind)
+    built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
+    shown = as_asked(shown, vocabulary, built_in, evidence, state, floor, own)
+    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
     shown = replace(shown, content=content)
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

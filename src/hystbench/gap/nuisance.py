@@ -13,8 +13,7 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.compared import rms
-from hystbench.gap.folds import Mask
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray, Mask, Record
 
 #: Part of a hold-out record that estimates what is new in it.
 FIRST = 0.3
@@ -44,18 +43,18 @@ def split_first(record: Record, part: float = FIRST) -> Mask:
 
 
 def without_nuisance(
-    residual: FloatArray, regressors: FloatArray, scored: Mask
+    residual: FloatArray, regressors: FloatArray, estimating: Mask
 ) -> FloatArray:
-    """Take off what is new in a record, estimated where it is not scored.
+    """Take off what is new in a record, estimated on samples that are not scored.
 
-    Least squares of the residual on the regressors over the samples outside
-    ``scored``; directions that those samples do not show stay at zero.
+    Least squares of the residual on the regressors over the samples ``estimating``;
+    directions that those samples do not show stay at zero.
 
     Parameters
     ----------
     residual : ndarray, shape (n,)
     regressors : ndarray, shape (n, m)
-    scored : ndarray of bool, shape (n,)
+    estimating : ndarray of bool, shape (n,)
 
     Returns
     -------
@@ -65,7 +64,7 @@ def without_nuisance(
         return residual
     scale = np.sqrt(np.mean(np.square(regressors), axis=0))
     columns = regressors / np.where(scale > 0, scale, 1.0)
-    weights, *_ = np.linalg.lstsq(columns[~scored], residual[~scored], rcond=1e-6)
+    weights, *_ = np.linalg.lstsq(columns[estimating], residual[estimating], rcond=1e-6)
     return np.asarray(residual - columns @ weights)
 
 
@@ -74,12 +73,14 @@ def left_over(
 ) -> tuple[FloatArray, Mask]:
     """Residual without what is new in the record, and the samples that are scored.
 
+    Samples that were not measured neither estimate nor are scored.
+
     Parameters
     ----------
     record : Record
     simulated : ndarray, shape (n,)
     nuisance : callable or None
-        Gives the regressors; without it every sample is scored.
+        Gives the regressors; without it every measured sample is scored.
 
     Returns
     -------
@@ -88,9 +89,10 @@ def left_over(
     """
     residual = record.y - simulated
     if nuisance is None:
-        return residual, np.ones(len(record), dtype=np.bool_)
-    scored = split_first(record)
-    return without_nuisance(residual, nuisance(record), scored), scored
+        return residual, record.counted
+    late = split_first(record)
+    rest = without_nuisance(residual, nuisance(record), ~late & record.counted)
+    return rest, late & record.counted
 
 
 def path_and_mains(degree: int | None, mains_hz: Sequence[float] = ()) -> Nuisance:

@@ -9,18 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.augmented import augmented
 from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.beside import black_box_mapping
-from hystbench.gap.bounded import RunsAway, bounded, reach
-from hystbench.gap.built_in import put_in
+from hystbench.gap.built_in import BuiltIn, put_in
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
 from hystbench.gap.foretell import keep_back
-from hystbench.gap.nuisance import Nuisance, degree_that_carries_on, path_and_mains
 from hystbench.gap.outcome import (
     first_figure,
     with_built_in,
@@ -31,15 +27,10 @@ from hystbench.gap.outcome import (
 from hystbench.gap.own_values import NONE, OwnValues
 from hystbench.gap.rungs import BASE, Rung
 from hystbench.gap.say import Say, silent
-from hystbench.gap.scene import Scene
 from hystbench.gap.shortfall import shortfall
+from hystbench.gap.shown import as_recorded, nuisance_of, show
 from hystbench.gap.shrink import (
-    RecordShrink,
-    Shrink,
     ladder,
-    mapping,
-    records_mapping,
-    shrink,
 )
 from hystbench.gap.start import run_base
 from hystbench.gap.state import State
@@ -171,15 +162,10 @@ def closed_gap(
         finding.own,
         evidence.warnings,
     )
-    content = with_what_was_asked(shown.content, vocabulary)
-    if built_in is not None:
-        outputs = run_base(built_in.alone, evidence.hold_out, evidence.hold)
-        mine = as_recorded(finding.own, evidence.hold_out, outputs, finding.floor)
-        nuisance = nuisance_of(finding.state, finding.own)
-        ((_, alone),) = ladder(evidence.hold_out, [(BASE, mine)], nuisance)
-        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
-        content = with_built_in(content, built_in, alone)
-    content = with_device(content, evidence.device_kind, evidence.quantities)
+    shown = as_asked(
+        shown, vocabulary, built_in, evidence, finding.state, finding.floor, finding.own
+    )
+    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
     shown = replace(shown, content=content)
     return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
 
@@ -295,158 +281,36 @@ def outcome(
     return Outcome(model, content, shown.outputs)
 
 
-@dataclass(frozen=True)
-class Shown:
-    """What the hold-out records show.
-
-    Parameters
-    ----------
-    content : dict
-        ``gap``, ``records``, ``ladder``, ``runs_away`` and ``black_box`` of gap.json.
-    outputs : list of (ndarray, ndarray)
-        Outputs before and after, of each record; NaN where the model runs away on it.
-    """
-
-    content: dict[str, Any]
-    outputs: list[tuple[FloatArray, FloatArray]]
-
-
-def show(
-    base: Model,
+def as_asked(
+    shown: Outcome,
+    vocabulary: Vocabulary,
+    built_in: BuiltIn | None,
+    evidence: Evidence,
     state: State,
     floor: Floor,
-    box: BlackBox,
-    records: tuple[Record, ...],
-    steps: Sequence[Rung],
-    own: OwnValues = NONE,
-) -> Shown:
-    """Compare base and model on hold-out records.
+    own: OwnValues,
+) -> Outcome:
+    """Tell which effects the user put in or left out, and what those put in do.
 
     Parameters
     ----------
-    base : Model
-    state : State
-        The model with all effects that were added.
-    floor : Floor
-    box : BlackBox
-        Fitted to what the base leaves on the fit records.
-    records : tuple of Record
-    steps : sequence of Rung
-        Models on the way from the base to this one.
-    own : OwnValues
-        What fit records have of their own: a hold-out record may have the same.
-
-    Returns
-    -------
-    Shown
-
-    Raises
-    ------
-    InputError
-        If the base's output is not finite on a record. Where a model's is not, the
-        finding stays: the record is told, and counts as nothing closed.
+    shown : Outcome
+    vocabulary : Vocabulary
+    built_in : BuiltIn or None
+        None where no effect was put in.
+    evidence : Evidence
+    state, floor, own
+        As for :func:`show`.
     """
-    nuisance = nuisance_of(state, own)
-    plain = run_base(base, records, state.hold)
-    usual = reach(plain, floor.rms)
-    mine = as_recorded(own, records, plain, floor)
-    before = [output for output in mine if output is not None]
-    found_after, lost = _run(_name(base, state), state, records, usual)
-    after = as_recorded(own, records, found_after, floor)
-    found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
-    stages = [
-        (
-            rung.name,
-            as_recorded(
-                own,
-                records,
-                _run(_name(base, rung.state), rung.state, records, usual)[0],
-                floor,
-            ),
-        )
-        for rung in steps
-    ]
-    content = {
-        "gap": mapping(found),
-        "records": records_mapping(found),
-        "ladder": [
-            {"name": name, "rms": value}
-            for name, value in ladder(records, stages, nuisance)
-        ],
-        "runs_away": [item.mapping() for item in lost],
-        "black_box": black_box_mapping(box, records, before, found, nuisance),
-    }
-    outputs = [
-        (record.y - item.residual_before, _after(record, item))
-        for record, item in zip(records, found.records, strict=True)
-    ]
-    return Shown(content, outputs)
-
-
-def _after(record: Record, item: RecordShrink) -> FloatArray:
-    if item.residual_after is None:
-        return np.full(len(record), np.nan)
-    return record.y - item.residual_after
-
-
-def nuisance_of(state: State, own: OwnValues) -> Nuisance | None:
-    """Give regressors of what is new in every record, of the device or its own."""
-    nuisance = what_is_new(state)
-    if own.kinds and nuisance is None:
-        nuisance = path_and_mains(None)  # nothing more, but the first part estimates
-    return nuisance
-
-
-def as_recorded(
-    own: OwnValues,
-    records: Sequence[Record],
-    outputs: Sequence[FloatArray | None],
-    floor: Floor,
-) -> list[FloatArray | None]:
-    """Give simulated outputs with what each record has of its own."""
-    return [
-        output
-        if output is None or not own.kinds
-        else own.fitted_first(record, output, floor.rms**2).of(output, record.dt)
-        for record, output in zip(records, outputs, strict=True)
-    ]
-
-
-def what_is_new(state: State) -> Nuisance | None:
-    """Give regressors of what is new in every record, if an effect says so."""
-    if not state.beside:
-        return None
-    tones = [
-        order * values["frequency_hz"]
-        for beside, values in state.beside
-        if "frequency_hz" in values
-        for order in range(1, beside.order + 1)
-    ]
-    if all("frequency_hz" in values for _, values in state.beside):
-        return path_and_mains(None, tones)
-    outputs = Scene(state.chain, state.records, state.hold).output
-    degree = degree_that_carries_on(state.records, outputs, tones)
-    return path_and_mains(degree, tones)
-
-
-def _run(
-    name: str, state: State, records: tuple[Record, ...], usual: float
-) -> tuple[list[FloatArray | None], list[RunsAway]]:
-    outputs: list[FloatArray] = []
-    refused: dict[str, str] = {}
-    for record in records:
-        try:
-            with np.errstate(over="ignore", invalid="ignore"):
-                outputs += Scene(state.chain, (record,), state.hold).output
-        except InputError as error:  # a simulator may not take what an effect sends it
-            refused[record.name] = str(error)
-            outputs.append(np.full(len(record), np.nan))
-    return bounded(name, records, outputs, usual, refused)
-
-
-def _name(base: Model, state: State) -> str:
-    effects = " and ".join(item.effect for item in state.added)
-    return f"{base.name} with {effects}" if effects else base.name
+    content = with_what_was_asked(shown.content, vocabulary)
+    if built_in is not None:
+        records = evidence.hold_out
+        outputs = run_base(built_in.alone, records, evidence.hold)
+        mine = as_recorded(own, records, outputs, floor)
+        ((_, alone),) = ladder(records, [(BASE, mine)], nuisance_of(state, own))
+        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
+        content = with_built_in(content, built_in, alone)
+    return replace(shown, content=content)
 
 
 def _write_hold_out(

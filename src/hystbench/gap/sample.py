@@ -1,7 +1,8 @@
 """Which samples are scored: about a thousand of each record.
 
 Model error is not white, so more samples of a record say little more; fewer make a
-refit cheap. Simulation always runs over the whole record.
+refit cheap. Simulation always runs over the whole record. Samples that were not
+measured are never scored.
 """
 
 from __future__ import annotations
@@ -38,10 +39,12 @@ class Sample:
         rng = np.random.default_rng(0)
         positions = []
         for record in records:
-            n = len(record)
+            measured = np.flatnonzero(record.counted)
+            n = len(measured)
             edges = np.linspace(0, n, min(count, n) + 1).astype(np.intp)
             place = rng.random(len(edges) - 1)
-            positions.append(edges[:-1] + (place * np.diff(edges)).astype(np.intp))
+            chosen = edges[:-1] + (place * np.diff(edges)).astype(np.intp)
+            positions.append(measured[chosen])
         return cls(tuple(positions))
 
     @cached_property

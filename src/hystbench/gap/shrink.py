@@ -22,9 +22,8 @@ from hystbench.gap.explained import (
     share_explained,
     share_interval,
 )
-from hystbench.gap.folds import Mask
 from hystbench.gap.nuisance import Nuisance, left_over
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray, Mask, Record
 
 
 @dataclass(frozen=True, repr=False)

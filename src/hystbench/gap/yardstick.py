@@ -16,10 +16,10 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
-from hystbench.gap.folds import Fold, Mask
+from hystbench.gap.folds import Fold
 from hystbench.gap.regressors import Columns, Family
 from hystbench.gap.ridge import Moments
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray, Mask, Record
 
 #: Rows of all records together that are fitted: neighbouring samples say the same.
 ROWS = 6000
@@ -91,7 +91,7 @@ class BlackBox:
             If folds and records do not match.
         """
         _check(compared, folds)
-        rows = _rows([len(item.record) for item in compared])
+        rows = _rows([item.record for item in compared])
         columns, table = Columns.learn(compared, rows)
         target = np.concatenate(
             [item.residual[row] for item, row in zip(compared, rows, strict=True)]
@@ -190,18 +190,20 @@ def _choices(families: Sequence[Family]) -> list[FloatArray]:
     return choices
 
 
-def _rows(lengths: Sequence[int]) -> list[Any]:
-    """Choose rows, one at random in each of equal stretches of a record.
+def _rows(records: Sequence[Record]) -> list[Any]:
+    """Choose measured rows, one at random in each of equal stretches of a record.
 
     A regular step could beat with a period and miss parts of the loop.
     """
     random = np.random.default_rng(0)
-    stretch = max(1.0, sum(lengths) / ROWS)
+    measured = [np.flatnonzero(record.counted) for record in records]
+    stretch = max(1.0, sum(map(len, measured)) / ROWS)
     rows = []
-    for length in lengths:
+    for places in measured:
+        length = len(places)
         count = max(1, round(length / stretch))
         at = (np.arange(count) + random.random(count)) * (length / count)
-        rows.append(np.unique(np.minimum(at.astype(np.intp), length - 1)))
+        rows.append(places[np.unique(np.minimum(at.astype(np.intp), length - 1))])
     return rows
 
 

@@ -15,6 +15,7 @@ from hystbench.gap.compared import Compared, rms
 from hystbench.gap.floor import Floor, noise_floor
 from hystbench.inspection.base import loop_of_plays
 from hystbench.inspection.facts import Facts, facts_of, late
+from hystbench.inspection.flat import flats
 from hystbench.inspection.visible import Seen, runs, seen_effects
 from hystbench.inspection.writing import entry_text
 from hystbench.model import Model
@@ -22,6 +23,10 @@ from hystbench.record import Record
 
 ALIKE = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
+TOO_FAR = (
+    " The input is missing for more than a quarter of its fastest period, which no "
+    "straight line can stand for: give the parts between as 'rows'."
+)
 JITTERS = 0.01
 """Of a step: a clock that is less even than that is told."""
 
@@ -37,11 +42,17 @@ class Finding:
     text : str
     paste : tuple of str
         Lines for dataset.yaml that mend it.
+    topic : str
+        Findings of one topic say the same of several records.
+    record : str
+        Whom it concerns; empty where that is no single record.
     """
 
     kind: str
     text: str
     paste: tuple[str, ...] = ()
+    topic: str = ""
+    record: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +123,7 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
     ]
     to_fit = [item for item in compared if item.record.use == "fit"]
     floor = noise_floor(to_fit, dataset.about.get("noise_rms"))
-    left = rms(np.concatenate([item.residual for item in to_fit]))
+    left = rms(np.concatenate([x.residual[x.record.counted] for x in to_fit]))
     return Check(
         dataset,
         tuple(item.record for item in compared),
@@ -130,14 +141,22 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
 def _findings(
     dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts], floor: Floor
 ) -> list[Finding]:
-    found = [*_stuck(dataset, records, facts), *_periods(dataset, facts)]
+    found = [
+        *_stuck(dataset, records, facts),
+        *_flat(dataset, records, facts),
+        *_periods(dataset, facts),
+    ]
     for item in facts:
         if item.missing:
             found.append(
                 Finding(
                     "note",
                     f"{item.name}: {item.missing} of {item.samples} samples are "
-                    "missing and interpolated.",
+                    "missing and interpolated; no score counts them."
+                    + TOO_FAR
+                    * item.bridged_too_far,
+                    topic="missing",
+                    record=item.name,
                 )
             )
         if item.jitter is not None and item.jitter > JITTERS:
@@ -146,6 +165,8 @@ def _findings(
                     "note",
                     f"{item.name}: the steps of time differ by "
                     f"{100 * item.jitter:.2g} % rms of their mean; the mean is taken.",
+                    topic="jitter",
+                    record=item.name,
                 )
             )
     for item in late(facts):
@@ -157,11 +178,15 @@ def _findings(
                 f"({samples:+.1f} samples) behind a loop that does not depend on the "
                 "rate; the delays of the others do not foretell that: was its trigger "
                 "late?",
+                topic="late",
+                record=item.name,
             )
         )
     found += _on_the_whole(dataset, facts, floor)
     try:
-        found += [Finding("note", line) for line in doubts(dataset, records)]
+        found += [
+            Finding("note", line, topic="doubt") for line in doubts(dataset, records)
+        ]
     except InputError as error:
         found.append(Finding("wrong", str(error)))
     order = ("wrong", "missing", "note")
@@ -180,7 +205,33 @@ def _stuck(
         channel = "input" if of_input else "output"
         entry = {**dataset.entry(item.name), "stands_still": [channel]}
         text = f"{item.name}: {item.stuck}. Leave it out, or where it is real write:"
-        found.append(Finding("wrong", text, (_entry(entry),)))
+        found.append(Finding("wrong", text, (_entry(entry),), "stuck", item.name))
+    return found
+
+
+def _flat(
+    dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts]
+) -> list[Finding]:
+    """Say which channels repeat a value exactly, where 'hystbench gap' takes them."""
+    found = []
+    for record, item in zip(records, facts, strict=True):
+        said = dataset.stands_still(item.name)
+        on_purpose = item.excitation.kind in ("steps", "ramps")
+        for key, channel, values in (
+            ("input", record.input, record.u),
+            ("output", record.output, record.y),
+        ):
+            if item.stuck or key in said or (key == "input" and on_purpose):
+                continue
+            for flat in flats(values):
+                text = (
+                    f"{item.name}: {channel.name} is exactly {flat.value:g} "
+                    f"{channel.unit} for {flat.samples} samples in {flat.stretches} "
+                    f"stretches, the first from sample {flat.first + 1} on: it looks "
+                    f"{flat.kind}. 'hystbench gap' takes it; mend it or leave it out."
+                )
+                topic = f"{flat.kind} {key}"
+                found.append(Finding("note", text, (), topic, item.name))
     return found
 
 

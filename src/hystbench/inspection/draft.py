@@ -17,15 +17,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.copies import common_piece
-from hystbench.dataset import RECORD_NAME, UNIFORM_TOLERANCE, Dataset, dataset_of
+from hystbench.dataset import RECORD_NAME, Dataset, dataset_of
 from hystbench.device_kinds import Kind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table, read_table
+from hystbench.inspection.clocks import clock_of, ticks_of
 from hystbench.inspection.excitation import Excitation, excitation_of
+from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
 from hystbench.inspection.roles import propose
 from hystbench.periods import find_period
+from hystbench.reading import UNIFORM_TOLERANCE
 from hystbench.record import FloatArray, Record
 from hystbench.units import NONE, check_known, plain, seconds
 
@@ -33,8 +36,6 @@ LEAST = 20
 """Samples of a signal; fewer are a table of something else."""
 ONE_HELD_OUT = 3
 """Of a lone record: a third is held out."""
-LOOSEST = 0.5
-"""Of a step: what dataset.yaml may tolerate at most."""
 
 _OF_MATRIX = re.compile(r"(?P<stem>.+)(?P<place>\(:,\d+\))")
 
@@ -331,7 +332,10 @@ def _signals(parts: Sequence[Part], given: Given, ask: Ask) -> _Signals:
         units[key] = plain(unit) or "-"
     unit_of_time = given.time_unit or (told[time][1] if time else None)
     if time is not None and unit_of_time is None:
-        notes.append(f"time {time!r}: no unit is told; seconds are taken (--time-unit)")
+        clock = clock_of(first.columns[time].values)
+        unit_of_time = clock.unit if clock else "s"
+        taken = clock.words if clock else "seconds"
+        notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
     return _Signals(
         time,
         plain(unit_of_time or "s"),
@@ -467,7 +471,8 @@ def _content(
         clock = None
         if signals.time is not None:
             unit = seconds("--time-unit", signals.time_unit)
-            clock = _clock(part, part.columns[signals.time].values * unit)
+            time = part.columns[signals.time].values * unit
+            clock = ticks_of(time, part.where, part.table)
             tolerance = max(tolerance, clock.tolerance)
             rates.append(clock)
         entries += _without_missing(part, signals, entry, given, ask, notes)
@@ -566,39 +571,6 @@ def _checked_frequency(told: str | float) -> float:
     return value
 
 
-@dataclass(frozen=True)
-class _Clock:
-    """What a column of time is like: mean step in s, unevenness, whether rounded."""
-
-    step: float
-    tolerance: float
-    rounded: bool
-
-
-def _clock(part: Part, time: FloatArray) -> _Clock:
-    """Look at a column of time; what dataset.yaml cannot say is refused."""
-    there = time[np.isfinite(time)]
-    steps = np.diff(there)
-    mean = float(there[-1] - there[0]) / max(len(steps), 1)
-    uneven = float(np.abs(steps - mean).max()) / mean if mean > 0 else np.inf
-    if uneven <= UNIFORM_TOLERANCE:
-        return _Clock(mean, UNIFORM_TOLERANCE, False)
-    away = np.abs(there - there[0] - mean * np.arange(len(there)))
-    positive = steps[steps > 0]
-    quantum = float(positive.min()) if len(positive) else np.inf
-    whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < 1e-3
-    if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
-        return _Clock(mean, UNIFORM_TOLERANCE, True)
-    if uneven <= LOOSEST and away.max() <= LOOSEST * mean:
-        return _Clock(mean, min(LOOSEST, np.ceil(1100 * uneven) / 1000), False)
-    row = int(np.argmax(np.abs(steps - mean)))
-    raise InputError(
-        f"{part.where}: {part.table.place(row + 1)}: a step in time of "
-        f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
-        "give the parts between such steps as files or 'rows' of their own"
-    )
-
-
 def _missing(part: Part, signals: _Signals) -> NDArray[np.bool_]:
     """Tell of each sample whether time, input or output has no number."""
     columns = [part.columns[signals.input], part.columns[signals.output]]
@@ -631,27 +603,30 @@ def _without_missing(
         ("interpolate", "split"),
         "--missing",
     )
+    u = part.columns[signals.input].values
+    cut = cannot_be_bridged(u) if what == "interpolate" else bad
+    entries, left = [], np.count_nonzero(~bad)
+    for first, behind in runs(~cut):
+        there = first + np.flatnonzero(~bad[first:behind])
+        if len(there) < LEAST:
+            continue
+        rows = [int(there[0]) + 1, int(there[-1]) + 1]
+        piece = entry if rows == [1, len(bad)] else {**entry, "rows": rows}
+        whole = not bad[there[0] : there[-1]].any()
+        entries.append(piece if whole else {**piece, "missing": "interpolate"})
+        left -= len(there)
     if what == "interpolate":
-        there = np.flatnonzero(~bad)
-        longest = int(np.diff(there).max()) - 1
-        notes.append(
-            f"{said}; they are interpolated, the longest gap {longest} samples"
+        said += "; they are interpolated, and no score counts them"
+    if cut.any():
+        long = "the input's gaps are longer than a quarter of its fastest period; "
+        said += (
+            f"; {long if what == 'interpolate' else ''}the record is split into "
+            f"{len(entries)} pieces"
         )
-        ends = [int(there[0]) + 1, int(there[-1]) + 1]
-        rows = {} if ends == [1, len(bad)] else {"rows": ends}
-        return [{**entry, **rows, "missing": "interpolate"}]
-    edges = np.flatnonzero(np.diff(np.concatenate([[True], bad, [True]]).astype(int)))
-    pieces = [
-        (int(a) + 1, int(b))
-        for a, b in zip(edges[::2], edges[1::2], strict=True)
-        if b - a >= LEAST
-    ]
-    lost = np.count_nonzero(~bad) - sum(b - a + 1 for a, b in pieces)
-    notes.append(
-        f"{said}; the record is split into {len(pieces)} pieces"
-        + (f", {lost} samples in shorter ones are left out" if lost else "")
-    )
-    return [{**entry, "rows": list(piece)} for piece in pieces]
+    if left:
+        said += f"; {left} samples in pieces shorter than {LEAST} are left out"
+    notes.append(said)
+    return entries
 
 
 def _give_names(entries: list[dict[str, Any]]) -> None:

@@ -14,6 +14,7 @@ from hystbench.formats import read_table
 from hystbench.gap.compared import Compared
 from hystbench.gap.usable import REAL, check_usable
 from hystbench.inspection.excitation import Excitation, excitation_of
+from hystbench.inspection.missing import cannot_be_bridged
 from hystbench.periods import find_period
 from hystbench.record import FloatArray, Record, Use
 from hystbench.units import seconds
@@ -56,7 +57,9 @@ class Facts:
     stuck : str
         What looks stuck or clipped, in words; empty where nothing does.
     missing : int
-        Samples that were interpolated.
+        Samples that were interpolated, in time, input or output.
+    bridged_too_far : bool
+        Whether a gap of the input is longer than a straight line can stand for.
     delay_s, delay_error_s : float
         By how much the output is behind a loop that does not depend on the rate, and
         the standard error of that.
@@ -76,6 +79,7 @@ class Facts:
     high: float
     stuck: str
     missing: int
+    bridged_too_far: bool
     delay_s: float
     delay_error_s: float
     delay_share: float
@@ -99,7 +103,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
     file = dataset.record_files[record.name]
     found = find_period(record.u) if record.period_samples is None else None
     delay, error, share = delay_of(item)
-    jitter, missing = _clock_and_missing(dataset, record)
+    jitter, missing, too_far = _clock_and_missing(dataset, record)
     return Facts(
         record.name,
         record.use,
@@ -113,6 +117,7 @@ def facts_of(dataset: Dataset, item: Compared) -> Facts:
         float(record.y.max()),
         _stuck(file, record, dataset.stands_still(record.name)),
         missing,
+        too_far,
         delay,
         error,
         share,
@@ -181,14 +186,19 @@ def _middle_line(x: FloatArray, y: FloatArray) -> FloatArray:
     return np.array([slope, float(np.median(y - slope * x))])
 
 
-def _clock_and_missing(dataset: Dataset, record: Record) -> tuple[float | None, int]:
-    """Give the jitter of a record's clock, and how many samples were interpolated."""
+def _clock_and_missing(
+    dataset: Dataset, record: Record
+) -> tuple[float | None, int, bool]:
+    """Give the jitter of a clock, and how many samples are missing.
+
+    Also whether a gap of the input is longer than a straight line can stand for.
+    """
     about, entry = dataset.about.get("time"), dataset.entry(record.name)
     wanted = [dataset.about[key]["column"] for key in ("input", "output")]
     if about is not None:
         wanted.append(about["column"])
     elif "missing" not in entry:
-        return None, 0
+        return None, 0, False
     table = read_table(dataset.record_files[record.name], wanted)
     first, last = entry.get("rows", (1, None))
     columns = [
@@ -196,10 +206,11 @@ def _clock_and_missing(dataset: Dataset, record: Record) -> tuple[float | None, 
         for name in wanted
     ]
     missing = int(np.count_nonzero(~np.all(np.isfinite(columns), axis=0)))
+    too_far = bool(missing and cannot_be_bridged(columns[0]).any())
     if about is None:
-        return None, missing
+        return None, missing, too_far
     steps = np.diff(columns[-1]) * seconds("time: unit", about["unit"])
-    return float(np.nanstd(steps)) / record.dt, missing
+    return float(np.nanstd(steps)) / record.dt, missing, too_far
 
 
 def _stuck(file: Path, record: Record, stands_still: Sequence[str]) -> str:

@@ -1,4 +1,4 @@
-"""What a check says, in words: on the terminal and on its page."""
+"""What a check says, in words that the terminal and its page share."""
 
 from __future__ import annotations
 
@@ -20,8 +20,6 @@ NAMED = 2
 """Rivals that are named."""
 EVEN = 1e-6
 """Of a step: a clock that is as even as that."""
-WIDTH = 96
-"""Letters of a line on the terminal."""
 
 
 def percent(share: float) -> str:
@@ -87,55 +85,3 @@ def band(facts: Facts) -> str:
 def jitter_text(jitter: float) -> str:
     """Write a jitter in percent of a step; what is rounding is none."""
     return "0 %" if jitter < EVEN else f"{100 * jitter:.1g} %"
-
-
-def text(found: Check) -> list[str]:
-    """Give the lines for the terminal: one screen where little is wrong."""
-    record = found.records[0]
-    lines = [
-        f"{found.dataset.path}: {headline(found)}",
-        f"  {record.input.label} to {record.output.label}; noise "
-        f"{quantity(found.floor.rms, record.output.unit)} rms "
-        f"({FLOORS[found.floor.method]}); a loop that does not depend on the rate "
-        f"leaves {quantity(found.left, record.output.unit)}",
-    ]
-    width = max(len(item.name) for item in found.facts)
-    for item in found.facts:
-        period = f"{item.periods:.3g} periods" if item.period else "no period"
-        jitter = "" if item.jitter is None else f", jitter {jitter_text(item.jitter)}"
-        lines.append(
-            f"  {item.name:{width}} {item.use:8} {item.samples} at {1 / item.dt:.5g} Hz"
-            f"{jitter}, {item.excitation.kind}, {period}, {band(item)}, "
-            f"{level(item, record.input.unit)}"
-        )
-    for each in found.findings:
-        lines.append(f"  {KINDS[each.kind]}: {each.text}")
-        lines += [f"      {line}" for line in each.paste]
-    if not found.effects:
-        return lines
-    lines.append("  Seen from this share of the output on (rms):")
-    lines += _wrapped(f"{x.effect} {percent(x.seen_from)}" for x in found.revealed)
-    alike = [x for x in found.revealed if x.rivals]
-    if alike:
-        lines.append("  Not told apart, up to this share of the output:")
-        lines += _wrapped(
-            f"{x.effect} from {x.rivals[0][0]} {_up_to(x.rivals[0][1])}" for x in alike
-        )
-    lines.append("  Not revealed:")
-    lines += [f"    {x.effect}: {x.why}" for x in found.hidden]
-    return lines
-
-
-def _up_to(share: float) -> str:
-    return "ever" if share > 1 else percent(share)
-
-
-def _wrapped(parts: object) -> list[str]:
-    """Put parts behind each other in lines of the terminal's width."""
-    lines = [""]
-    for part in list(parts):  # type: ignore[call-overload]
-        if lines[-1] and len(lines[-1]) + len(part) + 2 > WIDTH:
-            lines[-1] += ","
-            lines.append("")
-        lines[-1] += part if not lines[-1] else f", {part}"
-    return [f"    {line}" for line in lines if line]

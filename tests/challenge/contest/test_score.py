@@ -1,7 +1,11 @@
+import dataclasses
+
+import pandas as pd
 import pytest
 
+from hystbench.challenge.contest.frames import frame, read_rows, write_frame
 from hystbench.challenge.contest.place import share_held, where_hit
-from hystbench.challenge.contest.rows import read_rows, write_rows
+from hystbench.challenge.contest.rows import write_rows
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.tables import confusion
 from hystbench.errors import InputError
@@ -123,7 +127,7 @@ def test_names_beside_the_verdict_unnamed_name_nothing():
     about = truth(effect(), effect("creep", "one-element"), kind="pair")
     both = gap(named("creep"), named("resonance"), verdict="unnamed")
     assert judged(about, both).all_named is False
-    assert [item[2] for item in confusion([row])] == ["unnamed"]
+    assert [item[2] for item in confusion(frame([row]))] == ["unnamed"]
 
 
 def found(*names, effects=("drift",)):
@@ -327,7 +331,13 @@ def test_rows_come_back_as_they_were(tmp_path):
         ),
     ]
     write_rows(tmp_path / "rows.csv", rows)
-    assert read_rows([tmp_path / "rows.csv"]) == rows
+    read = read_rows([tmp_path / "rows.csv"])
+    pd.testing.assert_frame_equal(read, frame(rows))
+    write_frame(tmp_path / "again.csv", read)
+    assert (tmp_path / "again.csv").read_bytes() == (tmp_path / "rows.csv").read_bytes()
+    first = read.iloc[0]
+    for name, value in dataclasses.asdict(rows[0]).items():
+        assert (value is None and pd.isna(first[name])) or first[name] == value, name
 
 
 def test_other_columns_are_refused(tmp_path):

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.challenge.contest import experiments, tables
+from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import (
-    calibration_error,
     further,
     reach,
     summary,
@@ -85,7 +85,7 @@ def a_contest():
 
 
 def test_the_summary_by_hand():
-    told = summary(a_contest())
+    told = summary(frame(a_contest()))
     assert told["cases"] == 8
     assert told["top1"]["20"]["gpi"]["share"] == pytest.approx(2 / 3)
     assert told["top1"]["20"]["foreign"] == told["top1"]["20"]["preisach"]
@@ -105,21 +105,23 @@ def test_the_summary_by_hand():
 
 def test_calibration_by_hand():
     rows = a_contest()
-    bins = {item[0]: item for item in tables.reliability(rows)}
+    bins = {item[0]: item for item in tables.reliability(frame(rows))}
     assert bins[0.95][2:4] == (pytest.approx(0.95), pytest.approx(0.8))
     assert bins[0.7][2:4] == (pytest.approx(0.75), pytest.approx(0.5))
     # 5 effects off by 0.15 and 2 off by 0.25
-    assert calibration_error(rows) == pytest.approx((5 * 0.15 + 2 * 0.25) / 7)
+    assert tables.calibration_error(frame(rows)) == pytest.approx(
+        (5 * 0.15 + 2 * 0.25) / 7
+    )
 
 
 def test_certainty_has_a_bin():
     rows = [row(truth(effect()), gap(named("resonance", 1.0)))]
-    assert [item[:3] for item in tables.reliability(rows)] == [(0.95, 1.0, 1.0)]
+    assert [item[:3] for item in tables.reliability(frame(rows))] == [(0.95, 1.0, 1.0)]
 
 
 def test_what_was_asked_beside_what_was_reached():
     rows = a_contest()
-    told = {item.figure: item for item in reach(rows, [])}
+    told = {item.figure: item for item in reach(frame(rows), frame([]))}
     assert told["top1 GPI 20 dB"].met is False
     assert told["top1 foreign 20 dB"].met is True
     assert told["top1 GPI 10 dB"].met is None
@@ -128,7 +130,9 @@ def test_what_was_asked_beside_what_was_reached():
     assert "transfer top1 20 dB" not in told
     # 3 of 4 at home: at least 70 % elsewhere
     away = [row(truth(effect()), RESONANCE)] * 7 + [row(truth(effect()), CREEP)] * 3
-    transfer = {item.figure: item for item in reach(rows, away)}["transfer top1 20 dB"]
+    transfer = {item.figure: item for item in reach(frame(rows), frame(away))}[
+        "transfer top1 20 dB"
+    ]
     assert (transfer.reached, transfer.asked, transfer.met) == (0.7, ">= 0.700", True)
 
 
@@ -141,11 +145,11 @@ def test_closed_gaps_and_intervals_by_hand():
     ]
     rows = [row(truth(effect()), RESONANCE, **more) for more in of_case]
     rows.append(row(truth(kind="none"), NOTHING, shrink=None))
-    told = summary(rows)
+    told = summary(frame(rows))
     assert told["shrink_median"] == 0.9
     assert (told["coverage"]["share"], told["coverage"]["cases"]) == (0.8, 5)
     assert told["without_interval"] == 1
-    asked = {item.figure: item.met for item in reach(rows, [])}
+    asked = {item.figure: item.met for item in reach(frame(rows), frame([]))}
     assert not asked["shrink_median"]
     assert not asked["coverage of 95 % intervals"]
 
@@ -153,7 +157,7 @@ def test_closed_gaps_and_intervals_by_hand():
 def test_unlisted_effects_named_with_confidence():
     unlisted = truth(effect("dropouts", "only"), kind="unlisted")
     sure, unsure = (gap(named("creep", size)) for size in (0.81, 0.79))
-    told = summary([row(unlisted, sure), row(unlisted, unsure)])
+    told = summary(frame([row(unlisted, sure), row(unlisted, unsure)]))
     assert told["unlisted_confident"]["share"] == 0.5
     assert told["unlisted_unnamed"]["share"] == 0.0
 
@@ -168,7 +172,7 @@ def test_what_else_there_is_to_say_by_hand():
             strict=True,
         )
     ]
-    told = {name: (value, cases) for name, value, _, _, cases in further(rows)}
+    told = {name: (value, cases) for name, value, _, _, cases in further(frame(rows))}
     assert told["in_set gpi 20 dB"] == (pytest.approx(2 / 3), 3)
     assert told["in_set preisach 20 dB"] == (1.0, 1)
     assert told["in_set jiles-atherton 20 dB"] == (None, 0)
@@ -181,7 +185,7 @@ def test_shares_that_do_not_carry_over_are_counted(tmp_path):
     good, bad = (row(truth(effect()), answered) for answered in (RESONANCE, CREEP))
 
     def off(away):
-        write_score([good] * 20, away, "s", ABOUT, {}, tmp_path)
+        write_score(frame([good] * 20), frame(away), "s", ABOUT, {}, tmp_path)
         lines = {line["figure"]: line for line in table(tmp_path / "reach.csv")}
         line = lines["transfer: shares more than 5 points off"]
         return float(line["reached"]), line["met"]
@@ -197,7 +201,7 @@ def test_shares_that_do_not_carry_over_are_counted(tmp_path):
 
 def test_the_confusion_counts_each_case_once():
     rows = a_contest()
-    counts = tables.confusion(rows)
+    counts = tables.confusion(frame(rows))
     assert ("single", "resonance", "resonance", "yes", 3) in counts
     assert ("single", "resonance", "creep", "no", 1) in counts
     assert ("none", "none", "no-gap", "yes", 1) in counts
@@ -206,7 +210,7 @@ def test_the_confusion_counts_each_case_once():
 
 
 def test_what_was_confused_and_what_would_tell_it_apart():
-    found = tables.confused(a_contest())
+    found = tables.confused(frame(a_contest()))
     assert found == [("resonance", "creep", 1, 4, experiments.UNKNOWN)]
 
 
@@ -228,14 +232,14 @@ def test_experiments_go_both_ways(one, other, told):
 def test_power_by_ratio():
     weak = truth(effect(), ratio_db=10.0)
     rows = [*a_contest(), row(weak, CREEP), row(weak, RESONANCE)]
-    told = {item[:3]: item[3] for item in tables.power(rows)}
+    told = {item[:3]: item[3] for item in tables.power(frame(rows))}
     assert told["resonance", "gpi", 10.0] == 0.5
     assert told["all", "all", 20.0] == 0.75
 
 
 def test_the_score_as_files(tmp_path):
     rows = [*a_contest(), dataclasses.replace(a_contest()[0], solver="other")]
-    write_score(rows, [], "s", ABOUT, {"absent": "needs x"}, tmp_path)
+    write_score(frame(rows), frame([]), "s", ABOUT, {"absent": "needs x"}, tmp_path)
     told = json.loads((tmp_path / "summary.json").read_text())
     asked = "cases where_hit top1 in_set exact_set false_alarm pairs_both triples_all"
     asked += " unlisted_unnamed shrink_median brier coverage seconds_per_case transfer"
@@ -261,7 +265,7 @@ def test_rivals_are_held_against_the_solver_on_their_own_cases(tmp_path):
         row(truth(effect()), CREEP, case="b"),
     ]
     rival = row(truth(effect()), RESONANCE, case="a", solver="rival")
-    write_score([*own, rival], [], "s", ABOUT, {}, tmp_path)
+    write_score(frame([*own, rival]), frame([]), "s", ABOUT, {}, tmp_path)
     told = {
         line["solver"]: (line["cases"], line["top1 GPI 20 dB"])
         for line in table(tmp_path / "rivals.csv")
@@ -273,7 +277,7 @@ def test_rivals_are_held_against_the_solver_on_their_own_cases(tmp_path):
 def test_which_cases_the_score_is_of(tmp_path):
     own = [row(truth(effect(), seed=seed), RESONANCE) for seed in (30, 10, 20)]
     away = [row(truth(effect(), seed=40), RESONANCE)]
-    write_score(own, away, "s", ABOUT, {}, tmp_path)
+    write_score(frame(own), frame(away), "s", ABOUT, {}, tmp_path)
     assert [tuple(line.values()) for line in table(tmp_path / "contest.csv")] == [
         ("small", "0.5", "3", "10", "30"),
         ("transfer", "0.25", "1", "40", "40"),
@@ -286,14 +290,14 @@ def test_what_carries_to_the_transfer_set(tmp_path):
     single = truth(effect())
     home = [row(single, RESONANCE)] * 19 + [row(single, CREEP)]
     away = [row(single, RESONANCE, cpu_seconds=9.0)] * 9 + [row(single, CREEP)]
-    write_score(home, away, "s", ABOUT, {}, tmp_path)
+    write_score(frame(home), frame(away), "s", ABOUT, {}, tmp_path)
     told = {line["figure"]: line for line in table(tmp_path / "transfer.csv")}
     # 19 of 20 here, 9 of 10 there: five points
     assert list(told["top1 GPI 20 dB"].values())[1:] == ["0.95", "0.9", "-0.05", "yes"]
     assert told["seconds_per_case"]["within 5 points"] == ""
     assert "top1 foreign 20 dB" not in told
     away = [row(single, RESONANCE)] * 8 + [row(single, CREEP)] * 2
-    write_score(home, away, "s", ABOUT, {}, tmp_path)
+    write_score(frame(home), frame(away), "s", ABOUT, {}, tmp_path)
     told = {line["figure"]: line for line in table(tmp_path / "transfer.csv")}
     assert told["top1 GPI 20 dB"]["within 5 points"] == "no"
 
@@ -302,7 +306,7 @@ def test_the_shares_of_an_effect_stand_at_each_ratio():
     hard, single = truth(effect(), family="preisach"), truth(effect())
     rows = [row(single, RESONANCE), row(single, CREEP)]
     rows.append(row(hard, RESONANCE, ratio_db=10.0))
-    found = {item[:4]: item[4:] for item in tables.by_effect(rows)}
+    found = {item[:4]: item[4:] for item in tables.by_effect(frame(rows))}
     assert found["resonance", "gpi", 20.0, "top1"] == tuple(wilson(1, 2))
     assert found["resonance", "all", 20.0, "top1"] == tuple(wilson(1, 2))
     assert found["resonance", "preisach", 10.0, "top1"] == tuple(wilson(1, 1))
@@ -312,5 +316,5 @@ def test_the_shares_of_an_effect_stand_at_each_ratio():
 def test_how_hard_an_effect_is_once_the_base_is_tuned():
     left = (18.0, 2.0, 11.0)
     rows = [row(truth(effect()), RESONANCE, ratio_retuned_db=x) for x in left]
-    (found,) = tables.retuned(rows)
+    (found,) = tables.retuned(frame(rows))
     assert found == ("resonance", 20.0, 2.0, 11.0, 18.0, 3)

@@ -38,8 +38,3 @@ def wilson(hits: int, cases: int) -> Share:
         return Share(None, None, None, 0)
     interval = binomtest(hits, cases).proportion_ci(CONFIDENCE, method="wilson")
     return Share(hits / cases, float(interval.low), float(interval.high), cases)
-
-
-def share(values: list[bool]) -> Share:
-    """Compute the share of true values."""
-    return wilson(sum(values), len(values))

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+
 from hystbench.challenge.contest import tables
-from hystbench.challenge.contest.rows import write_rows
-from hystbench.challenge.contest.score import Row
+from hystbench.challenge.contest.frames import frame, write_frame
 from hystbench.challenge.contest.summary import Asked, further, reach, summary
 from hystbench.files import write_csv, write_json
 
+#: No transfer set.
+NOTHING = frame([])
 #: With room for the rounding of a difference of two shares.
 FIVE_POINTS = 0.05 + 1e-9
 _SHARE = ("share", "low", "high", "cases")
-_CONFUSION = ("kind", "hidden", "answered", "right", "cases")
-_REACH = ("figure", "asked", "reached", "low", "high", "cases", "met")
-_CONTEST = ("set", "scale", "cases", "first_seed", "last_seed")
-_TRANSFER = ("figure", "published", "transfer", "difference", "within 5 points")
-_FURTHER = ("figure", "reached", "low", "high", "cases")
 _RIVALS = (
     "solver",
     "cases",
@@ -38,17 +36,33 @@ _RIVALS = (
 )
 
 
-WRITTEN = (
-    *("contest.csv", "reach.csv", "further.csv", "transfer.csv", "cases.csv"),
-    *("transfer-cases.csv", "confusion.csv", "confused.csv", "effects.csv"),
-    *("retuned.csv", "power.csv", "reliability.csv", "rivals.csv", "summary.json"),
-)
+#: Columns of each table but those of cases.
+TABLES = {
+    "contest.csv": ("set", "scale", "cases", "first_seed", "last_seed"),
+    "reach.csv": ("figure", "asked", "reached", "low", "high", "cases", "met"),
+    "further.csv": ("figure", "reached", "low", "high", "cases"),
+    "transfer.csv": (
+        "figure",
+        "published",
+        "transfer",
+        "difference",
+        "within 5 points",
+    ),
+    "confusion.csv": ("kind", "hidden", "answered", "right", "cases"),
+    "confused.csv": ("hidden", "answered", "cases", "of", "experiment"),
+    "effects.csv": ("effect", "family", "ratio_db", "figure", *_SHARE),
+    "retuned.csv": ("effect", "ratio_db", "least", "median", "greatest", "cases"),
+    "power.csv": ("effect", "family", "ratio_db", *_SHARE),
+    "reliability.csv": ("from", "to", "stated", *_SHARE),
+    "rivals.csv": _RIVALS,
+}
+WRITTEN = (*TABLES, "cases.csv", "transfer-cases.csv", "summary.json")
 """Files of a score."""
 
 
 def write_score(
-    rows: Sequence[Row],
-    transfer: Sequence[Row],
+    cases: pd.DataFrame,
+    transfer: pd.DataFrame,
     solver: str,
     about: Mapping[str, Any],
     skipped: Mapping[str, str],
@@ -58,9 +72,9 @@ def write_score(
 
     Parameters
     ----------
-    rows : sequence of Row
+    cases : DataFrame
         Of all solvers on one set.
-    transfer : sequence of Row
+    transfer : DataFrame
         Of the solver on the transfer set; may be empty.
     solver : str
         Whose score it is.
@@ -71,55 +85,28 @@ def write_score(
     skipped : mapping of str to str
         Solvers that did not enter, and why.
     out : Path
-        Folder: ``summary.json``, ``contest.csv``, ``reach.csv``, ``further.csv``,
-        ``transfer.csv``, ``cases.csv``, ``transfer-cases.csv``, ``confusion.csv``,
-        ``confused.csv``, ``effects.csv``, ``retuned.csv``, ``power.csv``,
-        ``reliability.csv`` and ``rivals.csv``.
+        Folder for :data:`WRITTEN`.
     """
-    own = [row for row in rows if row.solver == solver]
+    own = cases[cases["solver"] == solver]
     carried = list(_carried(own, transfer))
     asked = [*reach(own, transfer), *_off(carried)]
-    write_csv(out / "reach.csv", _REACH, (_told(astuple(item)) for item in asked))
-    write_csv(out / "further.csv", _FURTHER, map(_told, further(own)))
-    write_rows(out / "cases.csv", rows)
-    write_rows(out / "transfer-cases.csv", transfer)
-    write_csv(out / "contest.csv", _CONTEST, _held(own, transfer, about))
-    write_csv(out / "transfer.csv", _TRANSFER, map(_told, carried))
-    counts = tables.confusion(own)
-    write_csv(out / "confusion.csv", _CONFUSION, counts)
-    write_csv(
-        out / "confused.csv",
-        ("hidden", "answered", "cases", "of", "experiment"),
-        tables.confused(own),
-    )
-    write_csv(
-        out / "effects.csv",
-        ("effect", "family", "ratio_db", "figure", *_SHARE),
-        map(_told, tables.by_effect(own)),
-    )
-    write_csv(
-        out / "retuned.csv",
-        ("effect", "ratio_db", "least", "median", "greatest", "cases"),
-        map(_told, tables.retuned(own)),
-    )
-    write_csv(
-        out / "power.csv",
-        ("effect", "family", "ratio_db", *_SHARE),
-        map(_told, tables.power(own)),
-    )
-    write_csv(
-        out / "reliability.csv",
-        ("from", "to", "stated", *_SHARE),
-        map(_told, tables.reliability(own)),
-    )
-    same = _shared(own, rows)
-    rivals = []
-    for name in dict.fromkeys(row.solver for row in rows):
-        rivals.append(_rival(name, [row for row in rows if row.solver == name]))
-        if name == solver and len(same) < len(own):
-            rivals.append(_rival(f"{solver}, the rivals' cases", same))
-    unheard = [(name, 0, *[None] * 10, why) for name, why in skipped.items()]
-    write_csv(out / "rivals.csv", _RIVALS, [*rivals, *unheard])
+    found: dict[str, Iterable[Sequence[Any]]] = {
+        "contest.csv": _held(own, transfer, about),
+        "reach.csv": map(astuple, asked),
+        "further.csv": further(own),
+        "transfer.csv": carried,
+        "confusion.csv": tables.confusion(own),
+        "confused.csv": tables.confused(own),
+        "effects.csv": tables.by_effect(own),
+        "retuned.csv": tables.retuned(own),
+        "power.csv": tables.power(own),
+        "reliability.csv": tables.reliability(own),
+        "rivals.csv": _rivals(cases, own, solver, skipped),
+    }
+    for name, columns in TABLES.items():
+        write_csv(out / name, columns, map(_told, found[name]))
+    write_frame(out / "cases.csv", cases)
+    write_frame(out / "transfer-cases.csv", transfer)
     # Last: where it stands, all is there.
     write_json(
         out / "summary.json",
@@ -127,36 +114,38 @@ def write_score(
             "solver": solver,
             **about,
             **summary(own),
-            "transfer": summary(transfer) if transfer else None,
+            "transfer": summary(transfer) if len(transfer) else None,
             "reach": [item.__dict__ for item in asked],
         },
     )
 
 
 def _held(
-    rows: Sequence[Row], transfer: Sequence[Row], about: Mapping[str, Any]
+    cases: pd.DataFrame, transfer: pd.DataFrame, about: Mapping[str, Any]
 ) -> list[tuple[Any, ...]]:
     """Say how large each set is and which seeds it has, and those used before."""
     told: list[tuple[Any, ...]] = []
     for name, scale, judged in (
-        (about["set"], about["scale"], rows),
+        (about["set"], about["scale"], cases),
         ("transfer", about["transfer_scale"], transfer),
     ):
-        seeds = [row.seed for row in judged]
-        if seeds:
-            told.append((name, scale, len(seeds), min(seeds), max(seeds)))
+        seeds = judged["seed"]
+        if len(seeds):
+            told.append((name, scale, len(seeds), seeds.min(), seeds.max()))
     mended = about["seeds_used_while_mending"]
     return [*told, *((name, None, None, *ends) for name, ends in mended.items())]
 
 
 def _carried(
-    rows: Sequence[Row], transfer: Sequence[Row]
+    cases: pd.DataFrame, transfer: pd.DataFrame
 ) -> Iterator[tuple[str, float, float, float, bool | None]]:
     """Hold each figure on the transfer set beside the published set's.
 
     Within 5 points is said of shares; seconds are none.
     """
-    for here, there in zip(reach(rows, ()), reach(transfer, ()), strict=True):
+    for here, there in zip(
+        reach(cases, NOTHING), reach(transfer, NOTHING), strict=True
+    ):
         if here.reached is not None and there.reached is not None:
             apart = there.reached - here.reached
             share = here.figure != "seconds_per_case"
@@ -173,20 +162,27 @@ def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[Asked]:
         yield Asked(figure, "<= 0", float(off), None, None, len(told), not off)
 
 
-def _shared(own: Sequence[Row], rows: Sequence[Row]) -> list[Row]:
-    """Own rows of the cases that every solver was asked: some get a share of them."""
-    asked: dict[str, set[str]] = {}
-    for row in rows:
-        asked.setdefault(row.solver, set()).add(row.case)
-    return [row for row in own if all(row.case in each for each in asked.values())]
+def _rivals(
+    cases: pd.DataFrame, own: pd.DataFrame, solver: str, skipped: Mapping[str, str]
+) -> Iterator[tuple[Any, ...]]:
+    """Hold all solvers against each other; who did not enter stands last."""
+    # Some are asked a share of the cases: the same of the solver's own stand beside.
+    asked_of = own["case"].map(cases.groupby("case")["solver"].nunique())
+    same = own[asked_of == cases["solver"].nunique()]
+    for name, mine in cases.groupby("solver", sort=False):
+        yield _rival(str(name), mine)
+        if name == solver and len(same) < len(own):
+            yield _rival(f"{solver}, the rivals' cases", same)
+    for name, why in skipped.items():
+        yield (name, 0, *[None] * (len(_RIVALS) - 3), why)
 
 
-def _rival(name: str, mine: Sequence[Row]) -> tuple[Any, ...]:
-    found = {item.figure: item.reached for item in reach(mine, ())}
-    lost = [row.lost for row in mine if row.lost]
+def _rival(name: str, mine: pd.DataFrame) -> tuple[Any, ...]:
+    found = {item.figure: item.reached for item in reach(mine, NOTHING)}
+    lost = mine["lost"][mine["lost"] != ""]
     figures = [found[figure] for figure in _RIVALS[3:-1]]
-    note = f"first loss: {lost[0]}" if lost else ""
-    return _told((name, len(mine), len(lost), *figures, note))
+    note = f"first loss: {lost.iloc[0]}" if len(lost) else ""
+    return (name, len(mine), len(lost), *figures, note)
 
 
 def _told(row: Sequence[Any]) -> tuple[Any, ...]:

@@ -1,58 +1,99 @@
-"""The ledger: every checkable sentence of the paper, judged."""
+"""The ledger: every checkable sentence of the paper, judged.
+
+The claims are the rows of ``claims.yaml``. A row names a measure, a function of one of
+the modules here, and the conditions on the numbers that it finds.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import inspect
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import partial
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from hystbench.compare.claims import (
-    device,
-    equations,
     errors,
     filters,
     identification,
     operators,
     response,
-    signals,
 )
-from hystbench.compare.claims.claim import Claim, Judgement, judge
+from hystbench.compare.claims.claim import (
+    Claim,
+    Condition,
+    Judgement,
+    NotTestable,
+    Numbers,
+    Test,
+    judge,
+)
 from hystbench.compare.claims.halves import about_signals, on_signals
 from hystbench.compare.evidence import Evidence
-from hystbench.files import write_csv
+from hystbench.compare.rows import write_fields
+from hystbench.yaml_files import parse_yaml
 
-_MODULES = (
-    operators,
-    equations,
-    identification,
-    filters,
-    signals,
-    response,
-    errors,
-    device,
-)
+MEASURES = {
+    f"{module.__name__.rpartition('.')[2]}.{name}": function
+    for module in (errors, filters, identification, operators, response)
+    for name, function in vars(module).items()
+    if inspect.isfunction(function) and function.__module__ == module.__name__
+}
 
-CLAIMS: tuple[Claim, ...] = tuple(
-    item
-    for module in _MODULES
-    for item in vars(module).values()
-    if isinstance(item, Claim)
-)
-
+#: Columns of the ledger; of a renamed one also the attribute of a Judgement.
 COLUMNS = (
-    "id",
-    "claim",
-    "where",
-    "kind",
-    "basis",
-    "reading",
-    "verdict",
-    "on_held_out",
-    "holds_on",
-    "evidence",
-    "published_bears_out",
-    "published_evidence",
+    *("id=claim.id", "claim=claim.claim", "where=claim.where", "kind=claim.kind"),
+    *("basis=claim.basis", "reading=claim.reading", "verdict"),
+    *("on_held_out=held_out_verdict", "holds_on", "evidence"),
+    *("published_bears_out", "published_evidence"),
 )
+
+
+def _cannot(_: Evidence, reason: str) -> Numbers:
+    raise NotTestable(reason)
+
+
+def _test(row: Mapping[str, Any]) -> Test:
+    if "untestable" in row:
+        return Test(partial(_cannot, reason=row["untestable"]))
+    return Test(
+        measure=MEASURES[row["measure"]],
+        arguments=row.get("with", {}),
+        holds=tuple(map(Condition, row["holds"])),
+        says=row["says"],
+        otherwise=row.get("otherwise", ""),
+    )
+
+
+def read_claim(row: Mapping[str, Any]) -> Claim:
+    """Make a claim of a row of the table.
+
+    ``theirs`` of a row is what differs where the paper's own numbers are judged.
+    """
+    theirs = None
+    if "theirs" in row:
+        arguments = {**row.get("with", {}), **row["theirs"].get("with", {})}
+        theirs = _test({**row, **row["theirs"], "with": arguments})
+    return Claim(
+        id=row["id"],
+        claim=row["claim"],
+        where=row["where"],
+        kind=row["kind"],
+        reading=row.get("reading", ""),
+        basis=row.get("basis", ""),
+        ours=_test(row),
+        theirs=theirs,
+    )
+
+
+def _read_table() -> tuple[Claim, ...]:
+    text = files(__package__).joinpath("claims.yaml").read_text(encoding="utf-8")
+    return tuple(map(read_claim, parse_yaml(text, "claims.yaml")))
+
+
+CLAIMS = _read_table()
 
 
 def judge_all(
@@ -83,12 +124,4 @@ def _judge(claim: Claim, evidence: Evidence, alone: Evidence) -> Judgement:
 
 def write_claims(judgements: Iterable[Judgement], path: str | Path) -> None:
     """Write the ledger as CSV; see ``COLUMNS``."""
-    rows = (
-        (
-            *(j.claim.id, j.claim.claim, j.claim.where, j.claim.kind, j.claim.basis),
-            *(j.claim.reading, j.verdict, j.held_out_verdict, j.holds_on, j.evidence),
-            *(j.published_bears_out, j.published_evidence),
-        )
-        for j in judgements
-    )
-    write_csv(path, COLUMNS, rows)
+    write_fields(path, COLUMNS, judgements)

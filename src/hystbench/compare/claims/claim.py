@@ -1,16 +1,19 @@
-"""A claim of the paper, how it is tested, and what came out."""
+"""A claim of the paper, the test that it is put to, and what came out."""
 
 from __future__ import annotations
 
 import math
+import operator
+import re
+import string
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 from hystbench.compare.cells import twin_runs
 from hystbench.compare.evidence import Cell, Evidence, Run
 from hystbench.compare.twins import Holding, holding_text
-from hystbench.published import FILTERS, Metric, Pair, sine_frequency
+from hystbench.published import FILTERS
 
 Verdict = Literal[
     "reproduced", "not reproduced", "not testable", "refuted by the paper"
@@ -28,6 +31,20 @@ Basis = Literal["", "held-out", "fitted", "constrained", "built-in"]
 - empty for theory, notation and what cannot be tested.
 """
 
+Numbers = Mapping[str, Any]
+"""What a measure finds: numbers, and parts of the sentence, by name."""
+Measure = Callable[..., Numbers]
+"""Finds numbers in evidence; takes the arguments of a row of the table as well."""
+
+PREDICATES: dict[str, Callable[[Any, Any], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    "==": operator.eq,
+    ">=": operator.ge,
+    ">": operator.gt,
+}
+_CONDITION = re.compile(r"(?:(\S+) \* )?(\w+) (<=|<|==|>=|>) (?:(\S+) \* )?(\S+)")
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -42,8 +59,107 @@ class NotTestable(Exception):  # noqa: N818 - it is no error but a verdict
 
 
 @dataclass(frozen=True)
+class Condition:
+    """A comparison of a measured number with a limit: ``2 * better >= both``.
+
+    Parameters
+    ----------
+    text : str
+        ``name predicate limit``. The predicate is one of ``PREDICATES``; the limit is
+        a number or the name of another measured number. A factor may stand before
+        each name.
+
+    Raises
+    ------
+    ValueError
+        If the text is no such comparison.
+    """
+
+    text: str
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be read."""
+        self._parts()
+
+    def _parts(self) -> tuple[str | Any, ...]:
+        found = _CONDITION.fullmatch(self.text)
+        if found is None:
+            raise ValueError(f"{self.text!r}: expected 'name <= limit' or alike")
+        return found.groups()
+
+    def holds(self, numbers: Numbers) -> bool:
+        """Tell whether the numbers fulfil it; NaN fulfils none."""
+        times, name, predicate, limit_times, limit = self._parts()
+        left = _scaled(times, numbers[name])
+        known = numbers[limit] if limit in numbers else float(limit)
+        return bool(PREDICATES[predicate](left, _scaled(limit_times, known)))
+
+
+def _scaled(factor: str | None, value: Any) -> Any:
+    return value if factor is None else float(factor) * value
+
+
+class Sentence(string.Formatter):
+    """Write numbers into a sentence.
+
+    An infinite error reads ``diverged``. A format that ends in ``%``, such as
+    ``.2g%``, writes a fraction in per cent.
+    """
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """Write one number."""
+        if isinstance(value, float) and math.isinf(value):
+            return "diverged"
+        if format_spec.endswith("%"):
+            return f"{100 * value:{format_spec[:-1]}} %"
+        return format(value, format_spec)
+
+
+def number(value: float) -> str:
+    """Write an error for a sentence."""
+    return Sentence().format_field(float(value), ".4g")
+
+
+@dataclass(frozen=True)
+class Test:
+    """How a claim is judged: a measure, conditions on its numbers, and a sentence.
+
+    Parameters
+    ----------
+    measure : callable
+    arguments : mapping of str to object
+        What the measure takes beside the evidence.
+    holds : tuple of Condition
+        The claim holds where all of them do.
+    says : str
+        Sentence with the numbers in braces.
+    otherwise : str
+        The sentence where the claim does not hold; empty for the same.
+    """
+
+    measure: Measure
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    holds: tuple[Condition, ...] = ()
+    says: str = ""
+    otherwise: str = ""
+
+    def __call__(self, evidence: Evidence) -> Finding:
+        """Judge the claim by evidence.
+
+        Raises
+        ------
+        NotTestable
+            If the evidence lacks what the measure needs.
+        """
+        numbers = self.measure(evidence, **self.arguments)
+        holds = all(condition.holds(numbers) for condition in self.holds)
+        text = self.says if holds or not self.otherwise else self.otherwise
+        return Finding(holds, Sentence().vformat(text, (), numbers))
+
+
+@dataclass(frozen=True)
 class Claim:
-    """One checkable sentence of the paper.
+    """One checkable sentence of the paper; a row of ``claims.yaml``.
 
     Parameters
     ----------
@@ -53,7 +169,7 @@ class Claim:
         The sentence, quoted or in short.
     where : str
         Section, equation, table or figure.
-    kind : {"result", "theory", "condition"}
+    kind : {"result", "theory", "condition", "notation"}
         What sort of sentence it is.
     reading : str
         How the sentence was made checkable, where its words alone do not say.
@@ -70,7 +186,7 @@ class Claim:
     where: str
     kind: Kind
     reading: str
-    basis: Basis
+    basis: str
     ours: Callable[[Evidence], Finding]
     theirs: Callable[[Evidence], Finding] | None = None
 
@@ -114,52 +230,6 @@ def judge(claim: Claim, evidence: Evidence) -> Judgement:
     return Judgement(claim, verdict, sentence, born_out, printed.evidence, holdings)
 
 
-@dataclass(frozen=True)
-class Errors:
-    """Errors by signal and model, ours or the paper's, behind one look-up.
-
-    A diverged run has infinite errors.
-    """
-
-    values: Mapping[tuple[str, str, Metric], float]
-    published: tuple[Pair, ...]
-
-    def of(self, signal: str, model: str, metric: Metric = "mse") -> float:
-        """Give one error."""
-        return self.values[signal, model, metric]
-
-    def need(self, signals: Iterable[str], models: Iterable[str]) -> None:
-        """Stop the test of a claim where a run is missing.
-
-        Raises
-        ------
-        NotTestable
-            If there is no signal to test it on, or any of the runs is missing; the
-            message counts and names them.
-        """
-        listed = list(models)
-        cells = [(signal, model) for signal in signals for model in listed]
-        if not cells:
-            raise NotTestable("none of the signals that it is about is asked for")
-        need_runs(cells, {(signal, model) for signal, model, _ in self.values})
-
-    @property
-    def sines(self) -> list[str]:
-        """Sines of Table 1 by rising frequency."""
-        found = {
-            pair.signal: frequency
-            for pair in self.published
-            if (frequency := sine_frequency(pair.signal)) is not None
-        }
-        return sorted(found, key=lambda signal: found[signal])
-
-    def table(self, number: int) -> list[str]:
-        """List the signals of a table of the paper."""
-        return list(
-            dict.fromkeys(p.signal for p in self.published if p.table == number)
-        )
-
-
 def need_runs(cells: Iterable[Cell], there: Iterable[Cell]) -> None:
     """Raise :class:`NotTestable` where runs are missing."""
     known = set(there)
@@ -167,28 +237,6 @@ def need_runs(cells: Iterable[Cell], there: Iterable[Cell]) -> None:
     if missing:
         more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
         raise NotTestable(f"not run: {missing[0]}{more}")
-
-
-def our_errors(evidence: Evidence) -> Errors:
-    """Look up our errors on the twin."""
-    values: dict[tuple[str, str, Metric], float] = {}
-    for (signal, model), run in twin_runs(evidence.runs).items():
-        values[signal, model, "mse"] = run.error("mse")
-        values[signal, model, "re"] = run.error("re")
-    for signal, drawn in evidence.drawn.items():
-        for model, metric in drawn.errors:
-            if (signal, model, metric) in values:
-                values[signal, model, metric] = drawn.median(model, metric)
-    return Errors(values, evidence.published)
-
-
-def published_errors(evidence: Evidence) -> Errors:
-    """Look up the paper's errors."""
-    values: dict[tuple[str, str, Metric], float] = {}
-    for pair in evidence.published:
-        values[pair.signal, pair.model, "mse"] = pair.mse.value
-        values[pair.signal, pair.model, "re"] = pair.re.value
-    return Errors(values, evidence.published)
 
 
 def lms_runs(evidence: Evidence, models: Iterable[str] = FILTERS) -> list[Run]:
@@ -204,65 +252,3 @@ def lms_runs(evidence: Evidence, models: Iterable[str] = FILTERS) -> list[Run]:
     if not runs:
         raise NotTestable(f"not run: {' and '.join(wanted)}")
     return runs
-
-
-def errors_claim(
-    id: str,  # noqa: A002 - the field's name
-    claim: str,
-    where: str,
-    reading: str = "",
-    basis: Basis = "fitted",
-) -> Callable[[Callable[[Errors], Finding]], Claim]:
-    """Make a claim on errors, tested alike on ours and on the paper's."""
-
-    def make(test: Callable[[Errors], Finding]) -> Claim:
-        return Claim(
-            id=id,
-            claim=claim,
-            where=where,
-            kind="result",
-            reading=reading,
-            basis=basis,
-            ours=lambda evidence: test(our_errors(evidence)),
-            theirs=lambda evidence: test(published_errors(evidence)),
-        )
-
-    return make
-
-
-def claim_on(
-    id: str,  # noqa: A002 - the field's name
-    claim: str,
-    where: str,
-    kind: Kind,
-    reading: str = "",
-    theirs: Callable[[Evidence], Finding] | None = None,
-    *,
-    basis: Basis = "",
-) -> Callable[[Callable[[Evidence], Finding]], Claim]:
-    """Make a claim on other evidence than the errors."""
-
-    def make(test: Callable[[Evidence], Finding]) -> Claim:
-        return Claim(id, claim, where, kind, reading, basis, test, theirs)
-
-    return make
-
-
-def untestable(
-    id: str,  # noqa: A002 - the field's name
-    claim: str,
-    where: str,
-    kind: Kind,
-    reason: str,
-) -> Claim:
-    """Make a claim that no run of a twin can judge, with the reason."""
-
-    def test(_: Evidence) -> Finding:
-        raise NotTestable(reason)
-
-    return Claim(id, claim, where, kind, "", "", test)
-
-
-def number(value: float) -> str:
-    """Write an error for a sentence."""
-    return "diverged" if math.isinf(value) else f"{value:.4g}"

@@ -1,4 +1,4 @@
-"""Claims on the operators and envelopes of Sections 1 and 2."""
+"""Measures of the operators, envelopes and equations of Sections 1 to 3.1."""
 
 from __future__ import annotations
 
@@ -6,12 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hystbench.compare.claims.claim import (
-    Claim,
-    Finding,
-    claim_on,
-    untestable,
-)
+from hystbench.compare.claims.claim import Numbers
 from hystbench.compare.claims.identification import identified
 from hystbench.compare.evidence import Evidence
 from hystbench.published.discrepancies import crossings
@@ -20,13 +15,11 @@ from hystbench.published.equations import (
     gamma_left,
     gamma_right,
     generalized_play,
+    generalized_play_eq12,
     play,
     thresholds,
 )
 from hystbench.record import FloatArray
-
-EXACT = 1e-12
-"""Largest difference that rounding in double precision explains here."""
 
 Operator = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -37,37 +30,36 @@ def sine(amplitude: float, cycles: int, samples: int = 400) -> FloatArray:
     return amplitude * np.sin(phase)
 
 
-def plays(evidence: Evidence) -> FloatArray:
-    """Give thresholds of plays: 31 across the amplitude of the sines."""
-    count = evidence.text.filter_length + 1
-    return np.arange(count) / count * evidence.text.amplitude_a
+def plays(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
+    """Give a sine of the paper's amplitude, and thresholds of 31 plays across it."""
+    count, limit = evidence.text.filter_length + 1, evidence.text.amplitude_a
+    return sine(limit, 3), np.arange(count) / count * limit
 
 
-def judge_rate_independence(
-    operator: Operator, v: FloatArray, r: FloatArray
-) -> Finding:
+def generalized_plays(evidence: Evidence) -> tuple[FloatArray, FloatArray, Envelope]:
+    """Give the sine, the thresholds and the published envelopes."""
+    text = evidence.text
+    limit, envelope = text.amplitude_a, text.envelope
+    return sine(limit, 3), thresholds(text.filter_length, limit, envelope), envelope
+
+
+def play_at_two_speeds(evidence: Evidence) -> Numbers:
+    """Run plays along a sine at two speeds."""
+    return at_two_speeds(play, *plays(evidence))
+
+
+def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
     """Run an operator along one path at two speeds; also bound its steps."""
     once = operator(v, r)
     slow = np.interp(np.arange(2 * len(v) - 1) / 2, np.arange(len(v)), v)
-    twice = operator(slow, r)[::2]
-    apart = float(np.abs(once - twice).max())
+    apart = float(np.abs(once - operator(slow, r)[::2]).max())
     steps = np.abs(np.diff(once, axis=0)) - np.abs(np.diff(v))[:, None]
-    excess = float(steps.max())
-    return Finding(
-        apart <= EXACT and excess <= EXACT,
-        f"run at half the speed it differs by at most {apart:.1e}; no step of its "
-        f"output exceeds the step of its input by more than {max(excess, 0.0):.1e}",
-    )
+    return {"apart": apart, "excess": max(float(steps.max()), 0.0)}
 
 
-def judge_symmetry(operator: Operator, v: FloatArray, r: FloatArray) -> Finding:
-    """Compare the loop with its own mirror image through the centre."""
-    asymmetry = loop_asymmetry(operator, v, r)
-    return Finding(
-        asymmetry <= 1e-9,
-        f"rising and falling branch differ from each other's mirror image by "
-        f"{asymmetry:.1e} of the loop's height",
-    )
+def play_asymmetry(evidence: Evidence) -> Numbers:
+    """Mirror the loop of a Prandtl-Ishlinskii model of equal weights."""
+    return {"asymmetry": loop_asymmetry(play, *plays(evidence))}
 
 
 def loop_asymmetry(operator: Operator, v: FloatArray, r: FloatArray) -> float:
@@ -78,136 +70,99 @@ def loop_asymmetry(operator: Operator, v: FloatArray, r: FloatArray) -> float:
     return float(np.abs(centred + np.roll(centred, period // 2)).max() / np.ptp(loop))
 
 
-@claim_on(
-    "play-rate-independent",
-    "the play operator 'is a rate-independent and continuous hysteresis operator'",
-    "Section 2.1, Eqs. 1-2",
-    "theory",
-    "the same path at half the speed gives the same output; the output never moves "
-    "farther than the input",
-)
-def play_rate_independent(evidence: Evidence) -> Finding:
-    """Run plays along a sine at two speeds."""
-    return judge_rate_independence(
-        play, sine(evidence.text.amplitude_a, 3), plays(evidence)
-    )
+def gpo_shape(evidence: Evidence) -> Numbers:
+    """Mirror the loop of generalized plays of equal weights; find flat envelopes."""
+    v, r, envelope = generalized_plays(evidence)
+    found = {
+        "asymmetry": loop_asymmetry(lambda v, r: generalized_play(v, r, envelope), v, r)
+    }
+    u = np.linspace(-evidence.text.amplitude_a, evidence.text.amplitude_a, 2001)
+    for name, gamma in (("left", gamma_left), ("right", gamma_right)):
+        slope = np.gradient(gamma(u, envelope), u)
+        found[name] = float(min(slope[0], slope[-1]) / slope.max())
+    return found
 
 
-@claim_on(
-    "play-symmetric",
-    "'The classic Prandtl-Ishlinskii model is limited to symmetric hysteresis loops'",
-    "Section 2.2",
-    "theory",
-    "a steady loop of plays under a sine is its own mirror image",
-)
-def play_symmetric(evidence: Evidence) -> Finding:
-    """Mirror the loop of a Prandtl-Ishlinskii model of equal weights."""
-    return judge_symmetry(play, sine(evidence.text.amplitude_a, 3), plays(evidence))
+def _envelope(evidence: Evidence, of: str) -> Envelope:
+    if of == "published":
+        return evidence.text.envelope
+    return identified(evidence).envelope
 
 
-@claim_on(
-    "gpo-asymmetric",
-    "because of its operators the GPO-based filter can describe hysteresis 'with "
-    "asymmetric and saturation properties'",
-    "Section 1",
-    "theory",
-    "with the published envelopes a steady loop differs from its mirror image by "
-    "more than 1 % of its height, and the slope of each envelope falls at an end of "
-    "the range below 90 % of its maximum",
-)
-def gpo_asymmetric(evidence: Evidence) -> Finding:
-    """Mirror the loop of generalized plays of equal weights."""
-    envelope, limit = evidence.text.envelope, evidence.text.amplitude_a
-    r = thresholds(evidence.text.filter_length, limit, envelope)
-    asymmetry = loop_asymmetry(
-        lambda v, r: generalized_play(v, r, envelope), sine(limit, 3), r
-    )
+def envelope_slopes(evidence: Evidence, of: str) -> Numbers:
+    """Find the smallest steps of both envelopes on the working range."""
+    envelope, limit = _envelope(evidence, of), evidence.text.amplitude_a
     v = np.linspace(-limit, limit, 2001)
-    flat = [
-        float(min(slope[0], slope[-1]) / slope.max())
-        for slope in (np.gradient(gamma(v, envelope), v) for gamma in _GAMMAS)
-    ]
-    return Finding(
-        asymmetry > 0.01 and max(flat) < 0.9,
-        f"the loop differs from its mirror image by {100 * asymmetry:.0f} % of its "
-        f"height; the slope of gamma_l falls to {100 * flat[0]:.0f} % and that of "
-        f"gamma_r to {100 * flat[1]:.0f} % of its maximum",
+    left, right = (
+        float(np.diff(gamma(v, envelope)).min()) for gamma in (gamma_left, gamma_right)
     )
+    return {"limit": limit, "step": v[1] - v[0], "left": left, "right": right}
 
 
-_GAMMAS = (gamma_left, gamma_right)
+def envelope_order(evidence: Evidence, of: str) -> Numbers:
+    """Find where gamma_r >= gamma_l on the working range."""
+    limit = evidence.text.amplitude_a
+    found = crossings(dict(_envelope(evidence, of)), -limit, limit)
+    start, end, excess = found[0] if found else (limit, limit, 0.0)
+    return {
+        "limit": limit,
+        "crossings": len(found),
+        "start": start,
+        "end": end,
+        "excess": excess,
+    }
 
 
-def judge_non_decreasing(envelope: Envelope, limit: float) -> Finding:
-    """Test the slope of both envelopes on the working range."""
-    v = np.linspace(-limit, limit, 2001)
-    slopes = [float(np.diff(gamma(v, envelope)).min()) for gamma in _GAMMAS]
-    return Finding(
-        min(slopes) >= 0,
-        f"on |u| <= {limit:g} A the smallest steps of gamma_l and gamma_r over "
-        f"{v[1] - v[0]:.2g} A are {slopes[0]:.2g} and {slopes[1]:.2g}",
+def extreme(evidence: Evidence, largest: bool) -> Numbers:
+    """Hold Eq. 7 or 8 as printed, and with v in place of gamma(v), against a run."""
+    v, r, envelope = generalized_plays(evidence)
+    run = generalized_play(v, r, envelope)
+    reached = run.max(axis=0) if largest else run.min(axis=0)
+    gamma = gamma_right if largest else gamma_left
+    pick = np.max if largest else np.min
+    height = float(np.ptp(run, axis=0).max())
+
+    def off(argument: float) -> float:
+        at = np.array([argument])
+        inner = np.minimum(gamma_left(at, envelope) + r, run[0])
+        formula = np.maximum(gamma_right(at, envelope) - r, inner)
+        return float(np.abs(formula - reached).max() / height)
+
+    printed = off(float(pick(gamma(v, envelope))))
+    return {"printed": printed, "with_v": off(float(pick(v)))}
+
+
+def two_forms(evidence: Evidence) -> Numbers:
+    """Run a generalized play and Eq. 12 along a sine."""
+    v, r, envelope = generalized_plays(evidence)
+    one, other = generalized_play(v, r, envelope), generalized_play_eq12(v, r, envelope)
+    apart = np.abs(one - other).max(axis=1)
+    return {"apart": apart.max(), "later": apart[len(v) // 3 :].max()}
+
+
+def delay_line(evidence: Evidence) -> Numbers:
+    """Run the filter with its delay line and without, slowly and fast."""
+    found = identified(evidence)
+    rate, limit = evidence.text.sampling_hz, evidence.text.amplitude_a
+    slow, fast = (
+        delay_line_difference(
+            sine(limit, 2, round(rate / hz)),
+            found.thresholds,
+            found.weights,
+            found.envelope,
+        )
+        for hz in (1.0, 100.0)
     )
+    smallest = min(pair.re.value for pair in evidence.published if pair.table == 1)
+    return {"slow": slow, "fast": fast, "smallest": smallest}
 
 
-def judge_order(envelope: Envelope, limit: float) -> Finding:
-    """Test gamma_l > gamma_r on the working range."""
-    found = crossings(dict(envelope), -limit, limit)
-    if not found:
-        return Finding(True, f"gamma_l > gamma_r on all of |u| <= {limit:g} A")
-    start, end, excess = found[0]
-    return Finding(
-        False,
-        f"gamma_r >= gamma_l for {start:.3f} < u < {end:.3f} A, by at most "
-        f"{excess:.1e}",
-    )
-
-
-def _non_decreasing(evidence: Evidence) -> Finding:
-    return judge_non_decreasing(evidence.text.envelope, evidence.text.amplitude_a)
-
-
-def _order(evidence: Evidence) -> Finding:
-    return judge_order(evidence.text.envelope, evidence.text.amplitude_a)
-
-
-@claim_on(
-    "envelopes-non-decreasing",
-    "the envelopes are 'continuous non-decreasing functions'",
-    "Section 2.2, Eqs. 5-6",
-    "condition",
-    "ours: the identified envelopes, which the search holds to it; theirs: the "
-    "published ones",
-    theirs=_non_decreasing,
-    basis="built-in",
-)
-def envelopes_non_decreasing(evidence: Evidence) -> Finding:
-    """Test the identified envelopes."""
-    return judge_non_decreasing(
-        identified(evidence).envelope, evidence.text.amplitude_a
-    )
-
-
-@claim_on(
-    "envelopes-ordered",
-    "'gamma_l > gamma_r'",
-    "Section 2.2",
-    "condition",
-    "ours: the identified envelopes, which the search holds to it; theirs: the "
-    "published ones",
-    theirs=_order,
-    basis="built-in",
-)
-def envelopes_ordered(evidence: Evidence) -> Finding:
-    """Test the identified envelopes."""
-    return judge_order(identified(evidence).envelope, evidence.text.amplitude_a)
-
-
-backlash_is_pi: Claim = untestable(
-    "backlash-is-pi",
-    "the backlash filter 'constitutes a Prandtl-Ishlinskii model' with adaptive "
-    "weights",
-    "Section 1",
-    "theory",
-    "a definition; the paper does not say whether its backlashes take x(k) or the "
-    "tapped delay line",
-)
+def delay_line_difference(
+    v: FloatArray, r: FloatArray, weights: FloatArray, envelope: Envelope
+) -> float:
+    """Relative RMS of sum w_i (H_i[x(k-i)] - H_i[x(k)]), Eq. 14, in steady state."""
+    outputs = generalized_play(v, r, envelope)
+    half = len(v) // 2
+    static = outputs[half:] @ weights
+    delayed = sum(w * outputs[half - i : len(v) - i, i] for i, w in enumerate(weights))
+    return float(np.sqrt(np.mean((delayed - static) ** 2) / np.mean(static**2)))

@@ -1,10 +1,10 @@
-"""Claims on the actuator's response, read off the records."""
+"""Measures of the signals and of the actuator's response, read off the records."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from hystbench.compare.claims.claim import Finding, NotTestable, claim_on
+from hystbench.compare.claims.claim import NotTestable, Numbers
 from hystbench.compare.claims.statistics import (
     cycles,
     minor_turning_points,
@@ -15,8 +15,7 @@ from hystbench.compare.evidence import Evidence
 from hystbench.published import signals, sine_frequency
 from hystbench.record import FloatArray, Record
 
-REMARKABLE = 0.1
-"""Relative change of a peak-to-peak displacement that counts as one."""
+RANDOM = "multisine-random-0-100hz"
 
 
 def records(evidence: Evidence, names: list[str]) -> list[Record]:
@@ -44,9 +43,8 @@ def sine_records(evidence: Evidence) -> list[Record]:
 
 
 def _table(evidence: Evidence, number: int) -> list[str]:
-    return list(
-        dict.fromkeys(p.signal for p in evidence.published if p.table == number)
-    )
+    found = [pair.signal for pair in evidence.published if pair.table == number]
+    return list(dict.fromkeys(found))
 
 
 def chirp_record(evidence: Evidence) -> Record:
@@ -59,70 +57,147 @@ def settled(x: FloatArray) -> FloatArray:
     return x[len(x) // 2 :]
 
 
-@claim_on(
-    "sines-major-loops",
-    "'only major loops of the GMA are actuated by the discrete frequency sinusoidal "
-    "signals'",
-    "Section 4, Figure 8",
-    "result",
-    "in the second half of each record neither input nor output turns back farther "
-    "than 10 % of its range from both ends of it",
-    basis="built-in",
-)
-def sines_major_loops(evidence: Evidence) -> Finding:
-    """Count the turns inside the major loop."""
+def chirp_frequencies(evidence: Evidence) -> Numbers:
+    """Read the frequency of the chirp's input at the two times of the paper."""
+    record = chirp_record(evidence)
+    time, frequency, _ = cycles(record.u, record.y, record.dt)
+    text = evidence.text
+    told = [
+        (m, float(np.interp(m.time_s, time, frequency)))
+        for m in (text.chirp_minimum, text.chirp_resonance)
+    ]
+    return {
+        "off": max(abs(found / m.frequency_hz - 1) for m, found in told),
+        "told": "; ".join(f"{found:.1f} Hz at {m.time_s:g} s" for m, found in told),
+    }
+
+
+def chirp_rates(evidence: Evidence) -> Numbers:
+    """Take the sweep rate that each of the two printed moments implies."""
+    text = evidence.text
+    first, second = (
+        (moment.frequency_hz - text.chirp_from_hz) / moment.time_s
+        for moment in (text.chirp_minimum, text.chirp_resonance)
+    )
+    return {
+        "from_hz": text.chirp_from_hz,
+        "first": first,
+        "second": second,
+        "apart": abs(second / first - 1),
+    }
+
+
+def sampling_rates(evidence: Evidence) -> Numbers:
+    """Read the sampling rates of the twin's records."""
+    twin = [r for r in evidence.records.values() if r.origin == "twin"]
+    if not twin:
+        raise NotTestable("not run: records")
+    rates = sorted({round(1 / record.dt, 6) for record in twin})
+    return {
+        "off": max(abs(rate - evidence.text.sampling_hz) for rate in rates),
+        "rates": ", ".join(f"{rate:g}" for rate in rates),
+        "records": len(twin),
+    }
+
+
+def input_amplitudes(evidence: Evidence) -> Numbers:
+    """Read the amplitude of sines and chirp."""
+    found = [*sine_records(evidence), chirp_record(evidence)]
+    sizes = [float(np.sqrt(2) * record.u.std()) for record in found]
+    units = sorted({record.input.unit for record in found})
+    wanted = evidence.text.amplitude_a
+    return {
+        "off": max(abs(size / wanted - 1) for size in sizes),
+        "low": min(sizes),
+        "high": max(sizes),
+        "units": ", ".join(units),
+        "other_units": len(set(units) - {"A"}),
+        "records": len(found),
+    }
+
+
+def input_lines(evidence: Evidence) -> Numbers:
+    """Project the inputs of both sums on their sines."""
+    worst = 0.0
+    scales = []
+    for name, lines in evidence.text.sums.items():
+        (record,) = records(evidence, [name])
+        found = {f: line_amplitude(record, f) for f in lines}
+        scale = sum(found.values()) / sum(lines.values())
+        scales.append(f"{scale:.4g} {record.input.unit} on {name}")
+        worst = max(worst, *(abs(found[f] / (scale * a) - 1) for f, a in lines.items()))
+    return {"worst": worst, "scales": ", ".join(scales)}
+
+
+def line_amplitude(record: Record, frequency: float) -> float:
+    """Amplitude of the input at one frequency, over whole cycles of 5 Hz."""
+    samples = round(0.2 / record.dt)
+    whole = len(record) // samples * samples
+    if whole == 0:
+        raise NotTestable(f"the record of {record.name} is shorter than 0.2 s")
+    phase = 2 * np.pi * frequency * np.arange(whole) * record.dt
+    return float(2 * np.abs(np.mean(record.u[:whole] * np.exp(-1j * phase))))
+
+
+def power_in_band(evidence: Evidence) -> Numbers:
+    """Measure the power of the random sum in its band."""
+    (record,) = records(evidence, [RANDOM])
+    limit = evidence.text.random_band_of_nyquist[1] * evidence.text.sampling_hz / 2
+    power = np.abs(np.fft.rfft(record.u - record.u.mean())) ** 2
+    frequency = np.fft.rfftfreq(len(record), record.dt)
+    inside = float(power[frequency <= limit * (1 + 1e-9)].sum() / power.sum())
+    return {"inside": inside, "limit": limit}
+
+
+def turns_under_sines(evidence: Evidence) -> Numbers:
+    """Count the turns of input and output inside the major loop."""
+    counts = [
+        minor_turning_points(settled(r.u)) + minor_turning_points(settled(r.y))
+        for r in sine_records(evidence)
+    ]
+    return {"most": max(counts), "sines": len(counts)}
+
+
+def turns_under_sums(evidence: Evidence) -> Numbers:
+    """Count the turns of input and output of the sums inside their range."""
     counts = {
-        record.name: minor_turning_points(settled(record.u))
-        + minor_turning_points(settled(record.y))
-        for record in sine_records(evidence)
+        r.name: (minor_turning_points(settled(r.u)), minor_turning_points(settled(r.y)))
+        for r in records(evidence, _table(evidence, 3))
     }
-    most = max(counts, key=lambda name: counts[name])
-    return Finding(
-        counts[most] == 0,
-        f"at most {counts[most]} turns inside the range, over {len(counts)} sines",
-    )
+    told = "; ".join(f"{u} and {y} on {name}" for name, (u, y) in counts.items())
+    return {"fewest": min(map(min, counts.values())), "told": told}
 
 
-def _published_peak_to_peak(evidence: Evidence) -> Finding:
-    rms = {
-        frequency: (pair.rms.low + pair.rms.high) / 2
-        for pair in evidence.published
-        if pair.model == "backlash"
-        and (frequency := sine_frequency(pair.signal)) is not None
-    }
-    return _change(rms, "implied RMS displacement")
-
-
-def _change(sizes: dict[float, float], name: str) -> Finding:
-    change = max(sizes.values()) / min(sizes.values()) - 1
+def sizes_over_frequency(evidence: Evidence, of: str = "twin") -> Numbers:
+    """Compare displacements under the sines, our own or those implied by Table 1."""
+    if of == "published":
+        name = "implied RMS displacement"
+        sizes = {
+            frequency: (pair.rms.low + pair.rms.high) / 2
+            for pair in evidence.published
+            if pair.model == "backlash"
+            and (frequency := sine_frequency(pair.signal)) is not None
+        }
+    else:
+        name = "peak-to-peak displacement"
+        sizes = {
+            float(sine_frequency(record.name) or 0): float(np.ptp(settled(record.y)))
+            for record in sine_records(evidence)
+        }
     low, high = min(sizes), max(sizes)
-    return Finding(
-        change > REMARKABLE,
-        f"{name} {sizes[low]:.4g} um at {low:g} Hz and {sizes[high]:.4g} um at "
-        f"{high:g} Hz; largest over smallest {1 + change:.2f}",
-    )
-
-
-@claim_on(
-    "peak-to-peak-changes",
-    "'the peak-peak displacements change with increasing frequency'",
-    "Section 4, Figure 8",
-    "result",
-    "over the sines the largest peak-to-peak displacement is more than 10 % above "
-    "the smallest; theirs: the RMS displacement that the backlash rows imply",
-    theirs=_published_peak_to_peak,
-    basis="fitted",
-)
-def peak_to_peak_changes(evidence: Evidence) -> Finding:
-    """Compare the displacements under the sines."""
-    sizes = {
-        float(sine_frequency(record.name) or 0): float(np.ptp(settled(record.y)))
-        for record in sine_records(evidence)
+    change = max(sizes.values()) / min(sizes.values()) - 1
+    return {
+        "name": name,
+        "change": change,
+        "ratio": 1 + change,
+        "low": low,
+        "high": high,
+        "at_low": sizes[low],
+        "at_high": sizes[high],
     }
-    return _change(sizes, "peak-to-peak displacement")
 
 
-def chirp_extremes(
+def _chirp_extremes(
     evidence: Evidence,
 ) -> tuple[tuple[FloatArray, FloatArray, FloatArray], int, int]:
     """Give the cycles of the chirp, and its dip and the peak that follows.
@@ -138,120 +213,38 @@ def chirp_extremes(
     return found, dip, dip + int(np.argmax(size[dip:]))
 
 
-def time_tolerance(evidence: Evidence) -> float:
-    """Half the time between the paper's dip and peak, so that they stay apart."""
-    text = evidence.text
-    return (text.chirp_resonance.time_s - text.chirp_minimum.time_s) / 2
+def chirp_shape(evidence: Evidence) -> Numbers:
+    """Find the dip and the peak of the chirp's displacement, beside the paper's.
+
+    The tolerances are half the distances between the paper's dip and peak, so that
+    the two stay apart.
+    """
+    (time, frequency, size), dip, peak = _chirp_extremes(evidence)
+    low, high = evidence.text.chirp_minimum, evidence.text.chirp_resonance
+    inside = dip < peak < len(size) - 1
+    return {
+        "tolerance_s": (high.time_s - low.time_s) / 2,
+        "tolerance_hz": (high.frequency_hz - low.frequency_hz) / 2,
+        "dip_off_s": abs(time[dip] - low.time_s),
+        "peak_off_s": abs(time[peak] - high.time_s),
+        "peak_off_hz": abs(frequency[peak] - high.frequency_hz),
+        "inside": inside,
+        "note": "" if inside else ", which is no peak",
+        "trend": rank_correlation(list(frequency[: dip + 1]), list(size[: dip + 1])),
+        "start_size": size[0],
+        "dip_s": time[dip],
+        "dip_hz": frequency[dip],
+        "dip_size": size[dip],
+        "peak_s": time[peak],
+        "peak_hz": frequency[peak],
+        "peak_size": size[peak],
+    }
 
 
-@claim_on(
-    "chirp-decrease",
-    "'when the time is less than 1.28 s' the peak-to-peak displacement 'decreased "
-    "with increasing frequency'",
-    "Section 4, Figure 9",
-    "result",
-    "by cycles of the input: the dip lies within 0.065 s, half the time between the "
-    "paper's dip and peak, of 1.28 s, and up to it the rank correlation with "
-    "frequency is at most -0.9",
-    basis="constrained",
-)
-def chirp_decrease(evidence: Evidence) -> Finding:
-    """Follow the displacement of the chirp down to its dip."""
-    (time, frequency, size), dip, _ = chirp_extremes(evidence)
-    claimed = evidence.text.chirp_minimum.time_s
-    trend = rank_correlation(list(frequency[: dip + 1]), list(size[: dip + 1]))
-    near = abs(time[dip] - claimed) <= time_tolerance(evidence)
-    return Finding(
-        bool(near and trend <= -0.9),
-        f"it goes from {size[0]:.3g} um to {size[dip]:.3g} um at {time[dip]:.2f} s "
-        f"({frequency[dip]:.1f} Hz); rank correlation with frequency {trend:.2f}",
-    )
-
-
-@claim_on(
-    "chirp-increase",
-    "'A remarkable increase of the peak-peak displacement is observed near 1.41 s'",
-    "Section 4, Figure 9",
-    "result",
-    "from the dip it rises by more than 10 %, to a peak within 0.065 s of 1.41 s",
-    basis="constrained",
-)
-def chirp_increase(evidence: Evidence) -> Finding:
-    """Find the peak after the dip."""
-    (time, frequency, size), dip, peak = chirp_extremes(evidence)
-    claimed = evidence.text.chirp_resonance.time_s
-    near = abs(time[peak] - claimed) <= time_tolerance(evidence)
-    return Finding(
-        bool(near and size[peak] > (1 + REMARKABLE) * size[dip]),
-        f"it rises from {size[dip]:.3g} um to {size[peak]:.3g} um at "
-        f"{time[peak]:.2f} s ({frequency[peak]:.1f} Hz)",
-    )
-
-
-@claim_on(
-    "chirp-oscillation",
-    "the resonance 'causes oscillation of the displacement when the frequency "
-    "continues to increase'",
-    "Section 4, Figure 9",
-    "result",
-    "after the peak the peak-to-peak displacement turns two times or more, by more "
-    "than 1 % each",
-    basis="held-out",
-)
-def chirp_oscillation(evidence: Evidence) -> Finding:
-    """Count the turns of the displacement after the peak."""
-    (_, _, size), _, peak = chirp_extremes(evidence)
+def turns_after_peak(evidence: Evidence) -> Numbers:
+    """Count the turns of the chirp's displacement after the peak, beyond 1 % of it."""
+    (_, _, size), _, peak = _chirp_extremes(evidence)
     after = size[peak:]
     if len(after) < 3:
         raise NotTestable("the chirp ends at its peak")
-    turns = len(turning_points(after, 0.01 * float(size[peak])))
-    return Finding(turns >= 2, f"it turns {turns} times after the peak")
-
-
-@claim_on(
-    "resonance",
-    "'the first-order resonance frequency of 69.7 Hz of the GMA system'",
-    "Section 4, Figure 9",
-    "result",
-    "read off the chirp, as the paper does: after its dip the peak-to-peak "
-    "displacement is largest, before the end, within 3.15 Hz of 69.7 Hz, half the "
-    "distance to the dip at 63.4 Hz; so fast a sweep peaks above the resonance itself",
-    basis="constrained",
-)
-def resonance(evidence: Evidence) -> Finding:
-    """Read the frequency of the peak off the chirp."""
-    (_, frequency, size), dip, peak = chirp_extremes(evidence)
-    text = evidence.text
-    claimed = text.chirp_resonance.frequency_hz
-    tolerance = (claimed - text.chirp_minimum.frequency_hz) / 2
-    inside = dip < peak < len(size) - 1
-    return Finding(
-        bool(inside and abs(frequency[peak] - claimed) <= tolerance),
-        f"after its dip at {frequency[dip]:.1f} Hz it is largest at "
-        f"{frequency[peak]:.1f} Hz" + ("" if inside else ", which is no peak"),
-    )
-
-
-@claim_on(
-    "nonlocal-memory",
-    "under the sums of sines 'nonlocal memory effects were revealed'",
-    "Section 4, Figures 10-12",
-    "result",
-    "input and output of each sum turn back inside their range, which closes minor "
-    "loops",
-    basis="built-in",
-)
-def nonlocal_memory(evidence: Evidence) -> Finding:
-    """Count the turns of input and output inside their range."""
-    counts = {
-        record.name: (
-            minor_turning_points(settled(record.u)),
-            minor_turning_points(settled(record.y)),
-        )
-        for record in records(evidence, _table(evidence, 3))
-    }
-    return Finding(
-        all(min(pair) > 0 for pair in counts.values()),
-        "turns inside the range of input and output: "
-        + "; ".join(f"{u} and {y} on {name}" for name, (u, y) in counts.items()),
-    )
+    return {"turns": len(turning_points(after, 0.01 * float(size[peak])))}

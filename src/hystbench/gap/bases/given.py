@@ -47,7 +47,7 @@ def split_given(model: Model, evidence: Evidence) -> tuple[Model, str]:
     if not all(isinstance(item, Gain) for item in behind):
         return model, ""
     scale, ratio = _ratio(block)
-    whole = tuple(np.ones(len(record), dtype=bool) for record in evidence.fit)
+    whole = tuple(record.counted for record in evidence.fit)
     task = HalvesError(evidence.fit, whole, evidence.hold, scale, block.start)
     ends = [task.bent(way) for way in ways_at_ends(ratio)]
     ways = [task.bent(way) for way in ways_inside(ratio)]

@@ -11,8 +11,7 @@ from hystbench.blocks.band_limited import ComplexArray
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import path_from
 from hystbench.gap.bases.spectral import stable
-from hystbench.gap.folds import Mask
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray, Mask, Record
 
 #: Degree of the polynomial that stands for the curve.
 DEGREE = 5

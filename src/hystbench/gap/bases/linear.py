@@ -14,9 +14,9 @@ from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
 from hystbench.gap.bases.split import best_split, chain_of, is_bent
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.folds import Fold, Mask, make_folds
+from hystbench.gap.folds import Fold, make_folds
 from hystbench.model import Model
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Mask
 
 #: Highest order that is tried.
 HIGHEST = 6
@@ -82,7 +82,9 @@ def identified_linear(evidence: Evidence) -> Linear:
         If a record is too short for folds.
     """
     records = evidence.fit
-    whole = tuple(np.arange(len(item)) >= LEAD * len(item) for item in records)
+    whole = tuple(
+        (np.arange(len(item)) >= LEAD * len(item)) & item.counted for item in records
+    )
     folds = tuple(
         Fold(_both(fold.train, whole), _both(fold.validation, whole))
         for fold in make_folds(records)
@@ -211,7 +213,7 @@ def _dynamic(
     folds: tuple[Fold, ...],
 ) -> _Found:
     """Fit one order to all records, and from there to each fold's."""
-    everything = [np.ones(len(record), dtype=bool) for record in evidence.fit]
+    everything = [record.counted for record in evidence.fit]
     count = sum(int(mask.sum()) for mask in whole)
     first = fit_ratio(spectra, order, zeros)
     tasks = [

@@ -12,8 +12,7 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import TransferFunction, path_from
 from hystbench.errors import InputError
 from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
-from hystbench.gap.folds import Mask
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray, Mask, Record
 
 #: A step is damped so many times before a descent ends.
 TRIALS = 8

@@ -82,8 +82,8 @@ def _slack(samples: Samples) -> list[FloatArray]:
     """Give what a backlash of the simulated output would take away from it."""
     widths = np.array(BACKLASH) * float(np.max(np.abs(samples.simulated)))
     parts = []
-    for item in samples.compared:
+    for item, places in zip(samples.compared, samples.places, strict=True):
         simulated = item.simulated
         lost = play(simulated, widths)[0] - simulated[:, np.newaxis]
-        parts.append(lost[:: samples.stride])
+        parts.append(lost[places])
     return list(np.ascontiguousarray(np.concatenate(parts).T))

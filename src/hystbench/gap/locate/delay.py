@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.regression import (
@@ -69,9 +70,9 @@ def fit_delay(samples: Samples, spectra: Spectra) -> tuple[float, Form]:
     slopes = [derivative(item.simulated, item.record.dt) for item in samples.compared]
 
     def shifted(delay: float) -> FloatArray:
-        pairs = zip(samples.compared, slopes, strict=True)
+        parts = zip(samples.compared, slopes, samples.places, strict=True)
         return np.concatenate(
-            [_shift(item, slope, delay, samples.stride) for item, slope in pairs]
+            [_shift(item, slope, delay, places) for item, slope, places in parts]
         )
 
     target = samples.residual + samples.simulated
@@ -100,11 +101,13 @@ def fit_delay(samples: Samples, spectra: Spectra) -> tuple[float, Form]:
     return delay, best([alone, fit_form(samples, [fitted], searched=1)])
 
 
-def _shift(item: Compared, slope: FloatArray, delay: float, stride: int) -> FloatArray:
-    """Delay every stride-th simulated sample by cubic Hermite interpolation."""
+def _shift(
+    item: Compared, slope: FloatArray, delay: float, places: NDArray[np.intp]
+) -> FloatArray:
+    """Delay the simulated samples at some places by cubic Hermite interpolation."""
     dt, values = item.record.dt, item.simulated
     n = len(values)
-    place = np.clip(np.arange(0, n, stride) - delay / dt, 0.0, n - 1.0)
+    place = np.clip(places - delay / dt, 0.0, n - 1.0)
     left = np.minimum(place.astype(np.int64), n - 2)
     x = place - left
     a, p, q = values[left], slope[left] * dt, slope[left + 1] * dt

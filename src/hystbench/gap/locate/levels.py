@@ -22,15 +22,9 @@ import numpy as np
 from scipy import special
 
 from hystbench.gap.compared import Compared
+from hystbench.gap.locate.dominant import Found, find_modes
 from hystbench.gap.locate.listed import listed
-from hystbench.gap.locate.modes import (
-    LINES,
-    Found,
-    Mode,
-    find_modes,
-    fit_mode,
-    lines_of,
-)
+from hystbench.gap.locate.modes import LINES, Mode, fit_mode, lines_of
 from hystbench.gap.locate.regression import saved
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent

@@ -13,29 +13,21 @@ References
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from hystbench.gap.bases import spectral
-from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
 from hystbench.gap.compared import Compared
 from hystbench.gap.periods import settled
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]
 
-ORDERS = (2, 4, 6, 8)
-"""Orders of the model that finds the modes."""
 DEGREE = 2
 """Of the local polynomials, in the distance from the middle of the band."""
-SLOWEST = 0.5
-"""Damping ratio up to which a pair of poles has a peak to speak of."""
-LEAST_SHARE = 0.1
-"""Of the output's power, that a mode worth a picture holds."""
 WIDE = 6.0
 """Half the width of a band, in damping ratios: nine tenths of a mode's energy."""
 NARROWEST, WIDEST = 0.08, 0.5
@@ -87,7 +79,7 @@ class Lines(NamedTuple):
     @property
     def excited(self) -> NDArray[np.bool_]:
         """Lines that the input excites."""
-        return _excited(self.u)
+        return excited_lines(self.u)
 
 
 @dataclass(frozen=True)
@@ -144,55 +136,6 @@ def lines_of(compared: Compared) -> Lines:
     u, y, missed = np.asarray(fft.rfft(centred))[:, 1:] * (np.sqrt(2) / n)
     frequency = np.asarray(fft.rfftfreq(n, record.dt))[1:]
     return Lines(frequency, u, y, missed, not repeats)
-
-
-class Found(NamedTuple):
-    """Modes of one level: frequency in Hz and damping ratio, and what they leave."""
-
-    modes: tuple[tuple[float, float], ...]
-    left: float
-
-
-def find_modes(records: Sequence[Record], most: int = 2) -> Found:
-    """Find the modes that hold most of the output, by a rational fit.
-
-    Parameters
-    ----------
-    records : sequence of Record
-        Of one level.
-    most : int
-
-    Returns
-    -------
-    Found
-        The mode with the largest share first; ``left`` is the share of the output's
-        power that the linear model does not explain.
-    """
-    stretches = [Stretch(*_centred(record), record.dt) for record in records]
-    whole = Spectra.of(stretches, "band-limited")
-    spectra = replace(whole, lines=tuple(map(_driven, whole.lines)))
-    facts = 2 * sum(len(one.s) for one in spectra.lines)
-    energy = sum(float(np.sum(np.abs(one.y) ** 2)) for one in spectra.lines)
-    fits = [(order, fit_ratio(spectra, order, order)) for order in ORDERS]
-    _, ratio = min(
-        fits,
-        key=lambda item: (
-            facts * np.log(max(item[1].cost, 1e-12 * energy))
-            + 2 * item[0] * np.log(facts)
-        ),
-    )
-    shares = [
-        (_share(spectra, ratio, pole) / energy, pole)
-        for pole in np.roots(np.append(ratio.a, 1.0)[::-1])
-        if pole.imag > 0 and -pole.real < SLOWEST * abs(pole)
-    ]
-    kept = sorted(shares, key=lambda item: -item[0])[:most]
-    modes = tuple(
-        (float(abs(pole)) * spectra.scale / (2 * np.pi), float(-pole.real / abs(pole)))
-        for share, pole in kept
-        if share >= LEAST_SHARE
-    )
-    return Found(modes, ratio.cost / energy)
 
 
 def fit_mode(
@@ -379,34 +322,10 @@ class _Band:
         return taken, moved, float(np.sqrt(spread) / max(abs(taken), 1e-300))
 
 
-def _excited(u: ComplexArray) -> NDArray[np.bool_]:
+def excited_lines(u: ComplexArray) -> NDArray[np.bool_]:
+    """Tell which lines the input excites, from its spectrum."""
     power = np.abs(u) ** 2
     return np.asarray(power > EXCITED * float(np.max(power, initial=0.0)))
-
-
-def _driven(lines: spectral.Lines) -> spectral.Lines:
-    """Cut off what lies below and above all that the input excites."""
-    (there,) = np.nonzero(_excited(lines.u))
-    cut = slice(int(there[0]), int(there[-1]) + 1)
-    return spectral.Lines(lines.s[cut], lines.u[cut], lines.y[cut], lines.constant[cut])
-
-
-def _centred(record: Record) -> tuple[FloatArray, FloatArray]:
-    period = record.period_samples
-    repeats = period is not None and len(record) >= 2 * period
-    u, y = (x[period:] if repeats else x[-ENOUGH:] for x in (record.u, record.y))
-    return u - float(np.mean(u)), y - float(np.mean(y))
-
-
-def _share(spectra: Spectra, ratio: Ratio, pole: complex) -> float:
-    """Give the energy of the output that one pair of poles makes."""
-    slope = np.polyval(np.polyder(np.append(ratio.a, 1.0)[::-1]), pole)
-    residue = np.polyval(ratio.b[::-1], pole) / slope
-    energy = 0.0
-    for one in spectra.lines:
-        both = residue / (one.s - pole) + np.conj(residue) / (one.s - np.conj(pole))
-        energy += float(np.sum(np.abs(both * one.u) ** 2))
-    return energy
 
 
 def _on_both_sides(away: FloatArray, half: float) -> bool:

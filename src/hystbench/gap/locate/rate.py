@@ -103,8 +103,10 @@ def _widened(samples: Samples, top: float) -> Form:
                 strength=strength,
             )
             parts = [
-                (run(item) - own)[:, :: samples.stride]
-                for item, own in zip(samples.compared, plain, strict=True)
+                (run(item) - own)[:, places]
+                for item, own, places in zip(
+                    samples.compared, plain, samples.places, strict=True
+                )
             ]
             columns = list(np.concatenate(parts, axis=1))
             forms.append(fit_form(samples, columns, searched=2))
@@ -190,8 +192,8 @@ def _left_behind(
         if row >= RUN_UP:
             np.subtract(moved, gap, out=behind[row - RUN_UP])
     thinned = []
-    for index, item in enumerate(samples.compared):
+    for index, places in enumerate(samples.places):
         own = behind[:, :, np.array(owners) == index]
         whole = own.transpose(1, 2, 0).reshape(len(limits), -1)
-        thinned.append(whole[:, : len(item.record) : samples.stride])
+        thinned.append(whole[:, places])
     return list(np.ascontiguousarray(np.concatenate(thinned, axis=1)))

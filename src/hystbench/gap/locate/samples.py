@@ -44,6 +44,7 @@ class Samples:
 
     The stride is a prime: a periodic record is then seen at many phases, not at the
     same few again and again. Filters run on all samples and are thinned afterwards.
+    Samples that were not measured are left out then.
 
     Parameters
     ----------
@@ -59,7 +60,21 @@ class Samples:
 
     def thin(self, of: Callable[[Compared], FloatArray]) -> FloatArray:
         """Work out a signal on all samples of each record; keep every stride-th."""
-        return np.concatenate([of(item)[:: self.stride] for item in self.compared])
+        return np.concatenate(
+            [
+                of(item)[places]
+                for item, places in zip(self.compared, self.places, strict=True)
+            ]
+        )
+
+    @cached_property
+    def places(self) -> list[NDArray[np.intp]]:
+        """Samples of each record that are kept."""
+        return [
+            at[item.record.counted[at]]
+            for item in self.compared
+            for at in [np.arange(0, len(item.record), self.stride)]
+        ]
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -103,7 +118,7 @@ class Samples:
     @cached_property
     def record(self) -> NDArray[np.int64]:
         """Which record each sample is of."""
-        counts = [-(-len(item.record) // self.stride) for item in self.compared]
+        counts = [len(places) for places in self.places]
         return np.repeat(np.arange(len(counts)), counts)
 
     @cached_property
@@ -129,10 +144,8 @@ class Samples:
         They approximate any Preisach operator, so no loop is out of their reach.
         """
         thresholds = np.array(THRESHOLDS) * self.reach
-        parts = [
-            play(item.record.u, thresholds)[0][:: self.stride] for item in self.compared
-        ]
-        return np.ascontiguousarray(np.concatenate(parts).T)
+        played = self.thin(lambda item: play(item.record.u, thresholds)[0])
+        return np.ascontiguousarray(played.T)
 
     @cached_property
     def shapes(self) -> FloatArray:

@@ -60,7 +60,10 @@ def slow_forms(samples: Samples) -> tuple[dict[str, Form], FloatArray]:
         steps = [item.record.dt * samples.stride for item in samples.compared]
         return [
             np.concatenate(
-                [low_pass(v, dt, tau) for v, dt in zip(means, steps, strict=True)]
+                [
+                    low_pass(v, dt, tau)[places // samples.stride]
+                    for v, dt, places in zip(means, steps, samples.places, strict=True)
+                ]
             )
             for tau in times
         ]

@@ -24,7 +24,7 @@ def write_page(
     out : Path
         The page. Its links are relative to its folder.
     compare : Path
-        Folder that ``hystbench compare`` or ``compare-measured`` wrote.
+        Folder that ``hystbench job compare`` or ``compare-measured`` wrote.
     figures : sequence of Path
         SVG files; the stem is the figure's name. A PNG lies beside each.
     tables : sequence of Path

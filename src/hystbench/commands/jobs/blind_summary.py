@@ -1,0 +1,51 @@
+"""``hystbench job blind-summary``: the score of a solver, and its rivals'."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from hystbench import options
+from hystbench.challenge.contest.frames import read_rows
+from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
+from hystbench.challenge.contest.writing import WRITTEN, write_score
+from hystbench.files import whole_folder
+
+
+@click.command()
+@click.argument("judged", type=options.FILE, nargs=-1, required=True)
+@click.option("--transfer", type=options.FILE, multiple=True, help="Judged elsewhere.")
+@options.settings
+@options.out_folder
+def blind_summary(
+    judged: tuple[Path, ...],
+    transfer: tuple[Path, ...],
+    settings: dict[str, Any],
+    out: Path,
+) -> None:
+    """Sum up the JUDGED chunks of a set."""
+    seeds = [entry.spec.seed for entry in plan(settings["set"], settings["scale"])]
+    about = {
+        "set": settings["set"],
+        "scale": settings["scale"],
+        "transfer_scale": settings["transfer_scale"],
+        "seeds": [min(seeds), max(seeds)],
+        "seeds_used_while_mending": {
+            name: [used.start, used.stop - 1]
+            for name, used in (
+                ("development and tests", DEVELOPMENT_SEEDS),
+                ("earlier scores", RETIRED_SEEDS),
+            )
+        },
+    }
+    with whole_folder(out, WRITTEN) as fresh:
+        write_score(
+            read_rows(judged),
+            read_rows(transfer),
+            settings["solver"],
+            about,
+            settings["skipped"],
+            fresh,
+        )

@@ -1,0 +1,39 @@
+"""``hystbench job gap-check``: whether all records can be used, before a search."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.files import write_text
+from hystbench.gap.asked import IDENTIFIED, check_base
+from hystbench.gap.bases import given_base
+from hystbench.gap.evidence import load_evidence
+from hystbench.gap.start import run_base
+
+
+@click.command()
+@click.argument("dataset", type=options.DATASET)
+@click.option("--model", required=True, help="As for hystbench gap.")
+@click.option("--out", type=options.NEW_FILE, help="Empty file to write.")
+@options.kept_calls
+def gap_check(dataset: Path, model: str, out: Path | None = None) -> None:
+    """Check all records of DATASET, those held out too, and the base MODEL on them.
+
+    A base that is to be identified is not checked.
+    """
+    check_base(model)
+    evidence = load_evidence(dataset)
+    options.warn(evidence.warnings)
+    if model not in IDENTIFIED:
+        base, _ = given_base(model, evidence)
+        run_base(base, evidence.hold_out, evidence.hold)
+    told = (
+        f"{evidence.name}: {len(evidence.fit)} records to fit and "
+        f"{len(evidence.hold_out)} held out can be used"
+    )
+    click.echo(told, err=True)
+    if out is not None:
+        write_text(out, "")  # nothing of the hold-out records is told to later jobs

@@ -1,0 +1,61 @@
+"""``hystbench job gap-decide``: what to name, from the fit records alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.gap.bases import load_base
+from hystbench.gap.evidence import check_units, load_evidence
+from hystbench.gap.jobs import decide_in
+from hystbench.gap.vocabulary import Vocabulary
+from hystbench.gap.wanted import write_wanted
+
+
+@click.command()
+@click.argument("dataset", type=options.DATASET)
+@click.option("--model", required=True, help="As for hystbench gap.")
+@options.write_experiment
+@options.vocabulary
+@options.limits
+@options.unnamed_share
+@options.out_folder
+@options.kept_calls
+def gap_decide(
+    dataset: Path,
+    model: str,
+    without: tuple[str, ...],
+    with_: tuple[str, ...],
+    write_experiment: Path | None,
+    limit_low: float | None,
+    limit_high: float | None,
+    limit_rate: float | None,
+    unnamed_share: float,
+    out: Path,
+) -> None:
+    """Decide what MODEL lacks beside the fit records of DATASET; opens no other.
+
+    Writes curves.json, and the base, what was named and the decision to OUT/stages.
+    """
+    asked = Vocabulary.of(without, with_)  # refuses, before a file is read
+    evidence = load_evidence(dataset, "fit")
+    base, note = load_base(model, evidence)
+    if note:
+        click.echo(note, err=True)
+    check_units(evidence, base, model)
+    finding = decide_in(
+        out,
+        evidence,
+        base,
+        unnamed_share=unnamed_share,
+        vocabulary=asked,
+        limits=options.asked_limits(limit_low, limit_high, limit_rate),
+        say=lambda line: click.echo(line, err=True),
+    )
+    if write_experiment is not None:
+        # The folder is a job's output, with the signal or without.
+        write_experiment.parent.mkdir(parents=True, exist_ok=True)
+        told = write_wanted(finding, evidence.input, write_experiment)
+        click.echo(told, err=True)

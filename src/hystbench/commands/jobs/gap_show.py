@@ -1,0 +1,28 @@
+"""``hystbench job gap-show``: read the hold-out records, once, and write gap.json."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from hystbench import options
+from hystbench.gap.bases import written_base
+from hystbench.gap.evidence import load_evidence
+from hystbench.gap.jobs import show_in
+
+
+@click.command()
+@click.argument("dataset", type=options.DATASET)
+@click.option("--base", type=options.FILE, required=True, help="Model file.")
+@options.out_folder
+@options.kept_calls
+def gap_show(dataset: Path, base: Path, out: Path) -> None:
+    """Show on the hold-out records of DATASET how far the gap shrinks.
+
+    Reads what hystbench job gap-decide wrote to OUT; writes gap.json, model.yaml and
+    holdout/ there. A model that is worse there than the base is taken back.
+    """
+    evidence = load_evidence(dataset)
+    model = written_base(base, evidence)
+    show_in(out, evidence, model)

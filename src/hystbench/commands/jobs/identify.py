@@ -1,0 +1,30 @@
+"""``hystbench job identify``: Algorithm 1 on a slow record."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from hystbench import options
+from hystbench.files import write_json
+from hystbench.record import load_record
+from hystbench.slow_loop import identify_slow_loop
+
+
+@click.command()
+@click.argument("record", type=options.FILE)
+@options.settings
+@options.out
+def identify(record: Path, settings: dict[str, Any], out: Path) -> None:
+    """Identify envelope functions, thresholds and weights on the slow RECORD."""
+    slow = load_record(record)
+    found = identify_slow_loop(slow, settings, _tell)
+    write_json(out, found.to_dict() | {"signal": slow.name})
+    click.echo(found.message, err=True)
+
+
+def _tell(iteration: int, cost: float) -> None:
+    if iteration % 25 == 0:
+        click.echo(f"iteration {iteration}: least J = {cost:.6g}", err=True)

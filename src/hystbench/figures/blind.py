@@ -1,0 +1,166 @@
+"""What came of the blind contest: shares of cases, with their intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import ceil
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from hystbench.compare.rows import read_rows
+from hystbench.errors import InputError
+from hystbench.figures import style
+
+_INTERVAL = ("share", "low", "high", "cases")
+#: Ratio of gap to noise (dB) whose cases are drawn.
+RATIO_DB = 20.0
+#: Families of plants, each with a colour and a marker.
+FAMILIES = {
+    "gpi": ("GPI plant", style.BLUE, "o"),
+    "preisach": ("Preisach plant", style.ORANGE, "s"),
+    "jiles-atherton": ("Jiles-Atherton plant", style.GREEN, "^"),
+}
+#: How much of an effect's place its families take.
+_SPREAD = 0.8
+_ACROSS = 4
+
+
+def draw_shares(figures: Mapping[str, str], *, table: Path) -> Figure:
+    """Draw a panel a figure, with a mark and an interval for each effect and family.
+
+    Of the cases at 20 dB.
+
+    Parameters
+    ----------
+    figures : mapping of str to str
+        Figures of the table and how they are called.
+    table : Path
+        ``effect, family, ratio_db, figure, share, low, high, cases``.
+    """
+    rows = [row for row in _read(table, "figure") if float(row["ratio_db"]) == RATIO_DB]
+    if not rows:
+        raise InputError(f"{table}: no effect of the blind contest")
+    effects = sorted({row["effect"] for row in rows})
+    drawn = Figure(figsize=(style.PAGE, 1.1 + 0.3 * len(effects)))
+    panels = drawn.subplots(1, len(figures), sharey=True, squeeze=False)[0]
+    for axes, (figure, title) in zip(panels, figures.items(), strict=True):
+        for row in rows:
+            if row["figure"] == figure and row["share"]:
+                _, color, marker = FAMILIES[row["family"]]
+                place = list(FAMILIES).index(row["family"])
+                y = style.in_row(place, len(FAMILIES), _SPREAD)
+                y += effects.index(row["effect"])
+                low, share, high = _percent(row)
+                axes.plot([low, high], [y, y], color=color, linewidth=0.8)
+                axes.plot([share], [y], color=color, marker=marker, linestyle="none")
+        axes.set_title(title)
+        axes.set_xlim(-3.0, 103.0)
+        axes.set_xlabel("share of cases (%)")
+        style.name_rows(axes, effects)
+    panels[0].set_ylabel("effect")
+    style.letter(list(panels))
+    style.legend_above(drawn, _handles(rows, "none"))
+    return drawn
+
+
+def draw_power(*, table: Path) -> Figure:
+    """Draw a panel an effect and one for all, with a line a family of plants.
+
+    Parameters
+    ----------
+    table : Path
+        ``effect, family, ratio_db, share, low, high, cases``.
+    """
+    rows = _read(table)
+    effects = list(dict.fromkeys(row["effect"] for row in rows))
+    lines = ceil(len(effects) / _ACROSS)
+    figure = Figure(figsize=(style.PAGE, 0.8 + 1.25 * lines))
+    panels = figure.subplots(lines, _ACROSS, sharex=True, sharey=True, squeeze=False)
+    for axes, effect in zip(panels.flat, effects, strict=False):
+        axes.set_title("all effects" if effect == "all" else effect, fontsize=7)
+        for family in FAMILIES:
+            mine = [r for r in rows if (r["effect"], r["family"]) == (effect, family)]
+            _curve(axes, mine, family)
+    for axes in panels.flat[len(effects) :]:
+        axes.set_visible(False)
+    for axes in panels[-2, len(effects) % _ACROSS or _ACROSS :] if lines > 1 else []:
+        axes.tick_params(labelbottom=True)
+    ratios = sorted({float(row["ratio_db"]) for row in rows})
+    panels[0, 0].set_xticks(ratios)
+    panels[0, 0].set_ylim(-5.0, 105.0)
+    figure.supxlabel("gap over noise (dB)", fontsize=8)
+    figure.supylabel("cases in which it is named (%)", fontsize=8)
+    style.legend_above(figure, _handles(rows, "-"))
+    return figure
+
+
+def _curve(axes: Axes, rows: list[dict[str, str]], family: str) -> None:
+    _, color, marker = FAMILIES[family]
+    # side by side where intervals would hide each other
+    shift = 0.5 * (list(FAMILIES).index(family) - 1)
+    x = [float(row["ratio_db"]) + shift for row in rows]
+    for place, row in zip(x, rows, strict=True):
+        low, _, high = _percent(row)
+        axes.plot([place, place], [low, high], color=color, linewidth=0.6)
+    axes.plot(x, [_percent(row)[1] for row in rows], color=color, marker=marker)
+
+
+def draw_reliability(*, table: Path) -> Figure:
+    """Draw the share of named effects that are hidden over the mean stated confidence.
+
+    Parameters
+    ----------
+    table : Path
+        ``from, to, stated, share, low, high, cases``, a row a bin of confidence; none
+        where nothing was named.
+    """
+    rows = read_rows(table, ("from", "to", "stated", *_INTERVAL))
+    figure = Figure(figsize=(style.COLUMN, style.COLUMN))
+    axes, below = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
+    axes.plot([0, 100], [0, 100], **style.BEHIND)
+    for row in rows:
+        x = 100.0 * float(row["stated"])
+        low, share, high = _percent(row)
+        axes.plot([x, x], [low, high], color=style.BLUE, linewidth=0.8)
+        axes.plot([x], [share], color=style.BLUE, marker="o")
+        low, high = 100.0 * float(row["from"]), 100.0 * float(row["to"])
+        below.bar(
+            low, int(row["cases"]), high - low, align="edge", color=style.BLUE, lw=0
+        )
+    axes.set_ylabel("hidden indeed (%)")
+    below.set_ylabel("effects (-)")
+    below.set_xlabel("stated confidence (%)")
+    axes.set_xlim(-2.0, 102.0)
+    axes.set_ylim(-2.0, 102.0)
+    style.letter([axes, below])
+    line = style.key("as stated", color=style.GREY, linewidth=2.6)
+    reached = style.key("reached, 95 % interval", color=style.BLUE, marker="o")
+    style.legend_above(figure, [line, reached])
+    return figure
+
+
+def _read(table: Path, *more: str) -> list[dict[str, str]]:
+    columns = ("effect", "family", "ratio_db", *more, *_INTERVAL)
+    rows = [row for row in read_rows(table, columns) if row["family"] in FAMILIES]
+    if not rows:
+        raise InputError(f"{table}: no effect of the blind contest")
+    return rows
+
+
+def _percent(row: Mapping[str, str]) -> tuple[float, float, float]:
+    """Give the low end, the share and the high end in percent."""
+    low, share, high = (100.0 * float(row[key]) for key in ("low", "share", "high"))
+    return low, share, high
+
+
+def _handles(rows: Sequence[Mapping[str, str]], line: str) -> list[Line2D]:
+    """Make the legend of the families that are there."""
+    there = {row["family"] for row in rows}
+    return [
+        style.key(label, color=color, marker=marker, linestyle=line)
+        for family, (label, color, marker) in FAMILIES.items()
+        if family in there
+    ]

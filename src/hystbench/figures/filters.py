@@ -1,0 +1,130 @@
+"""Errors of the filters: over their order (Figure 7), and over time as they learn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from hystbench.compare.evidence import Run, read_order_sweep, read_run
+from hystbench.errors import InputError
+from hystbench.figures import style
+from hystbench.figures.data import read_one
+from hystbench.files import read_json
+from hystbench.record import FloatArray
+
+_COLUMNS = 3
+
+
+def draw_order(*, table: Path, records: Sequence[Path]) -> Figure:
+    """Draw the MSE of each filter over the order, on a logarithmic scale.
+
+    Parameters
+    ----------
+    table : Path
+        The order sweep: model, order, mse, status.
+    records : sequence of Path
+        The record of the sweep, for its unit.
+    """
+    points = read_order_sweep(table)
+    record = read_one(records, "the one of the sweep")
+    figure = Figure(figsize=(style.COLUMN, 2.9))
+    axes = figure.subplots()
+    for model in style.in_order(point.model for point in points):
+        mine = [p for p in points if p.model == model]
+        finite = [p for p in mine if math.isfinite(p.mse)]
+        look = style.look(model)
+        axes.plot([p.order for p in finite], [p.mse for p in finite], **look.marked)
+        style.mark_above(axes, [p.order for p in mine if p not in finite], look.color)
+    axes.set_yscale("log")
+    # Room above the data for the marks of what diverged.
+    axes.margins(y=0.15)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set(
+        xlabel="order $N$ of the filters (-)",
+        ylabel=f"MSE ({style.unit_text(record.output.unit)}²)",
+    )
+    handles = style.handles(
+        (point.model for point in points),
+        marked=True,
+        diverged=not all(math.isfinite(point.mse) for point in points),
+    )
+    style.legend_above(figure, handles, columns=2)
+    return figure
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """A run, and its smoothed squared error ``value`` at each ``time`` (s)."""
+
+    run: Run
+    time: FloatArray
+    value: FloatArray
+
+
+def draw_learning(*, runs: Sequence[Path]) -> Figure:
+    """Draw one panel a signal, on a logarithmic scale.
+
+    Only models that learn along the record are drawn: their errors are one-step a
+    priori. A diverged run is drawn as far as the scale of the finite ones goes, and
+    its end is marked at the upper edge.
+    """
+    curves = [curve for curve in map(_read, runs) if curve is not None]
+    if not curves:
+        raise InputError("no run of an adaptive filter; expected one (--run)")
+    signals = dict.fromkeys(curve.run.signal for curve in curves)
+    columns = min(_COLUMNS, len(signals))
+    rows = math.ceil(len(signals) / columns)
+    figure = Figure(figsize=(style.PAGE, 0.8 + 1.35 * rows))
+    grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    for axes in grid.flat[len(signals) :]:
+        axes.remove()
+    for axes, signal in zip(grid.flat, signals, strict=False):
+        axes.set_title(style.signal_title(signal))
+        for curve in curves:
+            if curve.run.signal == signal:
+                _curve(axes, curve)
+    grid[0, 0].set_yscale("log")
+    grid[0, 0].set_ylim(_limits(curves))
+    figure.supxlabel("time (s)", fontsize="medium")
+    unit = style.unit_text(curves[0].run.unit)
+    figure.supylabel(f"smoothed squared error ({unit})", fontsize="medium")
+    style.legend_above(
+        figure,
+        style.handles(
+            (curve.run.model for curve in curves),
+            diverged=any(curve.run.diverged for curve in curves),
+        ),
+    )
+    return figure
+
+
+def _read(path: Path) -> _Curve | None:
+    run = read_run(path)
+    if run.error_kind != "one-step a priori":
+        return None
+    about = read_json(path)["smoothed_squared_error"]
+    return _Curve(run, np.array(about["time_s"]), np.array(about["value"]))
+
+
+def _curve(axes: Axes, curve: _Curve) -> None:
+    look = style.look(curve.run.model)
+    axes.plot(curve.time, curve.value, **look.line)
+    if curve.run.diverged:
+        style.mark_above(axes, curve.time[-1:], look.color)
+
+
+def _limits(curves: Sequence[_Curve]) -> tuple[float, float]:
+    """Span the finite runs (all, where every one diverged), with room for marks."""
+    spanned = [curve for curve in curves if not curve.run.diverged] or curves
+    values = np.concatenate([curve.value for curve in spanned])
+    values = values[np.isfinite(values) & (values > 0)]
+    if not len(values):
+        raise InputError("no squared error above zero; nothing to draw")
+    return float(values.min()) / 2, float(values.max()) * 4

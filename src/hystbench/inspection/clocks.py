@@ -1,0 +1,121 @@
+"""A column of time: what it counts, and how evenly."""
+
+from __future__ import annotations
+
+import datetime as dt
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.formats import Table
+from hystbench.reading import UNIFORM_TOLERANCE
+from hystbench.record import FloatArray
+
+EARLIEST, LATEST = dt.datetime(1990, 1, 1), dt.datetime(2100, 1, 1)
+"""Between these a computer has recorded."""
+LONGEST_DAYS = 1.0
+"""Of a record: a column of some ten thousand that runs further counts no days."""
+
+
+LOOSEST = 0.5
+"""Of a step: what dataset.yaml may tolerate at most."""
+
+
+class Clock(NamedTuple):
+    """What a column of time counts.
+
+    Parameters
+    ----------
+    unit : str
+    words : str
+        What it is taken for, with the date of the first sample.
+    """
+
+    unit: str
+    words: str
+
+
+class _Count(NamedTuple):
+    unit: str
+    seconds: float
+    zero: dt.datetime  # a date, and the number that it has
+    number: float
+    words: str
+
+
+_EPOCH = dt.datetime(1970, 1, 1)
+_COUNTS = (
+    _Count("s", 1.0, _EPOCH, 0.0, "epoch seconds"),
+    _Count("ms", 1e-3, _EPOCH, 0.0, "epoch milliseconds"),
+    _Count("us", 1e-6, _EPOCH, 0.0, "epoch microseconds"),
+    _Count("ns", 1e-9, _EPOCH, 0.0, "epoch nanoseconds"),
+    # Excel counts a 29 February 1900 that never was: from 1 March 1900 on this is it.
+    _Count("day", 86400.0, dt.datetime(1899, 12, 30), 0.0, "serial days of Excel"),
+    _Count("day", 86400.0, dt.datetime(1, 1, 1), 367.0, "days of MATLAB's datenum"),
+)
+
+
+def clock_of(values: FloatArray) -> Clock | None:
+    """Tell what a column of time counts, where its values can only be dates.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+        NaN where there is none.
+
+    Returns
+    -------
+    Clock or None
+        None of small numbers, which count from the start of a record.
+    """
+    there = values[np.isfinite(values)]
+    if not len(there):
+        return None
+    low, high = float(there.min()), float(there.max())
+    for count in _COUNTS:
+        first, last = (
+            (limit - count.zero).total_seconds() / count.seconds + count.number
+            for limit in (EARLIEST, LATEST)
+        )
+        too_long = count.unit == "day" and high - low > LONGEST_DAYS
+        if first <= low <= high < last and not too_long:
+            since = (float(there[0]) - count.number) * count.seconds
+            date = count.zero + dt.timedelta(seconds=round(since, 3))
+            told = date.isoformat(" ", "milliseconds")
+            return Clock(count.unit, f"{count.words}, from {told} on")
+    return None
+
+
+@dataclass(frozen=True)
+class Ticks:
+    """What a column of time is like: mean step in s, unevenness, whether rounded."""
+
+    step: float
+    tolerance: float
+    rounded: bool
+
+
+def ticks_of(time: FloatArray, where: str, table: Table) -> Ticks:
+    """Look at a column of time; what dataset.yaml cannot say is refused."""
+    there = time[np.isfinite(time)]
+    steps = np.diff(there)
+    mean = float(there[-1] - there[0]) / max(len(steps), 1)
+    uneven = float(np.abs(steps - mean).max()) / mean if mean > 0 else np.inf
+    if uneven <= UNIFORM_TOLERANCE:
+        return Ticks(mean, UNIFORM_TOLERANCE, False)
+    away = np.abs(there - there[0] - mean * np.arange(len(there)))
+    positive = steps[steps > 0]
+    quantum = float(positive.min()) if len(positive) else np.inf
+    whole = np.abs(steps / quantum - np.round(steps / quantum)).max() < 1e-3
+    if whole and mean > 0 and away.max() <= 1.01 * quantum and quantum > 0.5 * mean:
+        return Ticks(mean, UNIFORM_TOLERANCE, True)
+    if uneven <= LOOSEST and away.max() <= LOOSEST * mean:
+        return Ticks(mean, min(LOOSEST, np.ceil(1100 * uneven) / 1000), False)
+    row = int(np.argmax(np.abs(steps - mean)))
+    raise InputError(
+        f"{where}: {table.place(row + 1)}: a step in time of "
+        f"{steps[row]:g} s where the mean is {mean:g} s; expected uniform sampling: "
+        "give the parts between such steps as files or 'rows' of their own"
+    )

@@ -1,0 +1,215 @@
+"""What a check says on the terminal: one screen, however many records there are.
+
+Records that say the same are one line, and so are findings of one topic. What is cut
+off is told; the page has all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from textwrap import wrap
+
+from hystbench.inspection.check import Check, Finding
+from hystbench.inspection.facts import Facts
+from hystbench.inspection.visible import Seen
+from hystbench.inspection.words import (
+    EVEN,
+    FLOORS,
+    KINDS,
+    band,
+    headline,
+    jitter_text,
+    level,
+    percent,
+    quantity,
+)
+
+WIDTH = 100
+"""Letters of a line."""
+LINES = 40
+"""Lines of a screen."""
+FEW = 6
+"""Records up to which each has a line of its own."""
+SHARES = {"records": 9, "seen": 5, "alike": 4, "hidden": 5}
+"""Lines of each part where all together are more than a screen; findings get the
+rest."""
+
+
+def lines(found: Check) -> list[str]:
+    """Give the lines for the terminal, at most ``LINES`` of ``WIDTH`` letters.
+
+    A path or a name that is longer by itself is not broken.
+    """
+    unit = found.records[0].input.unit
+    few = len(found.facts) <= FEW
+    parts = {
+        "head": _head(found),
+        "records": _each(found.facts, unit) if few else _grouped(found.facts, unit),
+        "findings": _findings(found.findings, FEW),
+        **_effects(found),
+    }
+    if sum(map(len, parts.values())) > LINES:
+        parts |= {key: _cut(parts[key], most) for key, most in SHARES.items()}
+        parts["findings"] = []
+        room = LINES - sum(map(len, parts.values()))
+        parts["findings"] = _cut(_findings(found.findings, 1), room)
+    return [line for part in parts.values() for line in part]
+
+
+def _cut(part: list[str], most: int) -> list[str]:
+    if len(part) <= most:
+        return part
+    left = len(part) - most + 1
+    return [*part[: most - 1], f"  ... {left} more lines: the page has all (--out)"]
+
+
+def _lines(text: str, indent: int = 2, hanging: int = 4) -> list[str]:
+    """Break a text into lines of the terminal's width."""
+    return wrap(
+        text,
+        WIDTH,
+        initial_indent=" " * indent,
+        subsequent_indent=" " * hanging,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _head(found: Check) -> list[str]:
+    record = found.records[0]
+    unit = record.output.unit
+    return [
+        *_lines(f"{found.dataset.path}: {headline(found)}", 0, 2),
+        *_lines(
+            f"{record.input.label} to {record.output.label}; noise "
+            f"{quantity(found.floor.rms, unit)} rms ({FLOORS[found.floor.method]}); "
+            "a loop that does not depend on the rate leaves "
+            f"{quantity(found.left, unit)}"
+        ),
+    ]
+
+
+def _each(facts: Sequence[Facts], unit: str) -> list[str]:
+    width = max(len(item.name) for item in facts)
+    told = []
+    for item in facts:
+        period = f"{item.periods:.3g} periods" if item.period else "no period"
+        jitter = "" if item.jitter is None else f", jitter {jitter_text(item.jitter)}"
+        told += _lines(
+            f"{item.name:{width}} {item.use:8} {item.samples} at {1 / item.dt:.5g} Hz"
+            f"{jitter}, {item.excitation.kind}, {period}, {band(item)}, "
+            f"{level(item, unit)}"
+        )
+    return told
+
+
+def _grouped(facts: Sequence[Facts], unit: str) -> list[str]:
+    """Tell records of one use, kind of input and rate together."""
+
+    def key(item: Facts) -> tuple[str, str, str]:
+        return item.use, item.excitation.kind, f"{1 / item.dt:.5g}"
+
+    told = []
+    for (use, kind, rate), group in groupby(sorted(facts, key=key), key):
+        items = list(group)
+        jitter = max(item.jitter or 0.0 for item in items)
+        inputs = [item.excitation for item in items]
+        low, high = min(x.low for x in inputs), max(x.high for x in inputs)
+        said = [
+            f"{len(items)} {use}, {kind}",
+            f"{_range(item.samples for item in items)} samples at {rate} Hz",
+            _range(round(item.periods, 1) for item in items) + " periods",
+            f"{min(x.low_hz for x in inputs):.3g} to "
+            f"{max(x.high_hz for x in inputs):.3g} Hz",
+            f"{low:.3g} to {quantity(high, unit)}",
+        ]
+        if jitter >= EVEN:
+            said.insert(2, f"jitter up to {jitter_text(jitter)}")
+        told += _lines(", ".join(said))
+        told.append("    " + _names([item.name for item in items], WIDTH - 4))
+    return told
+
+
+def _range(values: Iterable[float]) -> str:
+    known = sorted(values)
+    low, high = f"{known[0]:g}", f"{known[-1]:g}"
+    return low if low == high else f"{low} to {high}"
+
+
+def _names(names: Sequence[str], room: int) -> str:
+    """Name as many as there is room for, at least one, and count the rest."""
+    for count in range(len(names), 0, -1):
+        more = len(names) - count
+        said = ", ".join(names[:count]) + (f" and {more} more" if more else "")
+        if len(said) <= room or count == 1:
+            break
+    return said
+
+
+def _findings(findings: Sequence[Finding], pasted: int) -> list[str]:
+    """Tell findings of one topic together: the first, and whom it is also true of.
+
+    Of lines to be pasted as many are shown of each topic.
+    """
+    told = []
+    topics = dict.fromkeys((item.kind, item.topic or item.text) for item in findings)
+    for kind, topic in topics:
+        same = [x for x in findings if (x.kind, x.topic or x.text) == (kind, topic)]
+        told += _lines(f"{KINDS[kind]}: {_shortened(same[0].text)}")
+        others = [item.record for item in same[1:] if item.record]
+        if others:
+            told.append(f"    likewise: {_names(others, WIDTH - 14)}")
+        elif same[1:]:
+            told.append(f"    and {len(same) - 1} more of this sort")
+        whole = [line for item in same for line in item.paste]
+        for line in whole[:pasted]:
+            told += _lines(line, 6, 8)
+        if whole[pasted:]:
+            more = len(whole) - pasted
+            told.append(f"      ... {more} more lines to add: the page has all (--out)")
+    return told
+
+
+def _shortened(text: str) -> str:
+    """Keep a text to two lines and a half: a list in it may be long."""
+    room = 2 * WIDTH + WIDTH // 2
+    return text if len(text) <= room else text[:room].rpartition(" ")[0] + " ..."
+
+
+def _effects(found: Check) -> dict[str, list[str]]:
+    """Tell which effects are seen, not told apart and not revealed."""
+    if not found.effects:
+        return {key: [] for key in ("seen", "alike", "hidden")}
+    seen = _listed(f"{x.effect} {percent(x.seen_from)}" for x in found.revealed)
+    alike = [x for x in found.revealed if x.rivals]
+    pairs = _listed(
+        f"{x.effect} from {x.rivals[0][0]} {_up_to(x.rivals[0][1])}" for x in alike
+    )
+    told = {
+        "seen": ["  Seen from this share of the output on (rms):", *seen],
+        "alike": ["  Not told apart, up to this share of the output:", *pairs],
+        "hidden": ["  Not revealed:", *_hidden(found.hidden)],
+    }
+    return {key: part if len(part) > 1 else [] for key, part in told.items()}
+
+
+def _hidden(effects: Sequence[Seen]) -> list[str]:
+    reasons = dict.fromkeys(item.why for item in effects)
+    return [
+        line
+        for why in reasons
+        for line in _lines(
+            f"{', '.join(x.effect for x in effects if x.why == why)}: {why}", 4, 6
+        )
+    ]
+
+
+def _listed(parts: Iterable[str]) -> list[str]:
+    """Put parts behind each other; none is broken between two lines."""
+    kept = ", ".join(part.replace(" ", "\0") for part in parts)
+    return [line.replace("\0", " ") for line in _lines(kept, 4, 4)]
+
+
+def _up_to(share: float) -> str:
+    return "ever" if share > 1 else percent(share)

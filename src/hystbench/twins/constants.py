@@ -1,0 +1,109 @@
+"""What a constant does to the ranking: a zero error of the input, a constant tap.
+
+None of the paper's filters has a weight for a constant. So the constants of operators,
+input and displacement must be made of the other taps, and the filter that can do that
+best leads. Here the constant of the recorded input is varied, and each filter is given
+a constant tap.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Mapping
+from itertools import combinations
+from statistics import geometric_mean
+from typing import Any
+
+from hystbench.compare.constants import Row
+from hystbench.compare.evidence import Cell
+from hystbench.twins.read import Twin
+from hystbench.twins.runs import (
+    Settings,
+    draw_signals,
+    filter_jobs,
+    measure_twin,
+    run_records,
+)
+
+Errors = Mapping[Cell, float]
+"""MSE by signal and filter; infinite where it diverged."""
+
+
+def vary_constants(
+    twin: Twin,
+    settings: Settings,
+    identified: Mapping[str, Any],
+    published: Errors,
+) -> Iterator[Row]:
+    """Run the filters with each zero error, and with each constant tap.
+
+    Parameters
+    ----------
+    twin : Twin
+    settings : mapping
+        ``signals`` (definitions), ``measure``, ``filters``, ``zero_errors``,
+        ``constant_taps`` and ``calibrated``, the signals of one half of the pairs.
+    identified : mapping
+        Result of Algorithm 1, for identified envelopes.
+    published : mapping
+        The paper's MSE (um^2) by signal and filter.
+    """
+    signals = draw_signals(settings["signals"], 0)
+    usual = settings["measure"]["input_zero_error"]
+    jobs = filter_jobs(settings)
+    if not jobs:
+        return
+    tap = next(iter(jobs.values()))["constant_tap"]
+    cases = [(zero, tap) for zero in sorted({*settings["zero_errors"], usual})]
+    cases += [(usual, each) for each in settings["constant_taps"] if each != tap]
+    halves = [
+        {name for name in signals if (name in settings["calibrated"]) is inside}
+        for inside in (True, False)
+    ]
+    for zero, size in cases:
+        measured = {**settings["measure"], "input_zero_error": zero}
+        records = measure_twin(twin, signals.values(), measured, 0)
+        mse: dict[Cell, float] = {}
+        for model, job in jobs.items():
+            changed = {**job, "constant_tap": size}
+            runs = run_records(model, changed, records, identified)
+            mse |= {cell: run.error("mse") for cell, run in runs.items()}
+        first = {s: min(jobs, key=lambda model: mse[s, model]) for s in records}
+        others = {s: model for s, model in first.items() if model != "gpo"}
+        yield Row(
+            twin=twin.name,
+            family=twin.family,
+            zero_error=zero,
+            constant_tap=size,
+            configured=(zero, size) == (usual, tap),
+            signals=len(records),
+            gpo_first=len(records) - len(others),
+            not_first="; ".join(f"{s}: {model}" for s, model in others.items()),
+            pairs_calibrated=as_published(mse, published, halves[0]),
+            pairs_held_out=as_published(mse, published, halves[1]),
+            diverged=sum(map(math.isinf, mse.values())),
+            mean={m: _mean([mse[s, m] for s in records]) for m in jobs},
+        )
+
+
+def as_published(
+    mse: Errors, published: Errors, signals: Collection[str]
+) -> tuple[int, int]:
+    """Count pairs of filters under one of some signals in the paper's order, and all.
+
+    A pair with the same MSE, as where both diverged, has no order.
+    """
+    pairs = [
+        pair
+        for pair in combinations(mse, 2)
+        if pair[0][0] == pair[1][0] and pair[0][0] in signals
+    ]
+    agree = [
+        mse[a] != mse[b] and (mse[a] < mse[b]) == (published[a] < published[b])
+        for a, b in pairs
+    ]
+    return sum(agree), len(pairs)
+
+
+def _mean(values: list[float]) -> float:
+    return math.inf if any(map(math.isinf, values)) else geometric_mean(values)

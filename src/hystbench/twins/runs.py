@@ -1,0 +1,148 @@
+"""Records of a twin and runs of the filters on them, all in memory.
+
+A twin's thirteen records and the four filters on them take a tenth of a second. What
+takes longer, and imports more, is in :mod:`hystbench.twins.fits`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from hystbench.adaptive import make_filter, step_names
+from hystbench.compare.evidence import Cell, OrderPoint, Run
+from hystbench.filters import AdaptiveFilter, Result, run_many
+from hystbench.measurement import measure
+from hystbench.metrics import mean_square_error, relative_error
+from hystbench.order_errors import order_errors
+from hystbench.published import FILTERS
+from hystbench.record import Record
+from hystbench.signals import Signal, make_signal
+from hystbench.twins.read import Twin
+
+Settings = Mapping[str, Any]
+
+
+def draw_signals(definitions: Mapping[str, Settings], seed: int) -> dict[str, Signal]:
+    """Make the signals; those with a seed of their own take another draw."""
+    signals = {}
+    for name, job in definitions.items():
+        ((kind, given),) = job["definition"].items()
+        if "seed" in given:
+            given = given | {"seed": given["seed"] + seed}
+        signals[name] = make_signal(name, {kind: given}, job["common"])
+    return signals
+
+
+def measure_twin(
+    twin: Twin, signals: Iterable[Signal], settings: Settings, seed: int
+) -> dict[str, Record]:
+    """Simulate a twin on signals; another seed draws another noise."""
+    job = dict(settings) | {"seed": settings["seed"] + seed}
+    return {each.name: measure(each, twin.model, job, twin.place) for each in signals}
+
+
+def filter_jobs(settings: Settings) -> dict[str, Settings]:
+    """Give the settings of each filter, in the order of the paper's tables."""
+    return {m: settings["filters"][m] for m in FILTERS if m in settings["filters"]}
+
+
+def scaled(job: Settings, factor: float) -> dict[str, Any]:
+    """Give a filter's settings with all its step sizes times a factor."""
+    steps = {name: factor * mu for name, mu in job["convergence_factor"].items()}
+    return dict(job) | {"convergence_factor": steps}
+
+
+def run_records(
+    model: str,
+    job: Settings,
+    records: Mapping[str, Record],
+    identified: Settings,
+) -> dict[Cell, Run]:
+    """Run a filter on records; ``identified`` is the result of Algorithm 1."""
+    filters = [make_filter(model, job, r, identified) for r in records.values()]
+    results = run_all(list(zip(filters, records.values(), strict=True)))
+    return {
+        (record.name, model): filter_run(adaptive, record, result)
+        for adaptive, record, result in zip(
+            filters, records.values(), results, strict=True
+        )
+    }
+
+
+def run_all(jobs: Sequence[tuple[AdaptiveFilter, Record]]) -> list[Result]:
+    """Run filters on records, on one core: the workflow runs other jobs beside."""
+    return list(run_many(((each, r.u, r.y) for each, r in jobs), workers=1))
+
+
+def filter_run(adaptive: AdaptiveFilter, record: Record, result: Result) -> Run:
+    """Make the run of a filter."""
+    at = result.diverged_at
+    return bare_run(
+        record,
+        adaptive.name,
+        None if at is not None else result.error,
+        error_kind="one-step a priori",
+        order=adaptive.order,
+        weight_count=adaptive.size,
+        step_size={
+            name: getattr(adaptive, own)
+            for name, own in step_names(adaptive.name).items()
+        },
+        diverged=None if at is None else f"diverged at sample {at}",
+    )
+
+
+def bare_run(record: Record, model: str, error: Any, **about: Any) -> Run:
+    """Make a run of its errors alone; what costs more, such as bounds, is left out.
+
+    Parameters
+    ----------
+    record : Record
+    model : str
+    error : ndarray, shape (n,), or None
+        Error at each sample; None where it diverged.
+    **about
+        ``error_kind``, and what else is known.
+    """
+    known: dict[str, Any] = {"order": None, "weight_count": None, "diverged": None}
+    return Run(
+        signal=record.name,
+        model=model,
+        origin=record.origin,
+        bound={},
+        mse=None if error is None else mean_square_error(error),
+        re=None if error is None else relative_error(error, record.y),
+        mse_after_transient=None,
+        re_after_transient=None,
+        unit=f"{record.output.unit}^2",
+        largest_eigenvalue=None,
+        spread=None,
+        convergence_s=None,
+        **{"step_size": {}, **known, **about},
+    )
+
+
+def sweep_orders(
+    record: Record, filters: Iterable[AdaptiveFilter]
+) -> tuple[OrderPoint, ...]:
+    """Run filters of several orders on a record (Figure 7)."""
+    return tuple(
+        OrderPoint(each.model, each.order, math.inf if each.mse is None else each.mse)
+        for each in order_errors(record, filters)
+    )
+
+
+def compare_envelopes(
+    job: Settings, records: Mapping[str, Record], identified: Settings
+) -> dict[Cell, float]:
+    """Give the MSE of the GPO filter with either envelopes, by signal and envelopes."""
+    errors = {}
+    for source in ("identified", "published"):
+        runs = run_records(
+            "gpo", dict(job) | {"envelopes": source}, records, identified
+        )
+        for (signal, _), run in runs.items():
+            errors[signal, source] = run.error("mse")
+    return errors

@@ -1,0 +1,136 @@
+"""Code that may be late: it knows samples to come, and is nearer to the simulation."""
+
+import shutil
+import types
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.step import Sampling
+from hystbench.errors import InputError
+from hystbench.export import python
+from hystbench.export.described import describe
+
+from .compiled import Compiled
+from .test_steps import CHAINS, DT, INPUT, ROUND, TIME, chain_of, model_of
+
+pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler here")
+
+DELAYS = (1, 2, 4)
+MODELS = {name: model_of(name, chain) for name, chain in CHAINS.items()}
+
+
+def late(model, delay):
+    return describe(model, Sampling(DT, duration_s=TIME[-1], delay=delay))
+
+
+@pytest.fixture(scope="module")
+def gaining():
+    """Give the models that have something to gain, by name and delay."""
+    found = {}
+    for name, model in MODELS.items():
+        plain = describe(model, Sampling(DT, duration_s=TIME[-1]))
+        for delay in DELAYS:
+            try:
+                found[name, delay] = late(model, delay)
+            except InputError:
+                assert not any(piece.step.forward for piece in plain.pieces)
+    assert {name.split()[0] for name, _ in found} >= {
+        "friction", "rdgpi", "rate-dependent-hysteresis", "resonance", "drive-lag",
+        "stiffness-hardening", "transfer-function",
+    }  # fmt: skip
+    return found
+
+
+@pytest.mark.parametrize("delay", DELAYS)
+def test_late_by_what_was_asked_it_is_the_simulation(gaining, delay, tmp_path):
+    models = {name: model for (name, d), model in gaining.items() if d == delay}
+    run = Compiled(list(models.values()), tmp_path).outputs(INPUT)
+    for name, model in models.items():
+        y, wanted = run[model.name], MODELS[name].simulate(INPUT, DT)[:-delay]
+        np.testing.assert_array_equal(y[:delay], 0.0)
+        # The first sample has no neighbour before it; hysteresis remembers its rate
+        # until the input has passed its range.
+        remembers = any(x.name == "rate-dependent-hysteresis" for x in CHAINS[name])
+        first = ROUND if remembers else 8
+        off = np.abs(y[delay:] - wanted)[first:].max() / np.ptp(wanted)
+        assert off <= 2e-6, f"{name}: {off:.2g} of the range"
+        told = " ".join(model.differences)
+        assert f"late by {delay} sample" in told
+
+
+@pytest.mark.parametrize("name", ["friction 0 ", "friction 1 ", "rdgpi 1 "])
+def test_a_rate_is_exact_from_the_first_sample_on(gaining, name, tmp_path):
+    (found,) = [n for n, d in gaining if n.startswith(name) and d == 1]
+    model = gaining[found, 1]
+    y = Compiled([model], tmp_path).outputs(INPUT)[model.name][1:]
+    wanted = MODELS[found].simulate(INPUT, DT)[:-1]
+    assert np.abs(y - wanted).max() <= 1e-9 * np.ptp(wanted)
+    assert "foretells" not in " ".join(model.differences)
+
+
+LINEAR = ("drive-lag", {"time_constant_s": 2e-3, "hold": "linear"})
+SMOOTH = ("drive-lag", {"time_constant_s": 2e-3, "hold": "band-limited"})
+FRICTION = ("friction", {"coulomb": 2.0, "velocity_scale": 30.0})
+HEAT = ("thermal-drift", {"coefficient": 3.0, "time_constant_s": 0.01})
+
+
+@pytest.mark.parametrize(
+    "blocks",
+    [
+        (FRICTION,),
+        (LINEAR, FRICTION),
+        (FRICTION, LINEAR),
+        (LINEAR, FRICTION, HEAT),
+        (HEAT, FRICTION, LINEAR),
+    ],
+)
+def test_what_looks_at_the_input_stays_in_step_with_what_enters(blocks, tmp_path):
+    """All of these are exact once the next sample is known."""
+    model = model_of("mixed", chain_of(*blocks))
+    noisy = np.random.default_rng(0).standard_normal(300)
+    for delay in (1, 3):
+        run = Compiled([late(model, delay)], tmp_path)
+        y, wanted = run.outputs(noisy)["mixed"], model.simulate(noisy, DT)
+        np.testing.assert_allclose(
+            y[delay:], wanted[:-delay], rtol=0, atol=1e-9 * np.ptp(wanted)
+        )
+
+
+def test_a_measured_input_is_nearer_with_samples_on_both_sides(tmp_path):
+    rng = np.random.default_rng(1)
+    noisy = INPUT + 1e-3 * rng.standard_normal(len(INPUT))
+    model = model_of("noisy", chain_of(SMOOTH, FRICTION))
+    wanted, off = model.simulate(noisy, DT), {}
+    for delay in (0, 1):
+        run = Compiled([late(model, delay)], tmp_path).outputs(noisy)["noisy"]
+        rest = (run[delay:] - wanted[: len(wanted) - delay])[100:]
+        off[delay] = np.sqrt(np.mean(rest**2))
+    assert off[1] < 0.02 * off[0]
+
+
+def test_python_is_the_c(gaining, tmp_path):
+    few = [model for (name, d), model in gaining.items() if d == 2 and " 0" in name]
+    for model in few:
+        module = types.ModuleType("exported")
+        exec(python.module(model), module.__dict__)  # noqa: S102
+        y = module.Model().simulate(INPUT[:120])
+        c = Compiled([model], tmp_path).outputs(INPUT[:120])[model.name]
+        np.testing.assert_allclose(y, c, rtol=0, atol=1e-11 * (1 + np.ptp(c)))
+
+
+@pytest.mark.parametrize(
+    ("sampling", "said"),
+    [
+        (Sampling(DT, points=4, delay=3), "--delay: 3; expected 0 to 2"),
+        (Sampling(DT, delay=-1), "--delay: -1; expected 0 to 4"),
+    ],
+)
+def test_a_delay_that_no_curve_can_use_is_refused(sampling, said):
+    with pytest.raises(InputError, match=said):
+        describe(model_of("any", chain_of(SMOOTH)), sampling)
+
+
+def test_a_delay_that_gains_nothing_is_refused():
+    with pytest.raises(InputError, match="--delay: 1; expected none"):
+        late(model_of("any", chain_of(LINEAR)), 1)

@@ -1,0 +1,37 @@
+"""Columns of time that count from a date."""
+
+import numpy as np
+import pytest
+
+from hystbench.inspection.clocks import clock_of
+from hystbench.units import seconds
+
+STEP = 0.001
+
+
+@pytest.mark.parametrize(
+    ("first", "unit", "said"),
+    [
+        # date -u -d '2024-02-29 12:00' +%s
+        (1709208000.0, "s", "epoch seconds"),
+        (1709208000e3, "ms", "epoch milliseconds"),
+        (1709208000e6, "us", "epoch microseconds"),
+        # What spreadsheets show of that date as a number, and MATLAB's datenum.
+        (45351.5, "day", "serial days of Excel"),
+        (739311.5, "day", "days of MATLAB's datenum"),
+    ],
+)
+def test_what_can_only_be_a_date_is_one(first, unit, said):
+    times = first + STEP / seconds("", unit) * np.arange(2000)
+    found = clock_of(times)
+    assert found.unit == unit
+    assert found.words == f"{said}, from 2024-02-29 12:00:00.000 on"
+
+
+@pytest.mark.parametrize("first", [0.0, 100.0, 1e5])
+def test_small_numbers_are_no_dates(first):
+    assert clock_of(first + STEP * np.arange(2000)) is None
+
+
+def test_a_record_of_a_month_counts_no_days():
+    assert clock_of(np.linspace(45000.0, 45030.0, 1000)) is None

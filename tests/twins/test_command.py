@@ -1,0 +1,138 @@
+"""The commands of the calibration, as the workflow calls them."""
+
+import csv
+import json
+
+import pytest
+import yaml
+from click.testing import CliRunner
+
+from hystbench.commands.jobs.calibrate import calibrate
+from hystbench.commands.jobs.found import found
+from hystbench.files import read_json
+from hystbench.model import load_model
+from hystbench.settings import read_settings
+from hystbench.twins import calibrate as fitting
+from hystbench.twins.calibrate import nearest_twin
+from hystbench.twins.plant import UNKNOWNS, make_twin, values_of
+from hystbench.written import ENTRIES
+from tests.conftest import ROOT, run_hystbench, shorten
+
+
+@pytest.fixture
+def job():
+    """The project's own settings on short records of two signals."""
+    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    shorten(config, 0.1)
+    config["calibration"] |= {"starts": 2, "twins": 2}
+    schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
+    job = read_settings(config, schema).calibration_job
+    job["signals"] = {
+        name: job["signals"][name] for name in ("sine-080hz", "sine-100hz")
+    }
+    return job
+
+
+@pytest.fixture
+def starts(monkeypatch):
+    """Where each descent began, each cut down to one step."""
+    begun = []
+
+    def short(problem, aims, start, evaluations):
+        begun.append(dict(start))
+        return nearest_twin(problem, aims, start, evaluations=2)
+
+    monkeypatch.setattr(fitting, "nearest_twin", short)
+    return begun
+
+
+VALUES = {item.name: item.start for item in UNKNOWNS}
+
+
+def table(folder, *models):
+    words = [*(str(folder / model) for model in models), "--out"]
+    done = CliRunner().invoke(found, [*words, str(folder / "found.csv")])
+    assert done.exit_code == 0, done.output
+    with (folder / "found.csv").open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def call(job, out):
+    words = ["--settings", json.dumps(job), "--out", str(out)]
+    return CliRunner().invoke(calibrate, words)
+
+
+def test_an_interrupted_run_ends_as_an_uninterrupted_one(
+    job, starts, tmp_path, monkeypatch
+):
+    whole = call(job, tmp_path / "whole")
+    assert whole.exit_code == 0, whole.output
+    assert len(starts) == 2 * 2 + 1
+    steps = read_json(tmp_path / "whole" / "report.json")["convergence_factor"]
+    mu = steps["gpo"]["mu"]
+    assert f"config.yaml: filters: convergence_factor: gpo: mu: {mu:.6g}\n" in (
+        whole.stdout
+    )
+    report = read_json(tmp_path / "whole" / "report.json")
+    for key in ("input_zero_error", "input_noise"):
+        assert f"config.yaml: twin: {key}: {report[key]:.6g}\n" in whole.stdout
+
+    with monkeypatch.context() as patch:
+        tune = fitting.tune_steps
+
+        def interrupt(problem, aims, values):
+            if len(starts) > 5 + 2:
+                raise KeyboardInterrupt
+            return tune(problem, aims, values)
+
+        patch.setattr(fitting, "tune_steps", interrupt)
+        assert call(job, tmp_path / "parts").exit_code == 1
+    there = {file.name for file in (tmp_path / "parts").iterdir()}
+    assert there == {"state.json", ENTRIES}
+    del starts[:]
+    parts = call(job, tmp_path / "parts")
+    assert parts.exit_code == 0, parts.output
+    # The first start is done: both descents of the second, and the last one.
+    assert len(starts) == 2 + 1
+    assert parts.stdout == whole.stdout
+    for name in ("gma.yaml", "uncertainty/gma-02.yaml", "report.json"):
+        texts = [(tmp_path / run / name).read_text() for run in ("whole", "parts")]
+        assert texts[0] == texts[1]
+    assert not (tmp_path / "parts" / "state.json").exists()
+    assert load_model(tmp_path / "parts" / "gma.yaml").name == "gma"
+
+
+def test_a_held_out_signal_is_refused_in_one_line(job, tmp_path):
+    job["signals"]["sine-060hz"] = job["signals"]["sine-080hz"]
+    words = ["calibrate", "--settings", json.dumps(job), "--out", tmp_path / "out"]
+    refused = run_hystbench(*words)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("hystbench: calibration: 'sine-060hz' is held out")
+    assert refused.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_job_holds_none_of_what_is_calibrated(job):
+    assert all("convergence_factor" not in each for each in job["filters"].values())
+    assert "input_zero_error" not in json.dumps(job)
+    assert "input_noise" not in json.dumps(job)
+
+
+def test_values_are_read_back_from_the_twin_they_made():
+    read = values_of(make_twin(VALUES))
+    for name, value in read.items():
+        assert value == pytest.approx(VALUES[name], rel=1e-5), name
+    # Step sizes and what the recorded input has are the experiment's.
+    assert {name for name in VALUES if name not in read} == {
+        "input zero",
+        "input noise",
+        *(name for name in VALUES if name.endswith(" step")),
+    }
+
+
+def test_the_spread_is_that_over_the_twins(tmp_path):
+    make_twin(VALUES).save(tmp_path / "gma.yaml")
+    make_twin(VALUES | {"gain": 80.0}).save(tmp_path / "gma-01.yaml")
+    rows = {row["unknown"]: row for row in table(tmp_path, "gma.yaml", "gma-01.yaml")}
+    assert (rows["gain"]["twins_low"], rows["gain"]["twins_high"]) == ("80", "94")
+    assert rows["mode"]["twins_low"] == rows["mode"]["twins_high"] == "63"

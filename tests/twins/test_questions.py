@@ -1,0 +1,97 @@
+"""The random sum, the edges of the step sizes and the constants."""
+
+import json
+
+import numpy as np
+import pytest
+
+from hystbench.commands.jobs.constants import constants
+from hystbench.commands.jobs.random_sum import random_sum
+from hystbench.commands.jobs.step_sweep import step_sweep
+from hystbench.compare.constants import read_constants
+from hystbench.compare.draws import read_draws
+from hystbench.compare.edges import read_edges
+from hystbench.twins.constants import as_published
+from hystbench.twins.read import read_twins
+from hystbench.twins.runs import draw_signals, measure_twin
+
+from .conftest import SIGNALS, call, rows
+
+
+def test_draws_edges_and_constants_are_what_the_comparison_reads(
+    settings, two, tmp_path
+):
+    identified = tmp_path / "identified.json"
+    records = []
+    (twin, _) = read_twins(two)
+    job = settings.constants_job
+    identified.write_text("{}")
+    for name, record in measure_twin(
+        twin, draw_signals(job["signals"], 0).values(), job["measure"], 0
+    ).items():
+        records.append(tmp_path / f"{name}.npz")
+        record.save(records[-1])
+    draws = tmp_path / "draws.csv"
+    random = settings.random_sum_job
+    call(
+        random_sum, two[0], "--identified", identified,
+        "--settings", json.dumps(random),
+        "--draws", draws, "--readings", tmp_path / "readings.csv",
+    )  # fmt: skip
+    (signal,) = read_draws(draws)
+    found = read_draws(draws)[signal]
+    assert found.count == random["draws"]
+    assert len(set(found.rms)) == found.count  # phases and noise are drawn anew
+    told = rows(tmp_path / "readings.csv")
+    assert {row["sines"] for row in told} == {"20", "5"}
+    middle = float(told[0]["median"])
+    assert middle == pytest.approx(np.median(found.rms), rel=1e-3)
+
+    edges = tmp_path / "edges.csv"
+    call(
+        step_sweep, *records, "--identified", identified,
+        "--settings", json.dumps(settings.step_sweep_job),
+        "--edges", edges, "--points", tmp_path / "points.csv",
+    )  # fmt: skip
+    points = rows(tmp_path / "points.csv")
+    read = read_edges(edges)
+    assert any(edge.edge for edge in read)
+    for edge in read:
+        mine = [
+            p for p in points if (p["signal"], p["model"]) == (edge.signal, edge.model)
+        ]
+        bad = [p for p in mine if not p["re"] or float(p["re"]) >= 1]
+        if not bad:
+            assert edge.edge is None
+            continue
+        assert edge.edge == pytest.approx(float(bad[0]["mu"]), rel=1e-3)
+        good = mine[: mine.index(bad[0])]
+        assert all(float(p["re"]) < 1 for p in good)
+
+    out = tmp_path / "constants.csv"
+    call(
+        constants, two[0], "--identified", identified,
+        "--settings", json.dumps(job), "--out", out,
+    )  # fmt: skip
+    ranked = read_constants(out)
+    usual = [row for row in ranked if row.configured]
+    assert len(usual) == 1
+    assert {row.constant_tap for row in ranked} == {0.0, 1.0}
+    assert all(0 <= row.gpo_first <= len(SIGNALS) for row in ranked)
+    total = usual[0].pairs_calibrated[1] + usual[0].pairs_held_out[1]
+    assert total == 6 * len(SIGNALS)
+
+
+def test_pairs_in_the_order_of_the_paper_by_hand():
+    published = {(s, m): v for s in "abc" for m, v in (("gpo", 1.0), ("delayed", 2.0))}
+    mse = {
+        ("a", "gpo"): 1.0,
+        ("a", "delayed"): 4.0,
+        ("b", "gpo"): 3.0,
+        ("b", "delayed"): 2.0,
+        # both diverged: they have no order
+        ("c", "gpo"): np.inf,
+        ("c", "delayed"): np.inf,
+    }
+    assert as_published(mse, published, "abc") == (1, 3)
+    assert as_published(mse, published, "b") == (0, 1)
