@@ -127,8 +127,8 @@ def feedforward(
     found = _corrected(model, start, response, x, reference, dt, band)
     if not np.isfinite(found.left):
         raise InputError(
-            "reference: the model's output runs away with the input that it would take; "
-            "expected a smaller or slower reference"
+            "reference: the model's output runs away with the input that it would "
+            "take; expected a smaller or slower reference"
         )
     if found.clipped and limits == Limits():
         raise InputError(

@@ -98,8 +98,8 @@ def best_linear(
     settled = [map_(np.tile(scale * u, 2))[count:] for u in draws]
     if not np.isfinite(settled).all():
         raise InputError(
-            f"reference: at a stroke of {size:g} the model's output runs away; expected "
-            "a smaller reference"
+            f"reference: at a stroke of {size:g} the model's output runs away; "
+            "expected a smaller reference"
         )
     outputs = np.fft.rfft(np.array(settled))
     cross = (outputs * inputs.conj()).sum(axis=0)[lines]
