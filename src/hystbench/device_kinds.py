@@ -114,6 +114,13 @@ CAUSES: Mapping[str, Mapping[str, Sequence[Kind]]] = {
         "a spring, membrane or support that stiffens": _MOVING,
         "a nonlinear capacitance or feedback": ("electronic",),
     },
+    "stop": {"a stop, or a contact that opens": _MOVING},
+    "drag": {"turbulent flow of a fluid": _MOVING},
+    "hysteretic-force": {
+        "micro-slip of joints, or a fluid that yields": _MOVING,
+    },
+    "gravity": {"a weight on an arm": _MOVING},
+    "slider-with-gap": {"friction behind a clearance": _MOVING},
     "friction": {"friction of guides, bearings, seals or joints": _MOVING},
     "backlash": {"play of a joint, a gear or a thread": _MOVING},
     "creep": {

@@ -139,9 +139,7 @@ def central_difference(points: int, place: float, half_width: float) -> FloatArr
     return through_samples(points, lambda m: (ahead**m - back**m) / (2 * half_width))
 
 
-def line_corners(
-    hold: str, points: int, ahead: int = 0
-) -> tuple[int, int, FloatArray]:
+def line_corners(hold: str, points: int, ahead: int = 0) -> tuple[int, int, FloatArray]:
     """Give what straight lines between two samples take of the newest samples.
 
     Parameters

@@ -102,6 +102,8 @@ static double hb_force(const double *f, double q, double v, double memory)
     }
     case 3: /* friction */
         return hb_sliding(f, 0) * memory / f[4];
+    case 8: /* smooth */
+        return f[1] * tanh(v / f[2]);
     case 4: /* drag */
         return f[1] * v * fabs(v);
     case 5: /* hysteretic */
@@ -141,6 +143,8 @@ static double hb_mean_force(const double *f, double q, double way, double v,
     case 3: /* friction */
         return hb_sliding(f, 0) / f[4] *
                hb_mean_held(memory, way, hb_friction_reach(f, v), 0);
+    case 8: /* smooth */
+        return f[1] * tanh(v / f[2]);
     case 4: /* drag */
         return f[1] * v * fabs(v);
     case 5: /* hysteretic */ {

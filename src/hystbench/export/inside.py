@@ -114,6 +114,8 @@ def inner_force(f, q, v, memory):
         return sliding(f, 0.0) * memory / f[4]
     if kind == 4:
         return f[1] * v * abs(v)
+    if kind == 8:
+        return f[1] * math.tanh(v / f[2])
     if kind == 5:
         return f[1] * memory
     if kind == 6:
@@ -143,6 +145,8 @@ def mean_force(f, q, way, v, memory):
         return sliding(f, 0.0) / f[4] * held
     if kind == 4:
         return f[1] * v * abs(v)
+    if kind == 8:
+        return f[1] * math.tanh(v / f[2])
     if kind == 5:
         turned = way / f[2]
         mean = bouc_wen(memory, turned, f[3])[1] / turned if turned != 0 else memory

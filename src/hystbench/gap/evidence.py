@@ -134,6 +134,9 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     )
 
 
+LINEAR = "linear"
+"""Name of the base that is identified as a linear model."""
+
 CUT = (
     "a force moves a mass that no spring holds: every record is cut where the motion "
     "turns, and each window starts at rest, at zero"
@@ -167,3 +170,13 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
         whose = f"the {data_have.name} of {evidence.name}"
         where = f"{place}: {key}: unit"
         check_same_unit(where, model_has.unit, whose, data_have.unit)
+
+
+def inside_of(base: Model, evidence: Evidence) -> Quantities | None:
+    """Give what the device takes and gives, where forces may be tried inside the base.
+
+    That is where the base is a linear model that was identified: one that a user gives
+    is not replaced by another. None elsewhere.
+    """
+    identified = base.name == LINEAR and bool(base.free)
+    return evidence.quantities if identified else None

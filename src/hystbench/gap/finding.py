@@ -17,6 +17,7 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.experiment import Experiment
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
+from hystbench.gap.inside.name import named_inside
 from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.lone import lone_share
@@ -49,6 +50,7 @@ from hystbench.gap.verdict import (
 )
 from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
+from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
 
@@ -102,6 +104,7 @@ def find(
     say: Say = silent,
     unnamed_share: float = SHARE,
     offered: tuple[str, ...] | None = None,
+    quantities: Quantities | None = None,
 ) -> Finding:
     """Locate the gap, name what is missing and add it.
 
@@ -124,6 +127,9 @@ def find(
         Share of the power of the gap that may stay unnamed beside a name.
     offered : tuple of str, optional
         Effects that may be named; all by default.
+    quantities : Quantities, optional
+        What the device takes and gives, where the base is a linear model that was
+        identified: forces are then tried inside the dynamics too.
 
     Raises
     ------
@@ -134,6 +140,8 @@ def find(
     start, floor = start_state(records, base, hold, declared, offered)
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
+    if quantities is not None:
+        named = named_inside(start, floor.rms, named, quantities, say)
     return decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
 
 

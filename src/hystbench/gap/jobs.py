@@ -9,9 +9,10 @@ from pathlib import Path
 from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.built_in import BuiltIn, put_in
-from hystbench.gap.evidence import Evidence
+from hystbench.gap.evidence import Evidence, inside_of
 from hystbench.gap.finding import Finding, black_box, decide
 from hystbench.gap.floor import Floor
+from hystbench.gap.inside.name import named_inside
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.limits import Limits
 from hystbench.gap.name import name
@@ -69,6 +70,9 @@ def decide_in(
     )
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
+    quantities = inside_of(base, evidence)
+    if quantities is not None:
+        named = named_inside(start, floor.rms, named, quantities, say)
     finding = decide(
         evidence.name, base, start, floor, named, say, asked, own, unnamed_share
     )

@@ -13,7 +13,7 @@ from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.augmented import augmented
 from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.built_in import BuiltIn, put_in
-from hystbench.gap.evidence import Evidence, check_units
+from hystbench.gap.evidence import Evidence, check_units, inside_of
 from hystbench.gap.finding import Finding, find
 from hystbench.gap.floor import Floor
 from hystbench.gap.foretell import keep_back
@@ -148,6 +148,7 @@ def closed_gap(
         say,
         unnamed_share,
         vocabulary.offered,
+        inside_of(base, evidence),
     )
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.

@@ -144,6 +144,8 @@ static double mean_force(const double *f, double q, double way, double v, double
     }
     case FRICTION:
         return sliding(f, 0) * mean_held(memory, way, friction_reach(f, v), 0) / f[4];
+    case SMOOTH:
+        return f[1] * tanh(v / f[2]);
     case DRAG:
         return f[1] * v * fabs(v);
     case HYSTERETIC: {

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
+from hystbench.blocks.attached import attached
 from hystbench.blocks.rate_dependent_hysteresis import FORMS
 from hystbench.model import Model
 from hystbench.operators import play
 from hystbench.record import FloatArray, Record
 from hystbench.refit.search import search
-from hystbench.refit.table import PLACES, place_of, searched_of
+from hystbench.refit.table import PLACES, next_to, place_of, searched_of
 from hystbench.refit.task import Fitted, Task
 
 #: Plays that stand for hysteresis of any shape.
@@ -91,8 +92,8 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
     """Add plays of the input, and their squares, where the hysteresis is."""
     if (effect == "hysteresis") != (task.hysteresis is None):
         return None
-    place = (task.hysteresis or 0) + 1
-    rest = task.model.chain[place:]
+    place = next_to(task, task.hysteresis or 0)
+    rest = attached(task.model.chain[place:])
     thresholds = np.linspace(0.0, 0.9 * task.reach, PLAYS)
 
     def columns(record: Record) -> FloatArray:
@@ -101,8 +102,8 @@ def _fit_plays(task: Task, effect: str) -> Fitted | None:
         out = []
         for signal in plays:
             y = np.ascontiguousarray(signal)
-            for block in rest:
-                y = block.simulate(y, record.u, record.dt)
+            for step in rest:
+                y = step.simulate(y, record.u, record.dt)
             out.append(y)
         return np.stack(out, axis=1)
 

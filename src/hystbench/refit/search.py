@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from hystbench.blocks import registry
+from hystbench.blocks.attached import attached
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.wrapping import WrappingBlock
@@ -153,7 +154,7 @@ def _behind(
     out = []
     for record, signal in zip(task.records, before, strict=True):
         y = signal
-        for block in chain[place:]:
-            y = block.simulate(y, record.u, record.dt)
+        for step in attached(chain[place:]):
+            y = step.simulate(y, record.u, record.dt)
         out.append(y)
     return np.concatenate(out)

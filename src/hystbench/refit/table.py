@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hystbench.blocks.attached import AttachedBlock
 from hystbench.refit.task import Task
 
 #: Frequencies that a mode is looked for at, over the records' band.
@@ -63,8 +64,8 @@ def place_of(task: Task, effect: str) -> int | None:
     where, end = PLACES[effect], len(task.model.chain)
     if where == "material":
         if task.hysteresis is None:
-            return None if effect == "rate-dependent-hysteresis" else 1
-        return task.hysteresis + 1
+            return None if effect == "rate-dependent-hysteresis" else next_to(task, 0)
+        return next_to(task, task.hysteresis)
     if where == "mode":
         names = [block.name for block in task.model.chain]
         return names.index("resonance") if "resonance" in names else end
@@ -144,3 +145,12 @@ LINEAR = {
     "creep": "magnitudes",
     "thermal-drift": "coefficient",
 }
+
+
+def next_to(task: Task, place: int) -> int:
+    """Give the place behind a block and all that is attached to it."""
+    chain = task.model.chain
+    behind = place + 1
+    while behind < len(chain) and isinstance(chain[behind], AttachedBlock):
+        behind += 1
+    return behind

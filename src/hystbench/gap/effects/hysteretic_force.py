@@ -17,7 +17,5 @@ class HystereticForce(ForceEffect):
         """Offer it weak, with short and long ways to yield."""
         names = ("largest", "yield_distance", "sharing")
         for share, way in ((0.03, 0.03), (0.1, 0.3), (0.3, 1.0)):
-            block = Block(
-                largest=share * moved.force, yield_distance=way * moved.reach
-            )
+            block = Block(largest=share * moved.force, yield_distance=way * moved.reach)
             yield Law("Bouc-Wen", block, names)

@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.blocks import registry
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic, places_in_sensor
+from hystbench.gap.effects.base import (
+    Effect,
+    Law,
+    Moved,
+    Variant,
+    logarithmic,
+    places_in_sensor,
+)
 from hystbench.gap.scene import Scene
 
 

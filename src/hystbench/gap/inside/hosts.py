@@ -13,7 +13,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted, judged
+from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.sample import Sample
 from hystbench.gap.score import Score
 from hystbench.gap.state import Free, State

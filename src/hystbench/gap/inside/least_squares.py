@@ -69,7 +69,9 @@ def fitted(
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
     def moved(point: FloatArray) -> State:
-        found = np.where(logs, np.exp(np.clip(point, -600, 600)), values + point * sizes)
+        found = np.where(
+            logs, np.exp(np.clip(point, -600, 600)), values + point * sizes
+        )
         return at_values(state, found)
 
     def residual(point: FloatArray) -> FloatArray:

@@ -182,5 +182,3 @@ def how_it_moves(state: State, turns: bool) -> Moved:
     return Moved(
         max(reach, tiny), max(speed, tiny), max(force, tiny), step, turns, anywhere
     )
-
-

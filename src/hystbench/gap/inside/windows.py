@@ -64,10 +64,7 @@ def is_free_mass(records: Iterable[Record], quantities: Quantities) -> bool:
     found = np.linalg.lstsq(stacked / sizes, u, rcond=1e-10)[0]
     explained = float(np.mean((u - (stacked / sizes) @ found) ** 2))
     total = float(np.var(u))
-    return bool(
-        explained < 0.5 * total
-        and abs(found[2]) < SPRING * np.sqrt(total)
-    )
+    return bool(explained < 0.5 * total and abs(found[2]) < SPRING * np.sqrt(total))
 
 
 def windows(record: Record) -> tuple[Record, ...]:

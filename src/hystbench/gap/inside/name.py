@@ -1,0 +1,108 @@
+"""Naming effects inside the dynamics, beside what was named in the chain."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.gap.held_back import gain_held_back
+from hystbench.gap.inside.hosts import best_host, hosts
+from hystbench.gap.inside.search import Hypothesis, search
+from hystbench.gap.name import Named
+from hystbench.gap.rounds import Candidate, Round
+from hystbench.gap.say import Say, silent
+from hystbench.gap.score import Score
+from hystbench.gap.state import State
+from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.quantities import Quantities
+
+
+def named_inside(
+    start: State,
+    floor_rms: float,
+    named: Named,
+    quantities: Quantities,
+    say: Say = silent,
+) -> Named:
+    """Give the effects inside the dynamics where they explain more than the chain does.
+
+    The base was identified as a linear model. In its place a linear model of one
+    coordinate is fitted, forces are put inside, and the result must lower the score of
+    records held back against what was named in the chain, by as much as any effect has
+    to pay.
+
+    Parameters
+    ----------
+    start : State
+        The base on the fit records.
+    floor_rms : float
+    named : Named
+        What was named in the chain.
+    quantities : Quantities
+        What the device takes and gives: without a known causality nothing is tried.
+    say : callable
+        Told a line of progress at a time.
+    """
+    begun = list(hosts(start.records, quantities, start.hold))
+    nothing = np.zeros((len(start.sample), 0))
+    score = Score(start.sample, nothing, floor_rms**2)
+    host = best_host(begun, score)
+    if host is None:
+        return named
+    turns = start.records[0].output.unit == "rad"
+    found = search(host, score, turns, start.offered, say)
+    best = _chosen(found)
+    if not best.effects:
+        say("inside: no force pays")
+        return named
+    state = replace(best.fitted.state, offered=start.offered).settled()
+    gain = gain_held_back(named.state, state, score)
+    names = " + ".join(best.effects)
+    say(f"inside: {names}: gain {gain:.1f} on records held back")
+    if gain < PAYS:
+        return named
+    return Named(state, tuple(_rounds(start, score, best, found)))
+
+
+def _chosen(found: Sequence[Hypothesis]) -> Hypothesis:
+    """Take the least score; a first effect has to pay, and each further one more."""
+
+    def charged(item: Hypothesis) -> float:
+        count = len(item.effects)
+        return item.score + (PAYS + FURTHER * (count - 1) if count else 0.0)
+
+    return min(found, key=charged)
+
+
+def _rounds(
+    start: State, score: Score, best: Hypothesis, found: Sequence[Hypothesis]
+) -> list[Round]:
+    """Write how the effects were found as rounds: each beside those before it."""
+    rounds, before = [], start
+    now = found[0].score
+    for count, effect in enumerate(best.effects, start=1):
+        already = best.effects[: count - 1]
+        own = [
+            item
+            for item in found
+            if len(item.effects) == count and item.effects[: count - 1] == already
+        ]
+        ranking = sorted(
+            (_candidate(item, now) for item in own),
+            key=lambda item: (item.effect != effect, item.score),
+        )
+        rounds.append(Round(before, now, tuple(ranking), True))
+        first = ranking[0]
+        assert first.state is not None  # noqa: S101  (for the type checker)
+        before, now = first.state, first.score
+    return rounds
+
+
+def _candidate(item: Hypothesis, now: float) -> Candidate:
+    state = item.fitted.state
+    last = state.added[-1]
+    return Candidate(
+        last.effect, last.place, last.form, item.score, now - item.score, state
+    )
