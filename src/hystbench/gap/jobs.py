@@ -10,7 +10,7 @@ from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.built_in import BuiltIn, put_in
 from hystbench.gap.evidence import Evidence, inside_of
-from hystbench.gap.finding import Finding, black_box, decide
+from hystbench.gap.finding import Finding, black_box, decide, said_of_base
 from hystbench.gap.floor import Floor
 from hystbench.gap.inside.name import named_inside
 from hystbench.gap.kept import Restorer, state_mapping
@@ -71,11 +71,16 @@ def decide_in(
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
     quantities = inside_of(base, evidence)
+    inside = None
     if quantities is not None:
-        named = named_inside(start, floor.rms, named, quantities, say)
+        inside = named_inside(base, start, floor.rms, named, quantities, say)
+        if inside is not None:
+            base, start, named = inside.base, inside.start, inside.named
     finding = decide(
         evidence.name, base, start, floor, named, say, asked, own, unnamed_share
     )
+    if inside is not None:
+        finding = said_of_base(finding, inside.sentence)
     content = with_device(finding.content, evidence.device_kind, evidence.quantities)
     finding = replace(finding, content=content)
     kept = {

@@ -153,7 +153,7 @@ def closed_gap(
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.
     shown = outcome(
-        base,
+        finding.base,
         finding.content,
         finding.state,
         finding.floor,

@@ -171,7 +171,9 @@ class State:
                         after = scene_of(self, {k: change})
                     except InputError:
                         continue  # outside what the block accepts: no form of it
-                    columns.append(self.sample.take(after) - self._simulated)
+                    column = self.sample.take(after) - self._simulated
+                    if np.all(np.isfinite(column)):  # else it runs away: no form of it
+                        columns.append(column)
         return _stack(columns, len(self.sample))
 
     @cached_property

@@ -365,7 +365,6 @@ class ForceEffect(Effect):
             Always.
         """
         raise Declined("it acts inside a mechanism, where it is tried apart")
-        yield
 
     @abstractmethod
     def inside(self, moved: Moved) -> Iterator[Law]:

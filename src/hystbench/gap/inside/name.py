@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,17 +16,39 @@ from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.model import Model
 from hystbench.quantities import Quantities
 
 
+@dataclass(frozen=True)
+class Inside:
+    """Effects inside the dynamics, and the linear base that they were found beside.
+
+    Parameters
+    ----------
+    base : Model
+    start : State
+        The same on the fit records.
+    named : Named
+    sentence : str
+        What it stands in place of.
+    """
+
+    base: Model
+    start: State
+    named: Named
+    sentence: str
+
+
 def named_inside(
+    base: Model,
     start: State,
     floor_rms: float,
     named: Named,
     quantities: Quantities,
     say: Say = silent,
-) -> Named:
-    """Give the effects inside the dynamics where they explain more than the chain does.
+) -> Inside | None:
+    """Find effects inside the dynamics; None where the chain explains as much.
 
     The base was identified as a linear model. In its place a linear model of one
     coordinate is fitted, forces are put inside, and the result must lower the score of
@@ -35,8 +57,10 @@ def named_inside(
 
     Parameters
     ----------
+    base : Model
+        The linear model that was identified.
     start : State
-        The base on the fit records.
+        The same on the fit records.
     floor_rms : float
     named : Named
         What was named in the chain.
@@ -50,20 +74,36 @@ def named_inside(
     score = Score(start.sample, nothing, floor_rms**2)
     host = best_host(begun, score)
     if host is None:
-        return named
+        return None
     turns = start.records[0].output.unit == "rad"
     found = search(host, score, turns, start.offered, say)
     best = _chosen(found)
     if not best.effects:
         say("inside: no force pays")
-        return named
+        return None
     state = replace(best.fitted.state, offered=start.offered).settled()
     gain = gain_held_back(named.state, state, score)
     names = " + ".join(best.effects)
     say(f"inside: {names}: gain {gain:.1f} on records held back")
     if gain < PAYS:
-        return named
-    return Named(state, tuple(_rounds(start, score, best, found)))
+        return None
+    alone = replace(host.state, offered=start.offered).settled()
+    floor = floor_rms**2
+    unit = base.output.unit
+    left = (float(np.sqrt(max(x.power(floor), 0.0))) for x in (start, alone))
+    order, one = (f"{rms:.3g} {unit}" for rms in left)
+    sentence = (
+        f"the linear base of any order, which leaves {order} rms of the fit records "
+        f"above the floor, gave way to one of a single coordinate, which leaves {one}: "
+        "forces act inside it"
+    )
+    rounds = _rounds(alone, score, best, found)
+    model = Model(base.name, base.input, base.output, alone.chain)
+    labels = [label for label, _ in model.labelled()]
+    free = tuple(f"{labels[item.block]}.{item.parameter}" for item in alone.free)
+    return Inside(
+        replace(model, free=free), alone, Named(state, tuple(rounds)), sentence
+    )
 
 
 def _chosen(found: Sequence[Hypothesis]) -> Hypothesis:

@@ -1,0 +1,102 @@
+"""Effects inside the dynamics: linear hosts, forces in them, windows of a free mass."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Moved
+from hystbench.gap.inside.hosts import best_host, hosts
+from hystbench.gap.inside.search import search
+from hystbench.gap.inside.windows import is_free_mass, windows
+from hystbench.gap.score import Score
+from hystbench.quantities import Quantities
+from hystbench.record import Channel, Record
+
+DT = 0.005
+NOISE = 0.02
+TIME = np.arange(1600) * DT
+
+
+def record(name, u, y, units=("mm", "N"), use="fit"):
+    channels = Channel("in", units[0]), Channel("out", units[1])
+    return Record(name, DT, u, y, *channels, "measured", use)
+
+
+def damper(size, frequency, seed):
+    """A device that is moved: viscous and dry friction, written without a block."""
+    x = size * np.sin(2 * np.pi * frequency * TIME) + 0.2 * size * np.sin(9.1 * TIME)
+    v = np.gradient(x, DT)
+    noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
+    return record(f"run-{seed}", x, 0.03 * v + 4.0 * np.tanh(v / 3.0) + 1.0 + noise)
+
+
+@pytest.fixture(scope="module")
+def found():
+    records = tuple(damper(s, f, k) for k, (s, f) in enumerate([(2, 1.3), (5, 0.7)]))
+    begun = list(hosts(records, Quantities("position", "force"), "linear"))
+    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    return search(best_host(begun, score), score, offered=["friction", "drag"])
+
+
+def test_friction_of_a_device_that_is_moved_is_found_with_its_numbers(found):
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("friction",)
+    assert best.forms == ("smooth",)
+    law = next(x for x in best.fitted.state.chain if x.name == "smooth-friction")
+    assert law.coulomb == pytest.approx(4.0, rel=0.02)
+    assert law.velocity_scale == pytest.approx(3.0, rel=0.05)
+    rms = np.sqrt(np.mean(best.fitted.state.residual**2))
+    assert rms == pytest.approx(NOISE, rel=0.1)
+
+
+def test_a_host_without_a_force_stands_first(found):
+    assert found[0].effects == ()
+    assert found[0].score > min(item.score for item in found) + 100
+
+
+def test_a_store_has_no_impedance():
+    given = hosts((damper(2, 1.3, 0),), Quantities("position", "level"), "linear")
+    assert list(given) == []
+
+
+def mass(spring):
+    """A mass that a force moves, by small steps of Euler, and a spring."""
+    rng = np.random.default_rng(5)
+    u = 3 * np.sin(2 * np.pi * 0.5 * TIME) + np.cumsum(rng.standard_normal(1600)) * 1e-3
+    fine, q, v, out = 20, 0.0, 0.0, []
+    for force in u:
+        out.append(q)
+        for _ in range(fine):
+            v += DT / fine * (force - 0.8 * v - 0.2 * np.sign(v) - spring * q)
+            q += DT / fine * v
+    return record("mass", u, np.array(out), ("N", "m"))
+
+
+MOVES = Quantities("force", "position")
+
+
+def test_a_mass_without_a_spring_is_known_by_its_records():
+    assert is_free_mass([mass(0.0)], MOVES)
+    assert not is_free_mass([mass(30.0)], MOVES)
+    assert not is_free_mass([mass(0.0)], Quantities("position", "force"))
+    assert not is_free_mass([replace(mass(0.0), use="hold-out")], MOVES)
+
+
+def test_windows_begin_at_rest_and_at_zero():
+    whole = mass(0.0)
+    cut = windows(whole)
+    assert len(cut) > 3
+    assert sum(map(len, cut)) <= len(whole)
+    fastest = np.abs(np.gradient(whole.y, DT)).max()
+    for window in cut:
+        assert window.y[0] == 0.0
+        assert abs(window.y[1] - window.y[0]) / DT < 0.05 * fastest
+
+
+def test_where_the_place_does_not_matter_no_force_depends_on_it():
+    moved = Moved(reach=1.0, speed=1.0, force=1.0, step=DT, anywhere=True)
+    offered = {name for name, item in effects().items() if any(item.inside(moved))}
+    assert {"friction", "drag", "hysteretic-force"} <= offered
+    assert not {"stop", "stiffness-hardening", "gravity"} & offered
