@@ -32,6 +32,9 @@ from tests.gap.small import (
 
 # As printed in the vocabulary that users and figures share, by place.
 VOCABULARY = {
+    "inside": [
+        *("drag", "gravity", "hysteretic-force", "slider-with-gap", "stop"),
+    ],
     "drive": (
         *("input-delay", "drive-lag", "eddy-diffusion", "drive-saturation"),
         *("slew-limit", "dead-zone"),
@@ -97,7 +100,14 @@ def test_every_word_of_the_vocabulary_is_a_block(name):
 
 def test_every_effect_is_tried_on_some_chain():
     """Otherwise the contract below would leave one out."""
-    assert {item.values[1].effect for item in ALL} == set(effects())
+    chained = {name for name, item in effects().items() if item.place != "inside"}
+    assert {item.values[1].effect for item in ALL} == chained
+
+
+@pytest.mark.parametrize("name", VOCABULARY["inside"])
+def test_a_force_has_no_place_in_a_chain_in_series(name):
+    with pytest.raises(Declined, match="inside a mechanism"):
+        list(effects()[name].variants(Scene(chains()["gpi"], records())))
 
 
 @pytest.mark.parametrize(("chain", "variant"), ALL)
