@@ -198,7 +198,7 @@ def nothing(rig):
     pass
 
 
-CHECK = ("gap-check", "data", "--model", "model.yaml")
+CHECK = ("job", "gap-check", "data", "--model", "model.yaml")
 GAP = ("gap", "data", "--model", "model.yaml", "--out", "out")
 LOAD = ("load", "data", "one", "--out", "out")
 SIMULATE = ("simulate", "model.yaml", "data/one.csv", "--out", "out")

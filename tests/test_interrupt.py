@@ -83,7 +83,7 @@ wait = lambda: (at(), sleep())
 """
 #: Each moment, as a change of the program that comes there and stays.
 MOMENTS = {
-    # A module of ours, whose import waits half a second: the signal waits as well.
+    # A module of ours, whose import takes three seconds: the signal waits as well.
     "import": """
 import importlib.abc
 class Slow(importlib.abc.MetaPathFinder):

@@ -31,7 +31,7 @@ def test_more_samples_a_period_and_more_points_are_nearer():
 
 
 def test_the_command_writes_a_row_for_each_case(tmp_path):
-    done = run_hystbench("export-errors", "--out", tmp_path / "errors.csv")
+    done = run_hystbench("job", "export-errors", "--out", tmp_path / "errors.csv")
     assert done.returncode == 0, done.stderr
     with (tmp_path / "errors.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))

@@ -141,7 +141,7 @@ def test_the_command_writes_table_verdict_and_figure(tmp_path):
     settings = '{"input_zero_error": 0.0, "highest_hz": {"sine-040hz": 40}}'
     given = ("--slow", slow, "--plant", TWIN, "--base", tmp_path / "base.yaml")
     done = run_hystbench(
-        "tracking", fast, *given, "--augmented", TWIN, "--settings", settings,
+        "job", "tracking", fast, *given, "--augmented", TWIN, "--settings", settings,
         "--out", out,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

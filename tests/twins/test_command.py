@@ -104,7 +104,14 @@ def test_an_interrupted_run_ends_as_an_uninterrupted_one(
 
 def test_a_held_out_signal_is_refused_in_one_line(job, tmp_path):
     job["signals"]["sine-060hz"] = job["signals"]["sine-080hz"]
-    words = ["calibrate", "--settings", json.dumps(job), "--out", tmp_path / "out"]
+    words = [
+        "job",
+        "calibrate",
+        "--settings",
+        json.dumps(job),
+        "--out",
+        tmp_path / "out",
+    ]
     refused = run_hystbench(*words)
     assert refused.returncode == 2
     assert refused.stderr.startswith("hystbench: calibration: 'sine-060hz' is held out")

@@ -107,7 +107,7 @@ def test_the_command_reads_no_held_out_signal(tmp_path):
     for signal in (made("sine-060hz", 60), made("sine-001hz", 1)):
         signal.save(tmp_path / f"{signal.name}.npz")
     words = [
-        *("families", str(tmp_path / "sine-060hz.npz")),
+        *("job", "families", str(tmp_path / "sine-060hz.npz")),
         *("--model", str(PLANTS / "gma.yaml")),
         *("--loop", str(tmp_path / "sine-001hz.npz")),
         *("--settings", json.dumps({"seed": 1}), "--out", str(tmp_path / "out")),
