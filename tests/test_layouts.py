@@ -180,6 +180,7 @@ CONTENT = {"verdict": "no-gap", "reason": "none is there", "effects": []}
 class Found:
     """What a search would give, as far as it is written."""
 
+    base: Any
     model: Any
     curves: dict
     content: dict
@@ -199,6 +200,7 @@ def searched():
     def find(name, records, base, *others):
         calls.append(name)
         return Found(
+            base=base,
             model=base,
             curves={"run": len(calls)},
             content=CONTENT | {"run": len(calls)},

@@ -10,6 +10,7 @@ import pytest
 
 from hystbench.device_kinds import KINDS
 from hystbench.gap.behaviour import in_words
+from hystbench.gap.effects import effects
 from hystbench.gap.jobs import decide_in, show_in
 from hystbench.gap.report import write_report
 from hystbench.gap.run import close_gap
@@ -119,10 +120,14 @@ def tried(content):
     return {row["name"] for row in content["ranking"]}
 
 
+#: Nothing moves in a circuit.
+FORCES = {name for name, item in effects().items() if item.place == "inside"}
+
+
 def test_what_a_device_cannot_have_is_not_tried_and_told(circuit):
     content = find_gap(*circuit, cache=False).content
     assert not {"friction", "backlash"} & tried(content)
-    assert set(content["asked"]["impossible"]) == {"friction", "backlash"}
+    assert set(content["asked"]["impossible"]) == {"friction", "backlash", *FORCES}
     assert content["asked"]["without"] == []
     assert "the device is electronic" in content["reason"]
 
@@ -149,7 +154,7 @@ def test_as_two_jobs_it_is_the_same(circuit, tmp_path):
 def test_what_a_user_puts_in_stays_whatever_the_device():
     chosen = Vocabulary.of(["backlash"], ["friction"]).in_device("electronic")
     assert chosen.fixed == ("friction",)
-    assert chosen.impossible == ()
+    assert set(chosen.impossible) == FORCES
     assert "friction" not in chosen.offered
 
 

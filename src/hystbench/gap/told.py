@@ -171,7 +171,7 @@ def parameters_of(
             continue  # what the effect left of a block that it was taken out of
         for key, about in block.parameters().items():
             value = getattr(block, key)
-            if key == "hold" or value == ():
+            if key in ("hold", "start") or value == ():
                 continue
             error = _errors_of(place, key, value, state, errors)
             label = key if key not in found else f"{key}#2"
