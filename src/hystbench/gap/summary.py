@@ -90,7 +90,7 @@ def write_adds(model: Model, path: Path) -> None:
         for label, block in model.labelled()
         if not block.hysteretic
         for name, about in block.parameters().items()
-        if name != "hold"
+        if name not in ("hold", "start")
     ]
     write_csv(path, ADDS_COLUMNS, rows)
 
