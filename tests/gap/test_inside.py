@@ -95,6 +95,14 @@ def test_windows_begin_at_rest_and_at_zero():
         assert abs(window.y[1] - window.y[0]) / DT < 0.05 * fastest
 
 
+def test_a_window_knows_which_of_its_samples_were_measured():
+    lost = np.zeros(len(TIME), dtype=bool)
+    lost[700:740] = True
+    cut = windows(replace(mass(0.0), interpolated=lost))
+    assert all(len(window.counted) == len(window) for window in cut)
+    assert sum(int((~window.counted).sum()) for window in cut) == 40
+
+
 def test_where_the_place_does_not_matter_no_force_depends_on_it():
     moved = Moved(reach=1.0, speed=1.0, force=1.0, step=DT, anywhere=True)
     offered = {name for name, item in effects().items() if any(item.inside(moved))}

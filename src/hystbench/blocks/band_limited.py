@@ -163,3 +163,23 @@ def straight_lines(v: FloatArray, factor: int) -> FloatArray:
     count = (len(v) - 1) * factor + 1
     share = np.sinc(np.arange(series.half + 1) / (2 * series.half * factor)) ** 2
     return series.line(count, factor=factor) + series.sines(count, 1 / share, factor)
+
+
+def held_lines(v: FloatArray, hold: str) -> tuple[FloatArray, int]:
+    """Give the corners of the straight lines that a block moves along.
+
+    Parameters
+    ----------
+    v : ndarray, shape (n,)
+    hold : {"zero-order", "linear", "band-limited"}
+        A band-limited signal is taken as :func:`straight_lines` twice as fine.
+
+    Returns
+    -------
+    corners : ndarray, shape ((n - 1) * lines + 1,)
+    lines : int
+        How many there are between two samples.
+    """
+    if hold == "band-limited" and len(v) > 2:
+        return straight_lines(v, 2), 2
+    return np.ascontiguousarray(v), 1

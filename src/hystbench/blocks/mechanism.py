@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.band_limited import straight_lines
+from hystbench.blocks.band_limited import held_lines
 from hystbench.blocks.force import Force, Motion, against, exported, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import StateSpace, discretise
@@ -114,10 +114,8 @@ class Mechanism(HeldBlock):
         """Compute how the coordinate moves; arguments are those of :meth:`driven`."""
         numbers = rows(forces)
         path, before = path_from(z, self.start)
-        p = self.gain * path + self.bias
-        fine = 2 if self.holding == "band-limited" and len(p) > 2 else 1
-        if fine > 1:
-            p = straight_lines(p, fine)
+        lines, fine = held_lines(path, self.holding)
+        p = self.gain * lines + self.bias
         n, step = len(p), dt / fine
         q, v, force = np.zeros(n), np.zeros(n), np.zeros(n)
         if n == 0:
@@ -136,7 +134,7 @@ class Mechanism(HeldBlock):
             len(forces),
             numbers,
             np.zeros(len(forces)),
-            np.ascontiguousarray(p),
+            p,
             q,
             v,
             force,

@@ -17,6 +17,11 @@ HUGE, TINY = 1e30, 1e-30
 would let the choice of micrometres or metres decide what a record can mean."""
 
 
+SETTINGS = ("hold", "start")
+"""Parameters that say how a signal moves and what was before it: no numbers of an
+effect, so no table of them has these."""
+
+
 @dataclass(frozen=True)
 class Parameter:
     """What one parameter of a block means and which values it may take.

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.band_limited import straight_lines
+from hystbench.blocks.band_limited import held_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
@@ -49,8 +49,7 @@ class StiffnessHardening(HeldBlock):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Integrate the mode."""
-        fine = 2 if self.holding == "band-limited" and len(z) > 2 else 1
-        v = straight_lines(z, fine) if fine > 1 else np.ascontiguousarray(z)
+        v, fine = held_lines(z, self.holding)
         x = np.empty(len(v))
         kernels.call(
             "hb_hardening",

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.band_limited import straight_lines
+from hystbench.blocks.band_limited import held_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
 from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
@@ -51,8 +51,8 @@ class Store(HeldBlock):
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Fill and empty the store."""
-        fine = 2 if self.holding == "band-limited" and len(z) > 2 else 1
-        v = self.gain * (straight_lines(z, fine) if fine > 1 else z) + self.bias
+        lines, fine = held_lines(z, self.holding)
+        v = self.gain * lines + self.bias
         n = len(v)
         level, outflow, spilt = np.zeros(n), np.zeros(n), np.zeros(n)
         if n == 0:
@@ -67,7 +67,7 @@ class Store(HeldBlock):
             self.rate,
             self.exponent,
             self.height,
-            np.ascontiguousarray(v),
+            v,
             level,
             outflow,
             spilt,

@@ -140,22 +140,15 @@ def find(
     start, floor = start_state(records, base, hold, declared, offered)
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)
-    inside = None
+    instead = ""
     if quantities is not None:
         inside = named_inside(base, start, floor.rms, named, quantities, say)
         if inside is not None:
             base, start, named = inside.base, inside.start, inside.named
-    finding = decide(
-        dataset, base, start, floor, named, say, limits, own, unnamed_share
-    )
-    return finding if inside is None else said_of_base(finding, inside.sentence)
-
-
-def said_of_base(finding: Finding, sentence: str) -> Finding:
-    """Say of a finding what its base stands in place of."""
-    content = {**finding.content}
-    content["reason"] = f"{content['reason']}; {sentence}"
-    return replace(finding, content=content)
+            instead = f"; {inside.sentence}"
+    found = decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
+    reason = found.content["reason"] + instead
+    return replace(found, content={**found.content, "reason": reason})
 
 
 def decide(

@@ -10,13 +10,9 @@ from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.built_in import BuiltIn, put_in
 from hystbench.gap.evidence import Evidence, inside_of
-from hystbench.gap.finding import Finding, black_box, decide, said_of_base
+from hystbench.gap.finding import Finding, black_box, find
 from hystbench.gap.floor import Floor
-from hystbench.gap.inside.name import named_inside
 from hystbench.gap.kept import Restorer, state_mapping
-from hystbench.gap.limits import Limits
-from hystbench.gap.name import name
-from hystbench.gap.named_apart import named_apart
 from hystbench.gap.own_values import OwnValues
 from hystbench.gap.run import DECISIVE, SHOWN, as_asked, outcome, write_shown
 from hystbench.gap.rungs import Rung
@@ -61,30 +57,25 @@ def decide_in(
         Effects that may be named, and those that are in the model from the start.
     """
     writes(*(folder / name for name in DECIDED))
-    asked = Limits.within(evidence.fit, limits) if limits else None
     say = say_in_words(say)
     vocabulary = vocabulary.in_device(evidence.device_kind)
     base, built_in = put_in(base, evidence, vocabulary.fixed, say)
-    start, floor = start_state(
-        evidence.fit, base, evidence.hold, evidence.noise_rms, vocabulary.offered
+    finding = find(
+        evidence.name,
+        evidence.fit,
+        base,
+        evidence.hold,
+        evidence.noise_rms,
+        limits,
+        say,
+        unnamed_share,
+        vocabulary.offered,
+        inside_of(base, evidence),
     )
-    named = name(start, floor.rms, say)
-    start, named, own = named_apart(start, floor.rms, named, say)
-    quantities = inside_of(base, evidence)
-    inside = None
-    if quantities is not None:
-        inside = named_inside(base, start, floor.rms, named, quantities, say)
-        if inside is not None:
-            base, start, named = inside.base, inside.start, inside.named
-    finding = decide(
-        evidence.name, base, start, floor, named, say, asked, own, unnamed_share
-    )
-    if inside is not None:
-        finding = said_of_base(finding, inside.sentence)
     content = with_device(finding.content, evidence.device_kind, evidence.quantities)
     finding = replace(finding, content=content)
     kept = {
-        "floor": asdict(floor),
+        "floor": asdict(finding.floor),
         "state": state_mapping(finding.state),
         "rungs": [
             {"name": item.name, "state": state_mapping(item.state)}
@@ -96,7 +87,7 @@ def decide_in(
     }
     with whole_folder(folder, DECIDED) as fresh:
         write_json(fresh / "curves.json", finding.curves)
-        base.save(fresh / BASE)
+        finding.base.save(fresh / BASE)
         write_json(fresh / NAMED, kept)
         write_json(fresh / DECISION, finding.content)
     return finding

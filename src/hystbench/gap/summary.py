@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from hystbench.blocks.parameter import SETTINGS
 from hystbench.files import write_csv
 from hystbench.gap.units import written
 from hystbench.model import Model
@@ -90,7 +91,7 @@ def write_adds(model: Model, path: Path) -> None:
         for label, block in model.labelled()
         if not block.hysteretic
         for name, about in block.parameters().items()
-        if name not in ("hold", "start")
+        if name not in SETTINGS
     ]
     write_csv(path, ADDS_COLUMNS, rows)
 

@@ -11,6 +11,7 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.calls import USED_UP
 from hystbench.blocks.external import External
+from hystbench.blocks.parameter import SETTINGS
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.beside_errors import Errors
 from hystbench.gap.effects import effects
@@ -171,7 +172,7 @@ def parameters_of(
             continue  # what the effect left of a block that it was taken out of
         for key, about in block.parameters().items():
             value = getattr(block, key)
-            if key in ("hold", "start") or value == ():
+            if key in SETTINGS or value == ():
                 continue
             error = _errors_of(place, key, value, state, errors)
             label = key if key not in found else f"{key}#2"

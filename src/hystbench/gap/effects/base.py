@@ -284,6 +284,25 @@ class Effect(ABC):
         """
         yield from ()
 
+    def beside_mechanism(
+        self, moved: Moved, name: str, place: Literal["before", "behind"], **given: str
+    ) -> Law:
+        """Give the effect's filter before or behind a mechanism.
+
+        It starts short against the records' rates: at two sampling intervals.
+
+        Parameters
+        ----------
+        moved : Moved
+        name : str
+            The time that is fitted.
+        place : {"before", "behind"}
+        **given
+            Other parameters.
+        """
+        block = registry()[self.name].from_mapping({name: 2 * moved.step, **given})
+        return Law("", block, (name,), place)
+
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
         raise NotImplementedError

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.blocks import registry
 from hystbench.gap.effects.base import (
     Effect,
     Law,
@@ -29,6 +28,5 @@ class DriveLag(Effect):
             yield self.inserted(scene, place, grids={"time_constant_s": times})
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer it before the mechanism, short against the records' rates."""
-        block = registry()[self.name].from_mapping({"time_constant_s": 2 * moved.step})
-        yield Law("", block, ("time_constant_s",), "before")
+        """Offer it before the mechanism."""
+        yield self.beside_mechanism(moved, "time_constant_s", "before")

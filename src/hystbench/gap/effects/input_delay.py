@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.blocks import registry
 from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
 from hystbench.gap.scene import Scene
 
@@ -24,6 +23,5 @@ class InputDelay(Effect):
         )
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer it before the mechanism, short against the records' rates."""
-        block = registry()[self.name].from_mapping({"delay_s": 2 * moved.step})
-        yield Law("", block, ("delay_s",), "before")
+        """Offer it before the mechanism."""
+        yield self.beside_mechanism(moved, "delay_s", "before")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.blocks import registry
 from hystbench.gap.effects.base import (
     Effect,
     Law,
@@ -29,7 +28,5 @@ class SensorLag(Effect):
             yield self.inserted(scene, place, grids={"time_constant_s": times})
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer it behind the mechanism, short against the records' rates."""
-        own = {"time_constant_s": 2 * moved.step, "start": "settled"}
-        block = registry()[self.name].from_mapping(own)
-        yield Law("", block, ("time_constant_s",), "behind")
+        """Offer it behind the mechanism."""
+        yield self.beside_mechanism(moved, "time_constant_s", "behind", start="settled")

@@ -96,15 +96,7 @@ def masses(records: tuple[Record, ...], output: str, hold: Hold) -> Iterator[Sta
         rest = float(np.mean((wanted - columns @ [gain, offset]) ** 2))
         if gain == 0.0 or not np.isfinite(rest):
             continue
-        size = 1.0 / abs(gain)
-        block = replace(
-            unit,
-            mass=size,
-            damping=2 * ratio * w * size,
-            stiffness=w**2 * size,
-            gain=float(np.sign(gain)),
-        )
-        found.append((rest, (block, Gain(value=1.0, offset=offset))))
+        found.append((rest, (_times(unit, gain), Gain(value=1.0, offset=offset))))
     for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]:
         own = {0: ("mass", "damping", "stiffness"), 1: ("offset",)}
         yield _state(chain, records, hold, own)
@@ -140,20 +132,22 @@ def free_masses(
         gain, bias = _solved(columns, wanted).tolist()
         rest = float(np.mean((wanted - columns @ [gain, bias]) ** 2))
         if gain != 0.0 and np.isfinite(rest):
-            found.append((rest, rate, gain, bias))
+            found.append((rest, replace(_times(unit, gain), bias=bias / abs(gain))))
     if found:
-        _, rate, gain, bias = min(found)
-        size = 1.0 / abs(gain)
-        block = Mechanism(
-            mass=size,
-            damping=rate * size,
-            stiffness=0.0,
-            gain=float(np.sign(gain)),
-            bias=bias * size,
-            output=output,
-            hold=hold,
-        )
+        _, block = min(found, key=lambda item: item[0])
         yield _state((block,), records, hold, {0: ("mass", "damping", "bias")})
+
+
+def _times(unit: Mechanism, gain: float) -> Mechanism:
+    """Give a mechanism that moves so many times as far as one of mass one."""
+    size = 1.0 / abs(gain)
+    return replace(
+        unit,
+        mass=size,
+        damping=unit.damping * size,
+        stiffness=unit.stiffness * size,
+        gain=float(np.sign(gain)),
+    )
 
 
 def best_host(states: Sequence[State], score: Score) -> Fitted | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.errors import InputError
 from hystbench.gap.score import Score
@@ -41,7 +40,6 @@ def fitted(
     state: State,
     score: Score,
     evaluations: int = EVALUATIONS,
-    used: NDArray[np.bool_] | None = None,
 ) -> Fitted:
     """Fit the free numbers of a model to its records.
 
@@ -54,9 +52,9 @@ def fitted(
     score : Score
         Judges the result.
     evaluations : int
-    used : ndarray of bool, shape (scored samples,), optional
-        Samples that count in the fit; all by default.
     """
+    if not state.free:
+        return Fitted(state, judged(state, score))
     from scipy.optimize import least_squares  # late: a start alone needs none of it
 
     sizes = _sizes(state)
@@ -64,8 +62,6 @@ def fitted(
     values = np.array([state.value(free) for free in state.free])
     start = np.where(logs, np.log(np.where(logs, np.maximum(values, 1e-300), 1.0)), 0.0)
     weights = _weights(state)
-    if used is not None:
-        weights = weights * used
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
     def moved(point: FloatArray) -> State:
@@ -81,8 +77,6 @@ def fitted(
             return most  # out of what the blocks accept
         return np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
 
-    if not len(values):
-        return Fitted(state, score.of(state.residual, state.freedom))
     found = least_squares(
         residual,
         start,
@@ -143,14 +137,15 @@ def _sizes(state: State) -> FloatArray:
     Its own value; of a zero, what moves the output by its own rms.
     """
     sizes = np.ones(len(state.free))
+    all_now = np.array([state.value(free) for free in state.free])
     now = state.residual
     rms = float(np.sqrt(np.mean(state.measured**2)))
     for k, free in enumerate(state.free):
         if _positive(state, free):
             continue
-        value = abs(state.value(free))
+        value = abs(all_now[k])
         step = 1e-3 * value if value else 1e-6
-        values = np.array([state.value(item) for item in state.free])
+        values = all_now.copy()
         values[k] += step
         try:
             change = at_values(state, values).residual - now

@@ -65,7 +65,7 @@ def named_inside(
     named : Named
         What was named in the chain.
     quantities : Quantities
-        What the device takes and gives: without a known causality nothing is tried.
+        What the device takes and gives: they tell which hosts there are.
     say : callable
         Told a line of progress at a time.
     """

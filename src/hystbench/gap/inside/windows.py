@@ -78,7 +78,7 @@ def windows(record: Record) -> tuple[Record, ...]:
     starts = _starts(record)
     if len(starts) < 2:
         return (record,)
-    ends = [*starts[1:], len(record)]
+    ends, mask = [*starts[1:], len(record)], record.interpolated
     return tuple(
         replace(
             record,
@@ -87,6 +87,7 @@ def windows(record: Record) -> tuple[Record, ...]:
             y=record.y[a:b] - record.y[a],
             period_samples=None,
             simulated=None,
+            interpolated=None if mask is None else mask[a:b].copy(),
         )
         for k, (a, b) in enumerate(zip(starts, ends, strict=True))
         if b - a >= LEAST
