@@ -70,6 +70,10 @@ class Record:
         Samples at which ``u``, ``y`` or ``simulated`` was not measured but is a
         straight line between its neighbours. Models run over them; scores leave them
         out.
+    decay_s : float, optional
+        Of a record that begins in the middle of a motion: the time constant, in
+        seconds, with which an unknown velocity at its first sample dies out. Scores
+        leave out what such a velocity does.
     """
 
     name: str
@@ -83,6 +87,7 @@ class Record:
     period_samples: int | None = None
     simulated: FloatArray | None = None
     interpolated: Mask | None = None
+    decay_s: float | None = None
 
     def __post_init__(self) -> None:
         """Freeze the arrays: a record is evidence."""
@@ -113,6 +118,17 @@ class Record:
             return np.ones(len(self), dtype=np.bool_)
         return ~self.interpolated
 
+    @cached_property
+    def of_start(self) -> FloatArray:
+        """What an unknown velocity at the first sample does, shape (n, 0 or 1).
+
+        The way that a mass goes on while its velocity dies out.
+        """
+        if self.decay_s is None:
+            return np.zeros((len(self), 0))
+        way = -self.decay_s * np.expm1(-self.time / self.decay_s)
+        return cast(FloatArray, way[:, None])
+
     @property
     def rate(self) -> float:
         """How fast the input moves: rms(du/dt) / rms(u), in 1/s."""
@@ -124,6 +140,8 @@ class Record:
         """Digest of what the record holds: two that are alike have the same."""
         about = [self.name, self.dt, *asdict(self.input).values()]
         about += [*asdict(self.output).values(), self.use, self.period_samples]
+        if self.decay_s is not None:
+            about.append(self.decay_s)
         whole = blake2b(json.dumps(about).encode(), digest_size=16)
         for array in (self.u, self.y, self.simulated):
             whole.update(b"none" if array is None else array.tobytes())

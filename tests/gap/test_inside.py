@@ -9,7 +9,9 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Moved
 from hystbench.gap.inside.hosts import best_host, hosts
 from hystbench.gap.inside.search import search
-from hystbench.gap.inside.windows import is_free_mass, windows
+from hystbench.gap.inside.windows import decay_of_free_mass, windows
+from hystbench.gap.nuisance import left_over
+from hystbench.gap.sample import Sample
 from hystbench.gap.score import Score
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -78,10 +80,11 @@ MOVES = Quantities("force", "position")
 
 
 def test_a_mass_without_a_spring_is_known_by_its_records():
-    assert is_free_mass([mass(0.0)], MOVES)
-    assert not is_free_mass([mass(30.0)], MOVES)
-    assert not is_free_mass([mass(0.0)], Quantities("position", "force"))
-    assert not is_free_mass([replace(mass(0.0), use="hold-out")], MOVES)
+    decay = decay_of_free_mass([mass(0.0)], MOVES)
+    assert decay == pytest.approx(1 / 0.8, rel=0.2)  # mass over damping
+    assert decay_of_free_mass([mass(30.0)], MOVES) is None
+    assert decay_of_free_mass([mass(0.0)], Quantities("position", "force")) is None
+    assert decay_of_free_mass([replace(mass(0.0), use="hold-out")], MOVES) is None
 
 
 def test_windows_begin_at_rest_and_at_zero():
@@ -93,6 +96,19 @@ def test_windows_begin_at_rest_and_at_zero():
     for window in cut:
         assert window.y[0] == 0.0
         assert abs(window.y[1] - window.y[0]) / DT < 0.05 * fastest
+
+
+def test_what_a_velocity_at_the_first_sample_does_is_left_out():
+    whole = replace(mass(0.0), decay_s=1 / 0.8)
+    plain = replace(whole, decay_s=None)
+    pushed = replace(whole, y=whole.y + 0.3 * whole.of_start[:, 0])
+    sample = Sample.of([whole])
+    assert np.abs(sample.take([whole.y]) - sample.take([pushed.y])).max() < 1e-12
+    assert np.abs(Sample.of([plain]).take([whole.y - pushed.y])).max() > 0.05
+    residual, scored = left_over(pushed, whole.y, None)
+    assert scored.all()
+    assert np.abs(residual).max() < 1e-12
+    assert whole.digest != plain.digest
 
 
 def test_a_window_knows_which_of_its_samples_were_measured():

@@ -11,7 +11,7 @@ from hystbench.device_kinds import Kind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap import folds, nuisance
-from hystbench.gap.inside.windows import is_free_mass, windows
+from hystbench.gap.inside.windows import decay_of_free_mass, windows
 from hystbench.gap.usable import check_usable
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
@@ -115,9 +115,10 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
             "with 'use: fit'"
         )
     notes = doubts(dataset, records)
-    if is_free_mass(records, dataset.quantities):
+    decay = decay_of_free_mass(records, dataset.quantities)
+    if decay is not None:
         notes, named = (*notes, CUT), None
-        records = [window for record in records for window in windows(record)]
+        records = [window for record in records for window in windows(record, decay)]
     fit = tuple(record for record in records if record.use == "fit")
     hold_out = tuple(record for record in records if record.use == "hold-out")
     return Evidence(
@@ -139,7 +140,7 @@ LINEAR = "linear"
 
 CUT = (
     "a force moves a mass that no spring holds: every record is cut where the motion "
-    "turns, and each window starts at rest, at zero"
+    "turns; each window starts at zero, and what its velocity there does is left out"
 )
 
 

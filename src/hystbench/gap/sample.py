@@ -29,9 +29,13 @@ class Sample:
     ----------
     positions : tuple of ndarray of int
         By record, increasing.
+    of_start : tuple of ndarray, shape (samples, 0 or 1) each, optional
+        What an unknown velocity at the first sample of each record does there; it is
+        taken off every signal. By default no record has one.
     """
 
     positions: tuple[NDArray[np.intp], ...]
+    of_start: tuple[FloatArray, ...] = ()
 
     @classmethod
     def of(cls, records: Sequence[Record], count: int = SAMPLES) -> Sample:
@@ -45,7 +49,19 @@ class Sample:
             place = rng.random(len(edges) - 1)
             chosen = edges[:-1] + (place * np.diff(edges)).astype(np.intp)
             positions.append(measured[chosen])
-        return cls(tuple(positions))
+        if all(record.decay_s is None for record in records):
+            return cls(tuple(positions))
+        of_start = [
+            record.of_start[own] for record, own in zip(records, positions, strict=True)
+        ]
+        return cls(tuple(positions), tuple(of_start))
+
+    def on(self, kept: Sequence[int]) -> Sample:
+        """Give the sample of some of the records, by number."""
+        return Sample(
+            tuple(self.positions[k] for k in kept),
+            tuple(self.of_start[k] for k in kept) if self.of_start else (),
+        )
 
     @cached_property
     def slices(self) -> tuple[slice, ...]:
@@ -69,6 +85,23 @@ class Sample:
         -------
         ndarray, shape (scored samples,) or (scored samples, k)
         """
-        return np.concatenate(
-            [x[p] for x, p in zip(signals, self.positions, strict=True)]
-        )
+        taken = [x[p] for x, p in zip(signals, self.positions, strict=True)]
+        if self.of_start:
+            taken = [without(x, d) for x, d in zip(taken, self.of_start, strict=True)]
+        return np.concatenate(taken)
+
+
+def without(signal: FloatArray, column: FloatArray) -> FloatArray:
+    """Take off a signal what a column explains of it, by least squares.
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,) or (n, k)
+    column : ndarray, shape (n, 0 or 1)
+    """
+    square = float(np.sum(column**2))
+    if square == 0.0 or not np.all(np.isfinite(signal)):
+        return signal
+    return signal - (
+        column @ (column.T @ signal.reshape(len(signal), -1)) / square
+    ).reshape(signal.shape)

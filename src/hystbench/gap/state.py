@@ -105,7 +105,7 @@ class State:
         return replace(
             self,
             records=tuple(self.records[k] for k in kept),
-            sample=Sample(tuple(self.sample.positions[k] for k in kept)),
+            sample=self.sample.on(kept),
             correction=correction,
         )
 

@@ -3,7 +3,8 @@
 A mass without a spring adds up every small error of a force without end. On its whole
 record even the right effect looks useless. Where the motion turns, the velocity is
 zero, and where a free mass is does not matter: so a window that begins there begins at
-rest, for any model alike.
+rest but for the little that it moves until the nearest sample; what such a velocity
+does is left out of scores, for any model alike.
 """
 
 from __future__ import annotations
@@ -19,26 +20,36 @@ from hystbench.record import FloatArray, Record
 
 SPRING = 0.1
 """Share of the input's rms below which a spring's force is none."""
+LASTS = 1e6
+"""Time constant, in seconds, of a mass that nothing brakes."""
 LEAST = 100
 """Samples of a window, at least."""
 NEIGHBOURS = 5
 """Samples on either side through which a parabola gives velocity and acceleration."""
 
 
-def is_free_mass(records: Iterable[Record], quantities: Quantities) -> bool:
-    """Tell whether a force moves a mass that no spring holds.
+def decay_of_free_mass(
+    records: Iterable[Record], quantities: Quantities
+) -> float | None:
+    """Give the time constant of a mass that a force moves and no spring holds.
 
     The input of the fit records is put down to acceleration, velocity, position, dry
-    friction and a constant, by least squares.
+    friction and a constant, by least squares. The time constant is that with which the
+    velocity dies out: mass over damping, in seconds.
 
     Parameters
     ----------
     records : iterable of Record
         Only those with ``use: fit`` are looked at.
     quantities : Quantities
+
+    Returns
+    -------
+    float or None
+        None where it is another device.
     """
     if quantities.causality != "force to motion" or quantities.output != "position":
-        return False
+        return None
     columns, wanted = [], []
     for record in records:
         if record.use != "fit" or len(record) < 2 * LEAST:
@@ -58,17 +69,26 @@ def is_free_mass(records: Iterable[Record], quantities: Quantities) -> bool:
         )
         wanted.append(record.u)
     if not columns:
-        return False
+        return None
     stacked, u = np.vstack(columns), np.concatenate(wanted)
     sizes = np.maximum(np.sqrt(np.mean(stacked**2, axis=0)), 1e-300)
     found = np.linalg.lstsq(stacked / sizes, u, rcond=1e-10)[0]
     explained = float(np.mean((u - (stacked / sizes) @ found) ** 2))
     total = float(np.var(u))
-    return bool(explained < 0.5 * total and abs(found[2]) < SPRING * np.sqrt(total))
+    if explained > 0.5 * total or abs(found[2]) > SPRING * np.sqrt(total):
+        return None
+    mass, damping = found[:2] / sizes[:2]
+    return float(mass / damping) if mass > 0 and damping > 0 else LASTS
 
 
-def windows(record: Record) -> tuple[Record, ...]:
+def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
     """Cut a record where its motion turns; each window starts at zero, at rest.
+
+    Parameters
+    ----------
+    record : Record
+    decay_s : float, optional
+        Time constant with which an unknown velocity at its first sample dies out.
 
     Returns
     -------
@@ -88,6 +108,7 @@ def windows(record: Record) -> tuple[Record, ...]:
             period_samples=None,
             simulated=None,
             interpolated=None if mask is None else mask[a:b].copy(),
+            decay_s=decay_s,
         )
         for k, (a, b) in enumerate(zip(starts, ends, strict=True))
         if b - a >= LEAST
