@@ -127,7 +127,7 @@ class Record:
         if self.decay_s is None:
             return np.zeros((len(self), 0))
         way = -self.decay_s * np.expm1(-self.time / self.decay_s)
-        return cast(FloatArray, way[:, None])
+        return way[:, None]
 
     @property
     def rate(self) -> float:

@@ -9,7 +9,6 @@ import pytest
 from hystbench.blocks import registry
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import RandomBlock
-from hystbench.blocks.force import Force
 from hystbench.blocks.held import HeldBlock
 from hystbench.errors import InputError
 
@@ -42,7 +41,7 @@ def runnable(name):
     block = example(name)
     if not isinstance(block, AttachedBlock):
         return block
-    return block.attach(example("mechanism" if isinstance(block, Force) else "gpi"))
+    return block.attach(example("mechanism" if block.place == "inside" else "gpi"))
 
 
 def test_every_block_has_an_example():

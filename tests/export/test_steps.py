@@ -67,6 +67,9 @@ def variants():
                 if isinstance(own, WrappingBlock):
                     inner = ("gpi", "prandtl-ishlinskii")[draw % 2]
                     before = [registry()[inner].from_mapping(EXAMPLES[inner]), own]
+                if own.name == "other-modes":
+                    host = registry()["mechanism"]
+                    before = [host.from_mapping(EXAMPLES["mechanism"]), own]
                 if isinstance(own, Force):
                     host = ("mechanism", "impedance")[draw % 2]
                     before = [registry()[host].from_mapping(EXAMPLES[host]), own]
@@ -149,6 +152,15 @@ def mixed():
               "start_velocity": 0.5}),
             ("stiffness", EXAMPLES["stiffness"]),
             ("stop", EXAMPLES["stop"] | {"sides": "lower"}),
+        ),
+        "friction in one of three modes": chain_of(
+            ("mechanism", EXAMPLES["mechanism"] | {"output": "velocity"}),
+            ("friction-force", EXAMPLES["friction-force"]),
+            ("stiffness", EXAMPLES["stiffness"]),
+            ("other-modes", EXAMPLES["other-modes"]),
+            ("other-modes",
+             {**EXAMPLES["other-modes"], "numerator": [2.0], "start": "settled"}),
+            ("gain", {"value": -0.5}),
         ),
         "a settled coordinate": chain_of(
             ("gain", {"value": 1.0, "offset": 3.0}),

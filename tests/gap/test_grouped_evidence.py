@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from hystbench.gap.grouped_evidence import Products
+from hystbench.gap.grouped_evidence import Products, _factored
 
 ROWS = 2000
 
@@ -93,3 +93,19 @@ def test_a_column_of_zeros_and_no_group_at_all():
     power = np.mean(signal**2)
     assert products.explained([]).noise == pytest.approx(power)
     assert products.explained([range(2)]).noise == pytest.approx(power)
+
+
+def test_products_over_a_tiny_noise_are_inverted_where_rounding_hides_the_one():
+    # One plus v v^T / noise: along v the inverse is noise over v^T v, elsewhere one or,
+    # where rounding adds to the one, less.
+    v = np.random.default_rng(3).standard_normal(30)
+    noise = 1e-20
+    matrix = np.outer(v, v) / noise
+    matrix.flat[:: len(v) + 1] += 1.0
+    with pytest.raises(np.linalg.LinAlgError):
+        np.linalg.cholesky(matrix)
+    factor, determinant = _factored(matrix)
+    sizes = np.linalg.svd(factor, compute_uv=False)
+    assert sizes.max() == pytest.approx(1.0)
+    assert sizes.min() == pytest.approx(np.sqrt(noise / (v @ v)), rel=1e-6)
+    assert determinant == pytest.approx(-2 * np.log(sizes).sum())

@@ -7,6 +7,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
+from hystbench.blocks.base import Place
 from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
 from hystbench.blocks.parameter import HUGE, choice, numbers
 from hystbench.blocks.step import Sampling, Step
@@ -33,7 +34,7 @@ class TransferFunction(LinearBlock):
     """
 
     name: ClassVar = "transfer-function"
-    place: ClassVar = "base"
+    place: ClassVar[Place] = "base"
     reference: ClassVar = "Kailath, Linear Systems, 1980"
 
     numerator: tuple[float, ...] = numbers(

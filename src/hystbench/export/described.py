@@ -12,6 +12,7 @@ from typing import Any
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven, Host
+from hystbench.blocks.other_modes import OtherModes, Superposed
 from hystbench.blocks.step import LARGEST_POINTS, Sampling, Step
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
@@ -213,9 +214,9 @@ def describe(model: Model, sampling: Sampling) -> Described:
     def of_step(step: Any, sampling: Sampling) -> Piece:
         if isinstance(step, Driven):
             return of_block(step.host, step, sampling)
-        if not isinstance(step, Wrapped):
+        if not isinstance(step, Wrapped | Superposed):
             return of_block(step, step, sampling)
-        outer: WrappingBlock = step.by
+        outer: WrappingBlock | OtherModes = step.by
         around = of_block(outer, outer, sampling)
         times = max(around.step.drives, 1)
         inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times, ahead=0))

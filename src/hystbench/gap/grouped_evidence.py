@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg.lapack import dtrtri
+from scipy.linalg.lapack import dpotrf, dtrtri
 
 from hystbench.record import FloatArray
 
@@ -111,8 +111,7 @@ class Products:
             root = np.sqrt(variances)[member]
             scaled = gram * (root[:, None] * root) / noise
             scaled.flat[:: len(used) + 1] += 1.0
-            lower = np.linalg.cholesky(scaled)
-            inverse, _ = dtrtri(lower, lower=1)
+            inverse, determinant = _factored(scaled)
             white = inverse.T @ (inverse @ (root * across)) / noise
             amplitudes = root * white
             left = self.power - amplitudes @ (2 * across - gram @ amplitudes)
@@ -124,7 +123,6 @@ class Products:
             squares = variances * np.bincount(member, white**2)
             variances = np.maximum(squares / each, least * NOTHING)
             noise = left / max(self.rows - float(each.sum()), 1.0)
-        determinant = 2.0 * float(np.sum(np.log(np.diag(lower))))
         power = left + noise * float(white @ white)
         evidence = self._evidence(noise, determinant, power)
         return Grouped(noise, variances, evidence)
@@ -133,3 +131,18 @@ class Products:
         """Give the log density: ``power`` over the noise is the exponent's double."""
         spread = self.rows * float(np.log(2 * np.pi * noise))
         return -0.5 * (spread + determinant + power / noise)
+
+
+def _factored(matrix: FloatArray) -> tuple[FloatArray, float]:
+    """Give ``W`` with ``W^T W`` the inverse, and the determinant's logarithm.
+
+    The matrix is one plus what is not negative, so its eigenvalues are at least one.
+    Where noise is so small that rounding hides the one, they are set to it.
+    """
+    lower, failed = dpotrf(matrix, lower=1)
+    if not failed:
+        inverse, _ = dtrtri(lower, lower=1)
+        return np.tril(inverse), 2.0 * float(np.sum(np.log(np.diag(lower))))
+    values, vectors = np.linalg.eigh(matrix)
+    values = np.maximum(values, 1.0)
+    return (vectors / np.sqrt(values)).T, float(np.sum(np.log(values)))

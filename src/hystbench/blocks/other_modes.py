@@ -1,0 +1,82 @@
+"""Block ``other-modes``: what else a force moves beside a mechanism."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.base import Block
+from hystbench.blocks.force import Driven
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.errors import InputError
+from hystbench.record import FloatArray
+
+KEPT = 16
+"""Responses that are kept, at most."""
+_KEPT: OrderedDict[tuple[int, float, OtherModes], tuple[FloatArray, FloatArray]]
+_KEPT = OrderedDict()
+
+
+@dataclass(frozen=True)
+class OtherModes(TransferFunction, AttachedBlock):
+    """Linear response to what drives the mechanism before it, added to its output.
+
+    A structure of several modes is a ``mechanism`` for one of them, in which forces
+    may act, and the transfer function of all others here (modal superposition [1]_).
+    In the chain it stands behind the mechanism's forces.
+
+    References
+    ----------
+    .. [1] D. J. Ewins, Modal Testing: Theory, Practice and Application, 2nd ed.,
+       Research Studies Press, 2000, chapter 2.
+    """
+
+    name: ClassVar = "other-modes"
+    place: ClassVar = "inside"
+    hosts: ClassVar = "mechanism or a force inside one"
+    reference: ClassVar = "Ewins, Modal Testing, 2000"
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the response to ``z``.
+
+        The same record is asked for again and again while the numbers of the mechanism
+        are fitted, so that the last responses to records are kept.
+        """
+        if z.flags.writeable:
+            return super().simulate(z, u, dt)
+        key = (id(z), dt, self)
+        if key not in _KEPT:
+            while len(_KEPT) >= KEPT:
+                _KEPT.popitem(last=False)
+            y = super().simulate(z, u, dt)
+            y.setflags(write=False)
+            _KEPT[key] = z, y  # with z kept, no other array has its identity
+        return _KEPT[key][1]
+
+    def attach(self, before: Any) -> Superposed:
+        """Add the response to the output of the mechanism before."""
+        if not isinstance(before, Driven | Superposed) and (
+            getattr(before, "name", "") != "mechanism"
+        ):
+            raise InputError(
+                f"expected {self.hosts} just before it, got "
+                f"{getattr(before, 'name', 'none')}"
+            )
+        return Superposed(before, self)
+
+
+@dataclass(frozen=True)
+class Superposed:
+    """A mechanism with its forces, and other modes beside it."""
+
+    inner: Block | Driven | Superposed
+    by: OtherModes
+
+    hysteretic: ClassVar[bool] = False
+    name: ClassVar[str] = "mechanism and other modes"
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output, as :meth:`Block.simulate` does."""
+        return self.inner.simulate(z, u, dt) + self.by.simulate(z, u, dt)

@@ -1,0 +1,160 @@
+"""Modes of a transfer function: one of them as a mechanism, the others beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.blocks.band_limited import ComplexArray
+from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_modes import OtherModes
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.state import Free, State
+from hystbench.record import FloatArray
+
+NUMBERS = ("mass", "damping", "stiffness", "blend")
+"""Of a mode."""
+APART = 1e-6
+"""Share of its size by which a pole must be away from all others."""
+
+
+def modes(start: State, output: str) -> Iterator[State]:
+    """Give a linear model with one of its modes as a mechanism.
+
+    The model does what it did. The modes come in the order in which they deserve a
+    force inside: first the one whose own numbers, were they free in every record,
+    would take most of the residual away. A mode that is linear has the same numbers at
+    every level.
+
+    Parameters
+    ----------
+    start : State
+        Its chain is a transfer function of two oscillating modes or more, and gains;
+        of any other nothing is given.
+    output : {"position", "velocity", "acceleration"}
+
+    Yields
+    ------
+    State
+        The numbers of the mode are free, those of the others are not.
+    """
+    block, *behind = start.chain
+    if not isinstance(block, TransferFunction):
+        return
+    if not all(isinstance(item, Gain) for item in behind):
+        return
+    found: list[tuple[float, int, State]] = []
+    for split in split_modes(block, output):
+        state = replace(
+            start,
+            chain=(*split, *behind),
+            free=tuple(Free(0, name) for name in NUMBERS),
+        ).settled()
+        found.append((-_explained_by_levels(state), len(found), state))
+    for *_, state in sorted(found):
+        yield state
+
+
+def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block]]:
+    """Write a transfer function as a mechanism and other modes, in every way.
+
+    With the residues R of a pair of poles p the mode is
+    ``2 (Re R (s - Re p) - Im R Im p) / (s^2 + c s + k)``: a motion of the coordinate
+    and a share of the next derivative.
+
+    Parameters
+    ----------
+    block : TransferFunction
+    output : {"position", "velocity", "acceleration"}
+        What motion of the mechanism the output is.
+
+    Returns
+    -------
+    list of (Mechanism, OtherModes)
+        By frequency; empty if fewer than two modes oscillate, or two poles coincide.
+    """
+    down, up = np.array(block.denominator), np.array(block.numerator)
+    poles = np.asarray(np.roots(down), dtype=np.complex128)
+    away = np.abs(poles[:, None] - poles) + np.diag(np.abs(poles))
+    pairs = [int(k) for k in np.argsort(np.abs(poles)) if poles[k].imag > 0]
+    if len(pairs) < 2 or np.any(away < APART * np.abs(poles)):
+        return []
+    direct = float(up[0] / down[0]) if len(up) == len(down) else 0.0
+    slopes = np.polyval(np.polyder(down), poles)
+    residues = np.polyval(up, poles) / slopes
+    return [_split(block, poles, residues, direct, k, output) for k in pairs]
+
+
+def _split(
+    block: TransferFunction,
+    poles: ComplexArray,
+    residues: ComplexArray,
+    direct: float,
+    k: int,
+    output: str,
+) -> tuple[Block, Block]:
+    pole, residue = poles[k], residues[k]
+    damping, stiffness = -2 * pole.real, abs(pole) ** 2
+    rate = 2 * residue.real
+    constant = -2 * (residue.real * pole.real + residue.imag * pole.imag)
+    if output == "position":
+        size, blend, through = constant, rate / constant, 0.0
+    elif output == "velocity":
+        size = rate - damping * constant / stiffness
+        blend = -constant / (stiffness * size)
+        through = size * blend
+    else:
+        size = -constant / stiffness
+        blend = rate / size + damping
+        through = size
+    mass = 1 / abs(size)
+    mode = Mechanism(
+        mass=float(mass),
+        damping=float(damping * mass),
+        stiffness=float(stiffness * mass),
+        gain=float(np.sign(size)),
+        output=output,
+        blend=float(blend),
+        start=block.start,
+        hold=block.hold,
+    )
+    others = [i for i in range(len(poles)) if poles[i] not in (pole, pole.conjugate())]
+    return mode, _sum_of(block, poles[others], residues[others], direct - through)
+
+
+def _sum_of(
+    block: TransferFunction,
+    poles: ComplexArray,
+    residues: ComplexArray,
+    direct: float,
+) -> OtherModes:
+    """Join simple poles and a constant to one ratio."""
+    down = np.poly(poles)
+    up = direct * down.astype(np.complex128)
+    for i in range(len(poles)):
+        up[1:] = up[1:] + residues[i] * np.poly(np.delete(poles, i))
+    return OtherModes(
+        numerator=tuple(up.real.tolist()),
+        denominator=tuple(down.real.tolist()),
+        start=block.start,
+        hold=block.hold,
+    )
+
+
+def _explained_by_levels(state: State) -> float:
+    """Mean share of a record that other numbers of the mode in it would explain."""
+    shares = []
+    for part in state.sample.slices:
+        rest, columns = state.residual[part], _unit(state.tangents[part])
+        basis = np.linalg.qr(columns)[0]
+        shares.append(float(np.sum((basis.T @ rest) ** 2) / np.sum(rest**2)))
+    return float(np.mean(shares))
+
+
+def _unit(columns: FloatArray) -> FloatArray:
+    sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    return np.asarray(columns / sizes)
