@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Moved
-from hystbench.gap.inside.hosts import best_host, hosts
+from hystbench.gap.inside.hosts import best_host, one_coordinate
 from hystbench.gap.inside.search import search
 from hystbench.gap.inside.windows import decay_of_free_mass, windows
 from hystbench.gap.nuisance import left_over
@@ -37,7 +37,7 @@ def damper(size, frequency, seed):
 @pytest.fixture(scope="module")
 def found():
     records = tuple(damper(s, f, k) for k, (s, f) in enumerate([(2, 1.3), (5, 0.7)]))
-    begun = list(hosts(records, Quantities("position", "force"), "linear"))
+    begun = list(one_coordinate(records, Quantities("position", "force"), "linear"))
     score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
     return search(best_host(begun, score), score, offered=["friction", "drag"])
 
@@ -59,8 +59,8 @@ def test_a_host_without_a_force_stands_first(found):
 
 
 def test_a_store_has_no_impedance():
-    given = hosts((damper(2, 1.3, 0),), Quantities("position", "level"), "linear")
-    assert list(given) == []
+    level = Quantities("position", "level")
+    assert list(one_coordinate((damper(2, 1.3, 0),), level, "linear")) == []
 
 
 def mass(spring):

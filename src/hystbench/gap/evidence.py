@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset
 from hystbench.device_kinds import Kind
@@ -12,6 +13,7 @@ from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap import folds, nuisance
 from hystbench.gap.inside.windows import decay_of_free_mass, windows
+from hystbench.gap.unseen import may_hold
 from hystbench.gap.usable import check_usable
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
@@ -135,9 +137,6 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
     )
 
 
-LINEAR = "linear"
-"""Name of the base that is identified as a linear model."""
-
 CUT = (
     "a force moves a mass that no spring holds: every record is cut where the motion "
     "turns; each window starts at zero, and what its velocity there does is left out"
@@ -176,8 +175,12 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
 def inside_of(base: Model, evidence: Evidence) -> Quantities | None:
     """Give what the device takes and gives, where forces may be tried inside the base.
 
-    That is where the base is a linear model that was identified: one that a user gives
-    is not replaced by another. None elsewhere.
+    That is where the base may be linear: nothing in it remembers a way, nor holds a
+    force already. None elsewhere.
     """
-    identified = base.name == LINEAR and bool(base.free)
-    return evidence.quantities if identified else None
+    for block in base.chain:
+        if isinstance(block, AttachedBlock) or block.hysteretic:
+            return None
+        if may_hold(block, evidence.fit):
+            return None
+    return evidence.quantities

@@ -14,6 +14,7 @@ from hystbench.blocks.held import Hold
 from hystbench.gap.augmented import augmented
 from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.compared import Compared
+from hystbench.gap.effects import among
 from hystbench.gap.experiment import Experiment
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
@@ -128,8 +129,8 @@ def find(
     offered : tuple of str, optional
         Effects that may be named; all by default.
     quantities : Quantities, optional
-        What the device takes and gives, where the base is a linear model that was
-        identified: forces are then tried inside the dynamics too.
+        What the device takes and gives, where forces are to be tried inside the
+        dynamics too.
 
     Raises
     ------
@@ -137,6 +138,9 @@ def find(
         If the base does not run on the records, or no excitation fits the limits.
     """
     limits = Limits.within(records, asked) if asked else None
+    if any(record.decay_s is not None for record in records):
+        # A path of its own in every window is what an integrator makes of any error.
+        offered = tuple(effect for effect in among(offered) if effect != "drift")
     start, floor = start_state(records, base, hold, declared, offered)
     named = name(start, floor.rms, say)
     start, named, own = named_apart(start, floor.rms, named, say)

@@ -1,10 +1,15 @@
-"""Linear hosts: what forces can act inside of, fitted without any of them."""
+"""Linear hosts: what forces can act inside of, fitted without any of them.
+
+Where the base was identified from the records, hosts are fitted to them too. A base
+that a user gives stands for itself: a host takes its place only if it simulates the
+same, as a mass on a spring does in whatever way it was written.
+"""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,10 +18,14 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.gap.compared import rms
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.inside.modes import modes
 from hystbench.gap.sample import Sample
+from hystbench.gap.scene import Scene
 from hystbench.gap.score import Score
 from hystbench.gap.state import Free, State
+from hystbench.gap.unnamed import SHARE
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
@@ -27,9 +36,90 @@ RATIOS = (0.01, 0.05, 0.2, 0.7, 2.0)
 BEGUN = 3
 """Starts that are fitted, the best ones of the grid."""
 MOTIONS = ("position", "velocity", "acceleration")
+TRIED = 2
+"""Modes of a base in which forces are tried, those that need it most."""
+
+
+@dataclass(frozen=True)
+class Host:
+    """A linear model that forces may act inside of.
+
+    Parameters
+    ----------
+    alone : State
+        What the gap is counted from.
+    fitted : Fitted
+        The same, its numbers fitted to the records: what forces are put in.
+    words : str
+        How it stands in place of the base.
+    """
+
+    alone: State
+    fitted: Fitted
+    words: str
 
 
 def hosts(
+    start: State, quantities: Quantities, identified: bool, score: Score
+) -> Iterator[Host]:
+    """Give the linear models that forces are tried in.
+
+    Parameters
+    ----------
+    start : State
+        The base on the fit records.
+    quantities : Quantities
+        What the device takes and gives.
+    identified : bool
+        Whether the base was identified from the records.
+    score : Score
+    """
+    if identified:
+        begun = one_coordinate(start.records, quantities, start.hold)
+        best = best_host(list(begun), score)
+        if best is not None:
+            words = "a model of one coordinate stands in place of the linear base"
+            yield Host(best.state, best, words)
+    else:
+        same = same_as(start, quantities)
+        if same is not None:
+            words = "a model of one coordinate, which simulates the same, stands for it"
+            yield Host(same, fitted(same, score), words)
+    known = quantities.output in MOTIONS
+    split = modes(start, quantities.output if known else "position")
+    for mode in itertools.islice(split, TRIED):
+        best, block = fitted(mode, score), mode.chain[0]
+        assert isinstance(block, Mechanism)  # noqa: S101  (for the type checker)
+        frequency = np.sqrt(block.stiffness / block.mass) / (2 * np.pi)
+        words = f"its mode at {frequency:.3g} Hz stands beside the others"
+        yield Host(best.state if identified else mode, best, words)
+
+
+def same_as(start: State, quantities: Quantities) -> State | None:
+    """Give a model of one coordinate that simulates what a given base does.
+
+    It may differ by as much of the gap as may stay unnamed. Of a base that a gain and
+    an offset do as well there is none: nothing moves in it.
+    """
+    outputs = Scene(start.chain, start.records, start.hold, fine=True).output
+    simulated = tuple(
+        replace(record, y=y, simulated=None, interpolated=None)
+        for record, y in zip(start.records, outputs, strict=True)
+    )
+    most = SHARE * float(np.mean(start.residual**2))
+    u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], outputs))
+    static = np.column_stack([u, np.ones(len(u))])
+    if np.mean((wanted - static @ _solved(static, wanted)) ** 2) < most:
+        return None
+    nothing = np.zeros((len(wanted), 0))
+    score = Score(Sample.of(simulated), nothing, 1e-3 * most)
+    best = best_host(list(one_coordinate(simulated, quantities, start.hold)), score)
+    if best is None or rms(best.state.residual) ** 2 > most:
+        return None
+    return replace(best.state, records=start.records, sample=start.sample).settled()
+
+
+def one_coordinate(
     records: tuple[Record, ...], quantities: Quantities, hold: Hold
 ) -> Iterator[State]:
     """Give linear models of one coordinate, with all their numbers free, begun.

@@ -18,6 +18,9 @@ QUICK = 8
 STEP = 1e-3
 """Share of its size by which a number moves for a derivative: more than what a force
 that is not smooth makes of rounding."""
+SMALL = 1e-4
+"""Share by which a step must lower the squares, or move the numbers, for another to
+follow: the score changes by less than a tenth of what a number costs."""
 OUT = 1e3
 """Residual, in times of the output's size, of a model that runs away."""
 
@@ -83,8 +86,8 @@ def fitted(
         x_scale=np.ones(len(start)),
         diff_step=STEP,
         max_nfev=evaluations,
-        xtol=1e-6,
-        ftol=1e-6,
+        xtol=SMALL,
+        ftol=SMALL,
     )
     best = moved(found.x)
     return Fitted(best, judged(best, score))

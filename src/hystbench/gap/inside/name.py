@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.inside.hosts import best_host, hosts
+from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.search import Hypothesis, search
 from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, Round
@@ -50,15 +50,14 @@ def named_inside(
 ) -> Inside | None:
     """Find effects inside the dynamics; None where the chain explains as much.
 
-    The base was identified as a linear model. In its place a linear model of one
-    coordinate is fitted, forces are put inside, and the result must lower the score of
-    records held back against what was named in the chain, by as much as any effect has
-    to pay.
+    In place of the base stands a linear model of one coordinate, or the base itself
+    with one of its modes as a mechanism (:func:`hosts`). Forces are put inside, and
+    the result must lower the score of records held back against what was named in the
+    chain, by as much as any effect has to pay.
 
     Parameters
     ----------
     base : Model
-        The linear model that was identified.
     start : State
         The same on the fit records.
     floor_rms : float
@@ -69,15 +68,17 @@ def named_inside(
     say : callable
         Told a line of progress at a time.
     """
-    begun = list(hosts(start.records, quantities, start.hold))
     nothing = np.zeros((len(start.sample), 0))
     score = Score(start.sample, nothing, floor_rms**2)
-    host = best_host(begun, score)
-    if host is None:
-        return None
     turns = start.records[0].output.unit == "rad"
-    found = search(host, score, turns, start.offered, say)
-    best = _chosen(found)
+    tried = [
+        (host, search(host.fitted, score, turns, start.offered, say))
+        for host in hosts(start, quantities, bool(base.free), score)
+    ]
+    if not tried:
+        return None
+    host, found = min(tried, key=lambda item: charged(chosen(item[1])))
+    best = chosen(found)
     if not best.effects:
         say("inside: no force pays")
         return None
@@ -87,15 +88,12 @@ def named_inside(
     say(f"inside: {names}: gain {gain:.1f} on records held back")
     if gain < PAYS:
         return None
-    alone = replace(host.state, offered=start.offered).settled()
-    floor = floor_rms**2
-    unit = base.output.unit
-    left = (float(np.sqrt(max(x.power(floor), 0.0))) for x in (start, alone))
-    order, one = (f"{rms:.3g} {unit}" for rms in left)
+    alone = replace(host.alone, offered=start.offered).settled()
+    left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
+    before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
     sentence = (
-        f"the linear base of any order, which leaves {order} rms of the fit records "
-        f"above the floor, gave way to one of a single coordinate, which leaves {one}: "
-        "forces act inside it"
+        f"{host.words}: forces act inside it (rms of the fit records above the floor: "
+        f"{before} of the base, {after} of what stands for it)"
     )
     rounds = _rounds(alone, score, best, found)
     model = Model(base.name, base.input, base.output, alone.chain)
@@ -106,13 +104,14 @@ def named_inside(
     )
 
 
-def _chosen(found: Sequence[Hypothesis]) -> Hypothesis:
-    """Take the least score; a first effect has to pay, and each further one more."""
+def charged(item: Hypothesis) -> float:
+    """Give the score: a first effect has to pay, and each further one more."""
+    count = len(item.effects)
+    return item.score + (PAYS + FURTHER * (count - 1) if count else 0.0)
 
-    def charged(item: Hypothesis) -> float:
-        count = len(item.effects)
-        return item.score + (PAYS + FURTHER * (count - 1) if count else 0.0)
 
+def chosen(found: Sequence[Hypothesis]) -> Hypothesis:
+    """Take the least score with what effects have to pay."""
     return min(found, key=charged)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,16 +12,23 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
+from hystbench.gap.compared import rms
 from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Law, Moved
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import Added, Free, State
+from hystbench.gap.thresholds import PAYS
+from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
 alone may gain much together."""
+TRIED = 2
+"""Times as many are fitted to the end as are carried on."""
+STARTS = 3
+"""Laws and starts of one effect that are fitted roughly."""
 
 
 @dataclass(frozen=True)
@@ -82,16 +89,15 @@ def search(
     found = [alone]
     carried = [alone]
     for keep in (SINGLES, PAIRS, 1):
-        further: dict[frozenset[str], Hypothesis] = {}
-        for before in carried:
-            for name, own in laws.items():
-                key = frozenset((*before.effects, name))
-                if name in before.effects or key in further:
-                    continue
-                best = put_in(before, name, own, score)
-                if best is not None:
-                    further[key] = best
-        best_first = sorted(further.values(), key=lambda item: item.score)
+        carried = [item for item in carried if may_gain(item, score)]
+        begun = [
+            further
+            for before in carried
+            for name, own in laws.items()
+            if name not in before.effects
+            for further in starts(before, name, own, score)
+        ]
+        best_first = fitted_likely(begun, score, TRIED * keep if keep > 1 else TRIED)
         for item in best_first[:3]:
             say(
                 f"inside: {' + '.join(item.effects)}: "
@@ -99,34 +105,84 @@ def search(
             )
         found += best_first
         carried = [item for item in best_first[:keep] if item.score < host.score]
-        if not carried:
-            break
     return found
 
 
-def put_in(
-    before: Hypothesis, effect: str, laws: Sequence[Law], score: Score
-) -> Hypothesis | None:
-    """Put a further force inside, by the law and the start that score least.
+def may_gain(item: Hypothesis, score: Score) -> bool:
+    """Tell whether a further force could gain what it has to pay."""
+    return item.score - score.least(item.fitted.state.freedom) > PAYS
 
-    Every law is fitted to the end from the better of its starts.
+
+def starts(
+    before: Hypothesis, effect: str, laws: Sequence[Law], score: Score
+) -> Iterator[Hypothesis]:
+    """Put a further force inside, by each law and start, with the score to be expected.
+
+    The residual is explained by what the force does as it starts, as one column, and
+    by what changes of all numbers do, by least squares.
     """
-    quick: dict[str, Fitted] = {}
+    state = before.fitted.state
+    tangents = state.tangents
     for law in laws:
-        state = with_law(before.fitted.state, effect, law)
-        if not np.all(np.isfinite(state.residual)):
+        begun = with_law(state, effect, law)
+        if not np.all(np.isfinite(begun.residual)):
             continue
-        own = fitted(state, score, QUICK)
-        if law.form not in quick or own.score < quick[law.form].score:
-            quick[law.form] = own
-    if not quick:
-        return None
-    done = {form: fitted(own.state, score) for form, own in quick.items()}
-    form = min(done, key=lambda key: done[key].score)
-    if not np.isfinite(done[form].score):
-        return None
-    effects, forms = (*before.effects, effect), (*before.forms, form)
-    return Hypothesis(effects, forms, done[form])
+        columns = np.column_stack([tangents, state.residual - begun.residual])
+        sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+        weights = _by_record(state)[:, None]
+        found = np.linalg.lstsq(
+            columns / sizes * weights, state.residual * weights[:, 0], rcond=1e-8
+        )[0]
+        rest = state.residual - columns / sizes @ found
+        expected = score.of(rest, begun.freedom)
+        effects, forms = (*before.effects, effect), (*before.forms, law.form)
+        yield Hypothesis(effects, forms, Fitted(begun, expected))
+
+
+def _by_record(state: State) -> FloatArray:
+    """Give one over the rms of the residual of each record, for all its samples."""
+    weights = np.empty(len(state.residual))
+    for part in state.sample.slices:
+        weights[part] = 1.0 / max(float(rms(state.residual[part])), 1e-300)
+    return weights
+
+
+def fitted_likely(
+    begun: Iterable[Hypothesis], score: Score, count: int
+) -> list[Hypothesis]:
+    """Fit the hypotheses that promise most: roughly first, the best of them to the end.
+
+    Parameters
+    ----------
+    begun : iterable of Hypothesis
+        With the scores to be expected.
+    score : Score
+    count : int
+        How many, each by its best law and start, are fitted to the end; twice as many
+        roughly, by up to two starts.
+
+    Returns
+    -------
+    list of Hypothesis
+        Those that were fitted to the end, the least score first.
+    """
+    likely: dict[frozenset[str], list[Hypothesis]] = {}
+    for item in sorted(begun, key=lambda item: item.score):
+        likely.setdefault(frozenset(item.effects), []).append(item)
+    rough = []
+    for own in list(likely.values())[: 2 * count]:
+        tried = [
+            replace(item, fitted=fitted(item.fitted.state, score, QUICK))
+            for item in own[:STARTS]
+        ]
+        rough.append(min(tried, key=lambda item: item.score))
+    rough.sort(key=lambda item: item.score)
+    done = [
+        replace(item, fitted=fitted(item.fitted.state, score)) for item in rough[:count]
+    ]
+    return sorted(
+        (item for item in done if np.isfinite(item.score)), key=lambda item: item.score
+    )
 
 
 def with_law(state: State, effect: str, law: Law) -> State:
