@@ -1,4 +1,4 @@
-"""Fitting all free numbers of a model together, by SciPy's trust region."""
+"""Fitting all free numbers of a model together, by Levenberg and Marquardt's steps."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from hystbench.gap.state import Free, State
 from hystbench.record import FloatArray
 
 EVALUATIONS = 40
-"""Of the residual in one fit, at most, without those of the derivatives."""
+"""Steps in one fit, at most; each takes as many simulations as there are numbers, and
+one."""
 QUICK = 8
 """The same where starts are compared."""
 STEP = 1e-3
@@ -83,9 +84,10 @@ def fitted(
     found = least_squares(
         residual,
         start,
+        method="lm",  # a trust region would take a singular value decomposition a step
         x_scale=np.ones(len(start)),
         diff_step=STEP,
-        max_nfev=evaluations,
+        max_nfev=evaluations * (len(start) + 1),
         xtol=SMALL,
         ftol=SMALL,
     )
