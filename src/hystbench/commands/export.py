@@ -9,12 +9,15 @@ import click
 from hystbench import options
 from hystbench.blocks.held import HOLDS, Hold
 from hystbench.blocks.step import LARGEST_POINTS, Sampling
+from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
-from hystbench.export.described import describe
+from hystbench.export.described import Described, describe
 from hystbench.export.inverse import Ends, describe_inverse
+from hystbench.export.past import begun
 from hystbench.files import whole_folder
-from hystbench.model import load_model
+from hystbench.model import Model, load_model
+from hystbench.record import column_name
 
 
 @click.command()
@@ -45,6 +48,12 @@ from hystbench.model import load_model
     "--duration", type=float, help="Length in seconds of the record of a path of drift."
 )
 @click.option(
+    "--past",
+    type=options.FILE,
+    help="CSV file with time_s and the input, such as current_A: the code starts as "
+    "the simulation of this record, where MODEL says 'start: settled' or 'moving'.",
+)
+@click.option(
     "--hold",
     type=click.Choice(HOLDS),
     help="How the input moves between samples where MODEL does not say.",
@@ -64,6 +73,7 @@ def export(
     points: int,
     delay: int,
     duration: float | None,
+    past: Path | None,
     hold: Hold | None,
     inverse: bool,
     limit_low: float | None,
@@ -79,6 +89,8 @@ def export(
     if hold is not None:
         system = system.with_hold(hold)
     limits = (limit_low, limit_high)
+    if inverse and past is not None:
+        raise InputError("--past: expected none beside --inverse")
     if not inverse and limits != (None, None):
         raise InputError("--limit-low and --limit-high: expected them with --inverse")
     sampling = Sampling(dt, points, duration, delay)
@@ -91,6 +103,8 @@ def export(
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None
+    if past is not None:
+        described = _with_past(described, system, past)
     name = described.name
     names = {
         "c": [f"{name}.h", f"{name}.c"],
@@ -109,6 +123,16 @@ def export(
     click.echo(f"{', '.join(told)}: {described.about}")
     for line in [described.memory, *described.differences]:
         click.echo(line)
+
+
+def _with_past(described: Described, system: Model, file: Path) -> Described:
+    """Let the code start as on a record."""
+    name = column_name(system.input.name, system.input.unit)
+    dt, u = read_input(file, name)
+    wanted = described.sampling.dt
+    if abs(dt - wanted) > 1e-6 * wanted:
+        raise InputError(f"{file}: sampled every {dt:g} s; expected --dt, {wanted:g} s")
+    return begun(described, system, u)
 
 
 def _both(low: float | None, high: float | None) -> Ends:

@@ -11,9 +11,15 @@ from typing import Any
 
 import numpy as np
 
+from hystbench import kernels
 from hystbench.export.described import Described, Piece, needed
 
-LIBRARY = tuple(Path(__file__).with_name(name) for name in ("steps.c", "inside.c"))
+#: The laws of forces are those of the compiled kernel.
+LIBRARY = (
+    Path(kernels.__file__).with_name("forces.c"),
+    Path(__file__).with_name("steps.c"),
+    Path(__file__).with_name("inside.c"),
+)
 WIDTH = 88
 
 
@@ -38,7 +44,7 @@ def header(model: Described) -> str:
             *(states or ["    double none; /* the model remembers nothing */"]),
             f"}} {name}_state;",
             "",
-            "/* Nothing has ever entered. */",
+            _comment([model.begins]),
             f"void {name}_init({name}_state *state);",
             "",
             _comment(
@@ -82,6 +88,10 @@ def body(model: Described) -> str:
         for key, value in piece.step.constants.items()
         if isinstance(value, np.ndarray)
     ]
+    parts += [
+        _array(f"{model.name}_{state}_start", value)
+        for state, value in model.starts.items()
+    ]
     for piece in model.pieces:
         parts += [_wrapped(model, part) for part in piece.all_inside() if piece.inner]
     lines = [
@@ -99,8 +109,20 @@ def body(model: Described) -> str:
             lines.append(f"    if (call < {piece.wait}) return 0; /* none yet */")
     used = [] if any(model.all_states()) else ["    (void)s;"]
     name = model.name
+    begun = [
+        f"    memcpy(s->{state}, {name}_{state}_start, sizeof s->{state});"
+        for state in model.starts
+    ]
     parts += [
-        f"void {name}_init({name}_state *s)\n{{\n    memset(s, 0, sizeof *s);\n}}",
+        "\n".join(
+            [
+                f"void {name}_init({name}_state *s)",
+                "{",
+                "    memset(s, 0, sizeof *s);",
+                *begun,
+                "}",
+            ]
+        ),
         "\n".join(
             [
                 f"double {name}_step({name}_state *s, double input)",

@@ -5,18 +5,18 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven, Host
-from hystbench.blocks.step import LARGEST_POINTS, Sampling, Step
+from hystbench.blocks.step import LARGEST_POINTS, UNKNOWN_PAST, Sampling, Step
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.model import Model
-from hystbench.record import Channel
+from hystbench.record import Channel, FloatArray
 
 LARGEST_STATE = 1_000_000
 """Numbers of 8 bytes that a state may hold: 8 MB, far more than a controller has."""
@@ -87,6 +87,8 @@ class Described:
     input, output : Channel
     sampling : Sampling
     pieces : tuple of Piece
+    starts : mapping of str to ndarray of float
+        What states are at the start, by name; the others are zero.
     """
 
     name: str
@@ -95,6 +97,7 @@ class Described:
     output: Channel
     sampling: Sampling
     pieces: tuple[Piece, ...]
+    starts: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def all_pieces(self) -> Iterator[Piece]:
         """Give every piece, what is inside another before it."""
@@ -129,11 +132,22 @@ class Described:
             f"({delay * self.sampling.dt:.12g} s), as asked; the first "
             f"{f'{delay} are' if delay > 1 else 'is'} 0."
         ]
-        return late[: bool(delay)] + [
-            f"{piece.label} {piece.step.differs}."
-            for piece in self.all_pieces()
-            if piece.step.differs
-        ]
+        told = late[: bool(delay)]
+        for piece in self.all_pieces():
+            own = [piece.step.differs]
+            if not self.starts:
+                own.append(UNKNOWN_PAST.get(piece.step.past, ""))
+            said = "; ".join(filter(None, own))
+            if said:
+                told.append(f"{piece.label} {said}.")
+        return told
+
+    @property
+    def begins(self) -> str:
+        """Say what the code has seen at its start."""
+        if self.starts:
+            return "It starts as on the record that it was exported with."
+        return "Nothing has ever entered."
 
     @property
     def memory(self) -> str:

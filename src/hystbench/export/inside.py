@@ -1,7 +1,7 @@
 """A coordinate with forces inside, a function for each step as in steps.py.
 
-The functions of inside.c in Python. A force is a row of six numbers: its law's number,
-and those of the law.
+The functions of inside.c and forces.c in Python. A force is a row of six numbers: its
+law's number, and those of the law.
 """
 
 from __future__ import annotations
@@ -171,11 +171,14 @@ def way_of(count, forces, memory, q, alone, gives, h):
     """Find the way from q whose mean force leaves it, by Chandrupatla's method."""
 
     def miss(way):
-        each = (
-            mean_force(forces[6 * i : 6 * i + 6], q, way, way / h, memory[i])
-            for i in range(count)
-        )
-        return way - alone + gives * sum(each)
+        total = 0.0
+        for i in range(count):
+            f = forces[6 * i : 6 * i + 6]
+            if h > 0:
+                total += mean_force(f, q, way, way / h, memory[i])
+            else:  # on the way to a place of rest the force at its end counts
+                total += inner_force(f, q + way, 0.0, memory[i])
+        return way - alone + gives * total
 
     a, b = 0.0, alone
     at_a, at_b = miss(a), miss(b)
@@ -214,6 +217,12 @@ def way_of(count, forces, memory, q, alone, gives, h):
     return a if abs(at_a) < abs(at_b) else b
 
 
+def balance(stiffness, p, count, forces, memory):
+    """Find where springs hold a force, next to where the linear one alone does."""
+    q = p / stiffness
+    return q + way_of(count, forces, memory, q, 0.0, 1 / stiffness, 0.0)
+
+
 def mechanism(
     gain,
     bias,
@@ -237,7 +246,9 @@ def mechanism(
     moves, p = history[0] > 0, gain * z + bias
     remember(points, history, p)
     if not moves:
-        motion[:] = start[0] + start[2] * p, start[1]
+        motion[:] = start[0], start[1]
+        if start[2] > 0:
+            motion[0] += balance(start[2], p, count, forces, memory)
     x, w = motion
     places = corners.reshape(segments + 1, points) @ history[1:]
     gives, brakes = step[2] + step[3], step[6] + step[7]

@@ -17,7 +17,7 @@ from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
 from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
 from hystbench.blocks.step import (
-    PASSED_ONCE,
+    PASSED,
     Sampling,
     Step,
     polynomial,
@@ -110,14 +110,14 @@ def _plays(block: GeneralizedPrandtlIshlinskii | PrandtlIshlinskii, ends: Ends) 
     count = len(block.thresholds)
     terms, path, envelope = np.zeros((3, count)), 0.0, np.zeros(8)
     terms[0] = block.weights
-    differs = ""
+    past = ""
     if isinstance(block, PrandtlIshlinskii):
         path = 1.0
         for row, values in enumerate((block.square_weights, block.cube_weights), 1):
             terms[row] = values or 0.0
     else:
         envelope = np.array(block.envelope)
-        differs = PASSED_ONCE if block.start == "settled" else ""
+        past = PASSED if block.start == "settled" else ""
     constants = {
         "path": path,
         "own": int(path == 0.0),
@@ -128,7 +128,7 @@ def _plays(block: GeneralizedPrandtlIshlinskii | PrandtlIshlinskii, ends: Ends) 
         "low": ends[0],
         "high": ends[1],
     }
-    return Step("undo_plays", constants, {"w": count, "at": 2}, differs=differs)
+    return Step("undo_plays", constants, {"w": count, "at": 2}, past=past)
 
 
 def _linear(place: int, block: LinearBlock, sampling: Sampling) -> Step:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from textwrap import indent, wrap
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ class Model:
         self.reset()
 
     def reset(self):
-        """Forget all that has entered."""
+        """Forget all that has entered. {begins}"""
 {reset}
 
     def step(self, u):
@@ -50,7 +51,15 @@ def module(model: Described) -> str:
         for key, value in piece.step.constants.items()
         if isinstance(value, np.ndarray)
     ]
-    reset = [f"self.{name} = np.zeros({size})" for name, size in model.all_states()]
+    constants += [
+        _array(f"{name.upper()}_START", value) for name, value in model.starts.items()
+    ]
+    reset = [
+        f"self.{name} = {name.upper()}_START.copy()"
+        if name in model.starts
+        else f"self.{name} = np.zeros({size})"
+        for name, size in model.all_states()
+    ]
     steps = [
         f"remember({piece.step.constants['points']}, self.{piece.history}, y)"
         for piece in model.watching
@@ -71,6 +80,7 @@ def module(model: Described) -> str:
         for part in piece.all_inside()
     ]
     body = CLASS.format(
+        begins=model.begins,
         reset=indent("\n".join(reset or ["pass"]), " " * 8),
         steps=indent("\n".join(filter(None, steps)), " " * 8),
     )
@@ -82,6 +92,13 @@ def module(model: Described) -> str:
         "\n".join([body.rstrip(), *methods]),
     ]
     return "\n\n\n".join(filter(None, parts)) + "\n"
+
+
+def loaded(model: Described) -> Any:
+    """Give the exported ``Model``, new, as one who imports the module makes it."""
+    made = ModuleType(model.name)
+    exec(module(model), made.__dict__)  # noqa: S102 - our own text
+    return made.Model()
 
 
 def _quoted(line: str) -> str:

@@ -2,17 +2,12 @@
  *
  * Plain C99: no allocation, no pointer that is kept, no number that is not a double or
  * an int. States are arrays that are all zero at the start. hystbench copies what a
- * model needs of this file into the model's own.
+ * model needs of this file into the model's own, behind what it needs of forces.c.
  */
-#include <math.h>
 #include <string.h>
 
 #define HB_PI 3.14159265358979323846
 #define HB_POINTS 8 /* samples that a curve goes through at most */
-
-static double hb_least(double a, double b) { return a < b ? a : b; }
-
-static double hb_most(double a, double b) { return a > b ? a : b; }
 
 static double hb_weighted(int count, const double *weights, const double *values)
 {
@@ -58,13 +53,6 @@ static double hb_polynomial(int count, const double *coefficients, double z)
     double y = 0;
     for (int i = count - 1; i >= 0; i--) y = y * z + coefficients[i];
     return y;
-}
-
-static double hb_clip(double limit, double z) { return hb_most(-limit, hb_least(limit, z)); }
-
-static double hb_dead_zone(double half_width, double z)
-{
-    return z - hb_clip(half_width, z);
 }
 
 static double hb_saturation(double level, double sharpness, double z)
