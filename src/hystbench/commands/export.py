@@ -13,8 +13,9 @@ from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
 from hystbench.export.described import Described, describe
-from hystbench.export.inverse import Ends, describe_inverse
+from hystbench.export.inverse import describe_inverse
 from hystbench.export.past import begun
+from hystbench.export.undone import Ends
 from hystbench.files import whole_folder
 from hystbench.model import Model, load_model
 from hystbench.record import column_name

@@ -19,6 +19,7 @@ LIBRARY = (
     Path(kernels.__file__).with_name("forces.c"),
     Path(__file__).with_name("steps.c"),
     Path(__file__).with_name("inside.c"),
+    Path(__file__).with_name("inverse_steps.c"),
 )
 WIDTH = 88
 

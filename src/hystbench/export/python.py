@@ -14,7 +14,10 @@ import numpy as np
 
 from hystbench.export.described import Described, Piece, needed
 
-LIBRARY = tuple(Path(__file__).with_name(name) for name in ("steps.py", "inside.py"))
+LIBRARY = tuple(
+    Path(__file__).with_name(f"{name}.py")
+    for name in ("steps", "inside", "inverse_steps")
+)
 WIDTH = 88
 
 CLASS = '''\
