@@ -9,7 +9,8 @@ from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
 from hystbench.export import python
 from hystbench.export.described import describe
-from hystbench.export.past import begun
+from hystbench.export.inverse import describe_inverse
+from hystbench.export.past import begun, begun_inverse
 from tests.blocks.examples import EXAMPLES
 from tests.conftest import run_hystbench
 
@@ -61,6 +62,19 @@ def test_code_starts_as_the_simulation_of_the_record(name, tmp_path):
     # Without the record it is another start, or the record would be worth nothing.
     without = Compiled([plain], tmp_path).outputs(RECORD)["begun"]
     assert np.abs(without - wanted).max() > 1e-4 * np.ptp(wanted)
+
+
+def test_an_inverse_begins_with_the_plays_that_the_record_leaves(tmp_path):
+    model = model_of("begun", chain_of(GPI))
+    limits = (2 * RECORD.min(), 2 * RECORD.max())
+    code = begun_inverse(describe_inverse(model, Sampling(DT), limits), model, RECORD)
+    u = Compiled([code], tmp_path).outputs(model.simulate(RECORD, DT))["begun_inverse"]
+    made = model.simulate(u, DT)
+    assert np.abs(made - model.simulate(RECORD, DT)).max() < 1e-9 * np.ptp(made)
+    moves = {"numerator": [0.5, 100.0], "denominator": [1.0, 100.0], "start": "moving"}
+    plain = model_of("moves", chain_of(("transfer-function", moves)))
+    with pytest.raises(InputError, match="--past: expected none"):
+        begun_inverse(describe_inverse(plain, Sampling(DT), limits), plain, RECORD)
 
 
 def test_a_machine_that_is_reset_begins_so_again():

@@ -12,13 +12,13 @@ from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
-from hystbench.export.described import Described, describe
+from hystbench.export.described import describe
 from hystbench.export.inverse import describe_inverse
-from hystbench.export.past import begun
+from hystbench.export.past import begun, begun_inverse
 from hystbench.export.undone import Ends
 from hystbench.files import whole_folder
 from hystbench.model import Model, load_model
-from hystbench.record import column_name
+from hystbench.record import FloatArray, column_name
 
 
 @click.command()
@@ -90,8 +90,6 @@ def export(
     if hold is not None:
         system = system.with_hold(hold)
     limits = (limit_low, limit_high)
-    if inverse and past is not None:
-        raise InputError("--past: expected none beside --inverse")
     if not inverse and limits != (None, None):
         raise InputError("--limit-low and --limit-high: expected them with --inverse")
     sampling = Sampling(dt, points, duration, delay)
@@ -105,7 +103,8 @@ def export(
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None
     if past is not None:
-        described = _with_past(described, system, past)
+        start = begun_inverse if inverse else begun
+        described = start(described, system, _record(system, past, dt))
     name = described.name
     names = {
         "c": [f"{name}.h", f"{name}.c"],
@@ -126,14 +125,12 @@ def export(
         click.echo(line)
 
 
-def _with_past(described: Described, system: Model, file: Path) -> Described:
-    """Let the code start as on a record."""
-    name = column_name(system.input.name, system.input.unit)
-    dt, u = read_input(file, name)
-    wanted = described.sampling.dt
+def _record(system: Model, file: Path, wanted: float) -> FloatArray:
+    """Read the input of a record, which has to have the code's interval."""
+    dt, u = read_input(file, column_name(system.input.name, system.input.unit))
     if abs(dt - wanted) > 1e-6 * wanted:
         raise InputError(f"{file}: sampled every {dt:g} s; expected --dt, {wanted:g} s")
-    return begun(described, system, u)
+    return u
 
 
 def _both(low: float | None, high: float | None) -> Ends:

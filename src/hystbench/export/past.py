@@ -14,7 +14,7 @@ import numpy as np
 from hystbench.blocks.step import TURNED
 from hystbench.errors import InputError
 from hystbench.export import python
-from hystbench.export.described import Described, Piece
+from hystbench.export.described import Described, Piece, describe
 from hystbench.model import Model
 from hystbench.record import FloatArray
 
@@ -48,6 +48,35 @@ def begun(described: Described, model: Model, past: FloatArray) -> Described:
         raise InputError(
             "--past: expected none, as no block of this model starts with a record: "
             "'start' is 'settled' in no play operators, and nowhere 'moving'"
+        )
+    return replace(described, starts=starts)
+
+
+def begun_inverse(described: Described, model: Model, past: FloatArray) -> Described:
+    """Give the code of an inverse the plays' states that a record leaves.
+
+    Parameters
+    ----------
+    described : Described
+        Of the model's inverse.
+    model : Model
+    past : ndarray, shape (n,)
+        Input of the record, with the interval of the code.
+
+    Raises
+    ------
+    InputError
+        If no play operators of the model start with a record.
+    """
+    sampling = replace(described.sampling, delay=0)
+    forward = begun(describe(model, sampling), model, past)
+    known = dict(described.all_states())
+    renamed = {f"{name[:-2]}_undone_w": value for name, value in forward.starts.items()}
+    starts = {name: value for name, value in renamed.items() if name in known}
+    if not starts:
+        raise InputError(
+            "--past: expected none with --inverse, as no play operators of this model "
+            "say 'start: settled'"
         )
     return replace(described, starts=starts)
 
