@@ -51,6 +51,19 @@ EXACT = {
     "gain before and behind": (("gain", {"value": 1.1}), GPI, GAIN),
     "two hystereses": (PI, ("gain", {"value": 0.1}), GPI),
     "a field that lags": (PI, rate("acting-field", "linear")),
+    "relays": (("preisach", EXAMPLES["preisach"] | {"cells": 12}),),
+    "domains": (("jiles-atherton", EXAMPLES["jiles-atherton"]),),
+    "plays whose output falls": (
+        ("prandtl-ishlinskii", PLAIN | {"weights": [-1.5, -0.3, -0.2]}),
+    ),
+    "plays with another shape": (
+        GPI,
+        ("hysteresis-shape", EXAMPLES["hysteresis-shape"]),
+    ),
+    "relays that a field drives": (
+        ("preisach", EXAMPLES["preisach"] | {"cells": 12}),
+        rate("acting-field", "linear"),
+    ),
     "noise and an offset": (
         PI,
         ("calibration-error", {"gain": 1.2, "offset": 0.1}),
@@ -173,6 +186,7 @@ def test_python_is_the_c(name, tmp_path):
     [
         (("dead-zone", {"half_width": 0.1}), "rise or fall throughout"),
         (("friction", EXAMPLES["friction"]), "none is known"),
+        (("rdgpi", EXAMPLES["rdgpi"]), "depends on the rate that is sought"),
         (("gain", {"value": 0.0}), "its output does not depend on its input"),
         (
             ("mechanism", EXAMPLES["mechanism"] | {"output": "force"}),
@@ -198,6 +212,22 @@ def test_what_cannot_be_undone_is_one_line(block, why):
         inverted((GPI, block))
     assert why in str(told.value)
     assert "hystbench invert --reference" in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("block", "why"),
+    [
+        (
+            ("butterfly", {"coefficient": 5.0, "threshold": 0.1}),
+            "rise or fall throughout",
+        ),
+        (rate("excess-field", "linear"), "which runs away"),
+    ],
+)
+def test_what_hysteresis_cannot_be_undone_is_one_line(block, why):
+    with pytest.raises(InputError, match=r"^chain: block 1: gpi: ") as told:
+        inverted((GPI, block))
+    assert why in str(told.value)
 
 
 def test_the_command_writes_it_with_its_limits(tmp_path):

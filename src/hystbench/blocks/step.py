@@ -70,6 +70,8 @@ class Step:
     drives : int
         For a block that wraps hysteresis: 0 where it adds its own output to that of
         what is inside; else how often, at most, it calls what is inside in one sample.
+    undoes : bool
+        Whether it looks for the input of what is inside it, of which it tries some.
     past : str
         What came before the first sample, if that depends on samples to come:
         :data:`PASSED` or :data:`TURNED`. What is remembered of a passage is the state
@@ -86,6 +88,7 @@ class Step:
     forward: bool = False
     grows: bool = False
     drives: int = 0
+    undoes: bool = False
     past: str = ""
     differs: str = ""
 

@@ -159,6 +159,8 @@ def _wrapped(model: Described, piece: Piece) -> str:
     inner = piece.inner
     if inner is None:
         lines = [f"    return {_call(model, piece, own)};"]
+    elif piece.step.undoes:
+        return _searched(model, piece, inner)
     else:
         inside = f"{model.name}_{inner.label}(s"
         if not piece.step.drives:
@@ -176,6 +178,42 @@ def _wrapped(model: Described, piece: Piece) -> str:
                 "    return y;",
             ]
     return "\n".join([opening, "{", *lines, "}"])
+
+
+def _searched(model: Described, piece: Piece, inner: Piece) -> str:
+    """Write the function that looks for the input of what is inside.
+
+    Another tries an input, and puts back all that is remembered inside.
+    """
+    name, output = f"{model.name}_{piece.label}", f"{model.name}_{piece.label}_output"
+    growth = f", s->{piece.label}_pace[3]" if inner.step.grows else ""
+    inside = f"{model.name}_{inner.label}"
+    states = [
+        f"{part.label}_{state}"
+        for part in inner.all_inside()
+        for state in part.step.states
+    ]
+    call = _call(model, piece, [output, "s", "v"])
+    return "\n".join(
+        [
+            f"static double {output}(void *model, double v)",
+            "{",
+            f"    {model.name}_state *s = model;",
+            *(f"    double {key}[sizeof s->{key} / sizeof(double)];" for key in states),
+            *(f"    memcpy({key}, s->{key}, sizeof s->{key});" for key in states),
+            f"    const double y = {inside}(s, v{growth});",
+            *(f"    memcpy(s->{key}, {key}, sizeof s->{key});" for key in states),
+            "    return y;",
+            "}",
+            "",
+            f"static double {name}({model.name}_state *s, double v)",
+            "{",
+            f"    const double found = {call};",
+            f"    {inside}(s, found{growth});",
+            "    return found;",
+            "}",
+        ]
+    )
 
 
 def _call(model: Described, piece: Piece, given: Sequence[str]) -> str:

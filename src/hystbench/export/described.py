@@ -203,6 +203,13 @@ def describe(model: Model, sampling: Sampling) -> Described:
         If the interval or the points make no sense, or a block cannot be exported.
     """
     _check_sampling(sampling)
+    piece_of = pieces_of(model)
+    makers: list[Maker] = [partial(piece_of, step) for step in model.steps]
+    return arranged(model.name, model.input, model.output, makers, sampling)
+
+
+def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
+    """Give what makes the piece of any step of a model, and of what is inside it."""
     labels = labels_of(model)
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
 
@@ -235,8 +242,7 @@ def describe(model: Model, sampling: Sampling) -> Described:
         inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times, ahead=0))
         return replace(around, inner=inner)
 
-    makers: list[Maker] = [partial(of_step, step) for step in model.steps]
-    return arranged(model.name, model.input, model.output, makers, sampling)
+    return of_step
 
 
 def labels_of(model: Model) -> dict[int, str]:

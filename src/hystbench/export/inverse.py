@@ -7,8 +7,9 @@ reference so far. What that leaves, each step says of itself.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,26 +17,32 @@ from hystbench.blocks.attached import Simulated
 from hystbench.blocks.base import Block
 from hystbench.blocks.drift import Drift
 from hystbench.blocks.force import Driven, Force
-from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mains_pickup import MainsPickup
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
+from hystbench.blocks.rdgpi import RateDependentPrandtlIshlinskii
 from hystbench.blocks.slew_limit import SlewLimit
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import Wrapped
+from hystbench.blocks.wrapping import HystereticBlock, Wrapped
 from hystbench.errors import InputError
 from hystbench.export import undone
-from hystbench.export.described import Described, Maker, Piece, arranged, labels_of
+from hystbench.export.described import (
+    Described,
+    Maker,
+    Piece,
+    arranged,
+    labels_of,
+    pieces_of,
+)
 from hystbench.export.undone import Ends, Making
 from hystbench.model import Model
 
 CAN_BE_UNDONE = (
-    "expected curves that rise or fall throughout, play operators with or without a "
-    "rate, linear dynamics without zeros in the right half plane, or a mechanism's "
-    "motion; 'hystbench invert --reference' iterates for the rest"
+    "expected curves and hysteresis that rise or fall throughout, linear dynamics "
+    "without zeros in the right half plane, or a mechanism's motion; 'hystbench invert "
+    "--reference' iterates for the rest"
 )
 
 
@@ -64,15 +71,20 @@ def describe_inverse(model: Model, sampling: Sampling, limits: Ends) -> Describe
             "out of reach"
         )
     labels, makers, ends = labels_of(model), list[Maker](), limits
+    piece_of = pieces_of(model)
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
     for step in model.steps:
         block = _first(step)
         label = f"{labels[id(block)]}_undone"
         where = f"chain: block {places[id(block)]}: {block.name}: "
-        back = [
-            partial(_piece, label, number, where, making)
-            for number, making in enumerate(_undone(step, ends, where), start=1)
-        ]
+        inner = partial(piece_of, _inside(step))
+        try:
+            back = [
+                partial(_piece, label, number, where, making, inner)
+                for number, making in enumerate(_undone(step, ends), start=1)
+            ]
+        except undone.CannotBe as why:
+            raise _refused(where, str(why)) from None
         makers = [*back, *makers]
         ends = _through(step, ends)
     held = Step("limited", {"low": low, "high": high})
@@ -96,36 +108,50 @@ def _refused(where: str, why: str) -> InputError:
     )
 
 
+def _inside(step: Simulated) -> Any:
+    """Give the hysteresis that a step is, or that a rate is around."""
+    if isinstance(step, Wrapped) and isinstance(step.by, RateDependentHysteresis):
+        return step.inner
+    return step
+
+
 def _piece(
-    label: str, number: int, where: str, making: Making, sampling: Sampling
+    label: str,
+    number: int,
+    where: str,
+    making: Making,
+    inner: Maker,
+    sampling: Sampling,
 ) -> Piece:
-    """Name a step after the block that it undoes."""
+    """Name a step after the block that it undoes, and put that in where it is tried."""
     try:
         step = making(sampling)
     except undone.CannotBe as why:
         raise _refused(where, str(why)) from None
-    return Piece(label if number == 1 else f"{label}_{number}", step)
+    tried = inner(replace(sampling, ahead=0)) if step.undoes else None
+    return Piece(label if number == 1 else f"{label}_{number}", step, tried)
 
 
-def _undone(step: Simulated, ends: Ends, where: str) -> Iterator[Making]:
+def _undone(step: Simulated, ends: Ends) -> Iterator[Making]:
     """Give what undoes a step of the model, in the order of the inverse's signal."""
-    if isinstance(step, GeneralizedPrandtlIshlinskii | PrandtlIshlinskii):
-        yield partial(undone.plays, step, ends)
-    elif isinstance(step, Wrapped) and isinstance(step.by, RateDependentHysteresis):
-        inner, by = step.inner, step.by
-        if not isinstance(inner, GeneralizedPrandtlIshlinskii | PrandtlIshlinskii):
-            raise _refused(where, "only play operators are undone with a rate")
+    inner = _inside(step)
+    if isinstance(inner, RateDependentPrandtlIshlinskii) or _depends_on_rate(inner):
+        raise undone.CannotBe("its output depends on the rate that is sought")
+    if isinstance(step, Wrapped) and inner is not step:
+        by = cast(RateDependentHysteresis, step.by)
         if by.form == "growing-thresholds":
-            yield partial(undone.growing_plays, inner, by, ends)
+            yield undone.hysteresis(inner, ends, by)
         else:
-            yield partial(undone.plays, inner, ends)
+            yield undone.hysteresis(inner, ends)
             yield partial(undone.field, by)
+    elif isinstance(step, HystereticBlock | Wrapped):
+        yield undone.hysteresis(step, ends)
     elif isinstance(step, LinearBlock):
         yield from undone.linear(step)
     elif isinstance(step, Mechanism):
-        yield from _motion(step, (), where)
+        yield from _motion(step, ())
     elif isinstance(step, Driven) and isinstance(step.host, Mechanism):
-        yield from _motion(step.host, step.forces, where)
+        yield from _motion(step.host, step.forces)
     elif isinstance(step, InputDelay):
         late = f"{step.delay_s:.6g} s"
         yield partial(
@@ -139,15 +165,20 @@ def _undone(step: Simulated, ends: Ends, where: str) -> Iterator[Making]:
     elif isinstance(step, Block):
         yield partial(undone.curve, step, ends)
     else:
-        raise _refused(where, "none is known with what is attached to it")
+        raise undone.CannotBe("none is known with what is attached to it")
 
 
-def _motion(
-    block: Mechanism, forces: tuple[Force, ...], where: str
-) -> Iterator[Making]:
+def _depends_on_rate(step: Any) -> bool:
+    """Tell whether a rate is around hysteresis that something else is around."""
+    return isinstance(step, Wrapped) and (
+        isinstance(step.by, RateDependentHysteresis) or _depends_on_rate(step.inner)
+    )
+
+
+def _motion(block: Mechanism, forces: tuple[Force, ...]) -> Iterator[Making]:
     """Undo a coordinate: the force that its motion takes is what drives it."""
     if block.output not in ("position", "velocity") or block.blend or not block.gain:
-        raise _refused(where, "its output is not a motion alone, or its gain is 0")
+        raise undone.CannotBe("its output is not a motion alone, or its gain is 0")
     yield partial(undone.motion, block, forces)
     yield partial(undone.straight, block.bias, block.gain)
 

@@ -1,40 +1,17 @@
 /* What undoes a block, a function for each step as in steps.c. */
 
-/* Stand at a limit where the signal is beyond it. */
-static double hb_limited(double low, double high, double z)
+/* The input of hysteresis whose output goes its way with it (1 or -1), to a near output:
+ * regula falsi, the end that stays halved (Illinois). at: the input before, and how far
+ * it had moved. pace: how many inputs were kept, up to two; both, the newest first; and
+ * the growth of thresholds by the rate between them. */
+static double hb_undo(double near, double low, double high, double way,
+                      double coefficient, double exponent, double dt, double *at,
+                      double *pace, double (*output)(void *, double), void *model,
+                      double z)
 {
-    return hb_most(low, hb_least(high, z));
-}
-
-/* What plays make of an input, their states being w: moved, where it is given, gets the
- * states then. */
-static double hb_of_plays(double path, int own, const double *envelope, int count,
-                          const double *thresholds, const double *terms,
-                          const double *w, double *moved, double v, double growth)
-{
-    const double *a = envelope;
-    const double left = own ? a[0] * tanh(a[1] * v + a[2]) + a[3] : v;
-    const double right = own ? a[4] * tanh(a[5] * v + a[6]) + a[7] : v;
-    double y = path * v;
-    for (int i = 0; i < count; i++) {
-        double p = w[i];
-        hb_play(left, right, growth * thresholds[i], &p);
-        y += p * (terms[i] + p * (terms[count + i] + p * terms[2 * count + i]));
-        if (moved) moved[i] = p;
-    }
-    return y;
-}
-
-/* The input of plays, to a near output: regula falsi, the end that stays halved (Illinois). at: the input
- * before, and how far it had moved. */
-static double hb_undo_plays(double near, double path, int own, const double *envelope, int count,
-                            const double *thresholds, const double *terms, double low,
-                            double high, double *w, double *at, double z,
-                            double growth)
-{
-#define HB_OFF(v)                                                                     \
-    hb_dead_zone(near, hb_of_plays(path, own, envelope, count, thresholds, terms, w, \
-                                   0, v, growth) - z)
+#define HB_OFF(v) (way * hb_dead_zone(near, output(model, v) - z))
+    const double rate = pace[0] < 2 ? 0 : (pace[1] - pace[2]) / dt;
+    pace[3] = 1 + coefficient * pow(fabs(rate), exponent);
     double one = hb_most(low, hb_least(high, at[0])), other = one;
     const double began = one;
     double off_one = HB_OFF(one), off_other = off_one;
@@ -67,27 +44,17 @@ static double hb_undo_plays(double near, double path, int own, const double *env
     }
     at[0] = other;
     at[1] = fabs(other - began);
-    hb_of_plays(path, own, envelope, count, thresholds, terms, w, w, other, growth);
+    pace[0] = hb_least(pace[0] + 1, 2);
+    pace[2] = pace[1];
+    pace[1] = other;
     return other;
 #undef HB_OFF
 }
 
-/* Thresholds grow with the rate of the last interval. before: how many samples were, up
- * to two, and the inputs then, the newest first. */
-static double hb_undo_growing_plays(double coefficient, double exponent, double dt,
-                                    double near, double path, int own, const double *envelope,
-                                    int count, const double *thresholds,
-                                    const double *terms, double low, double high,
-                                    double *w, double *at, double *before, double z)
+/* Stand at a limit where the signal is beyond it. */
+static double hb_limited(double low, double high, double z)
 {
-    const double rate = before[0] < 2 ? 0 : (before[1] - before[2]) / dt;
-    const double growth = 1 + coefficient * pow(fabs(rate), exponent);
-    const double v = hb_undo_plays(near, path, own, envelope, count, thresholds, terms,
-                                   low, high, w, at, z, growth);
-    before[0] = hb_least(before[0] + 1, 2);
-    before[2] = before[1];
-    before[1] = v;
-    return v;
+    return hb_most(low, hb_least(high, z));
 }
 
 /* The field that is applied where another acts. */

@@ -7,36 +7,17 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
-from hystbench.export.steps import dead_zone, play, remember
+from hystbench.export.steps import dead_zone, remember
 
 
-def limited(low, high, z):
-    """Stand at a limit where the signal is beyond it."""
-    return min(max(z, low), high)
-
-
-def of_plays(path, own, envelope, count, thresholds, terms, w, v, growth):
-    """Give what plays make of an input, their states being w, and the states then."""
-    a, left, right = envelope, v, v
-    if own:
-        left = a[0] * math.tanh(a[1] * v + a[2]) + a[3]
-        right = a[4] * math.tanh(a[5] * v + a[6]) + a[7]
-    p = play(left, right, growth * thresholds, w.copy())
-    first, second, third = terms.reshape(3, count)
-    return path * v + np.sum(p * (first + p * (second + p * third))), p
-
-
-def undo_plays(
-    near, path, own, envelope, count, thresholds, terms, low, high, w, at, z, growth
-):
-    """Find the input of plays: regula falsi, the end that stays halved (Illinois)."""
-    plays = path, own, envelope, count, thresholds, terms, w
+def undo(near, low, high, way, coefficient, exponent, dt, at, pace, output, z):
+    """Find the input of hysteresis, by regula falsi with an end that is halved."""
 
     def off(v):
-        return dead_zone(near, of_plays(*plays, v, growth)[0] - z)
+        return way * dead_zone(near, output(v) - z)
 
+    rate = 0.0 if pace[0] < 2 else (pace[1] - pace[2]) / dt
+    pace[3] = 1 + coefficient * abs(rate) ** exponent
     one = min(max(at[0], low), high)
     other, began = one, one
     off_one = off_other = off(one)
@@ -67,36 +48,14 @@ def undo_plays(
             else:
                 one, off_one = other, off_other
             other, off_other = middle, off_middle
-    at[0], at[1] = other, abs(other - began)
-    w[:] = of_plays(*plays, other, growth)[1]
+    at[:] = other, abs(other - began)
+    pace[:3] = min(pace[0] + 1, 2), other, pace[1]
     return other
 
 
-def undo_growing_plays(
-    coefficient,
-    exponent,
-    dt,
-    near,
-    path,
-    own,
-    envelope,
-    count,
-    thresholds,
-    terms,
-    low,
-    high,
-    w,
-    at,
-    before,
-    z,
-):
-    """Let thresholds grow with the rate of the last interval."""
-    rate = 0.0 if before[0] < 2 else (before[1] - before[2]) / dt
-    plays = near, path, own, envelope, count, thresholds, terms
-    growth = 1 + coefficient * abs(rate) ** exponent
-    v = undo_plays(*plays, low, high, w, at, z, growth)
-    before[:] = min(before[0] + 1, 2), v, before[1]
-    return v
+def limited(low, high, z):
+    """Stand at a limit where the signal is beyond it."""
+    return min(max(z, low), high)
 
 
 def applied_field(coefficient, exponent, points, ahead, rate, history, z):

@@ -71,8 +71,7 @@ def begun_inverse(described: Described, model: Model, past: FloatArray) -> Descr
     sampling = replace(described.sampling, delay=0)
     forward = begun(describe(model, sampling), model, past)
     known = dict(described.all_states())
-    renamed = {f"{name[:-2]}_undone_w": value for name, value in forward.starts.items()}
-    starts = {name: value for name, value in renamed.items() if name in known}
+    starts = {name: value for name, value in forward.starts.items() if name in known}
     if not starts:
         raise InputError(
             "--past: expected none with --inverse, as no play operators of this model "

@@ -123,6 +123,8 @@ def _method(piece: Piece) -> str:
     own = ["v"] + ["growth"] * piece.step.grows
     lines = [f"return {_call(piece, own)}"]
     inner = piece.inner
+    if inner is not None and piece.step.undoes:
+        return _searched(piece, inner)
     if inner is not None:
         given = ", ".join(["v"] + ["growth"] * inner.step.grows)
         if not piece.step.drives:
@@ -136,6 +138,33 @@ def _method(piece: Piece) -> str:
             ]
     opening = f"\ndef _{piece.label}(self, {', '.join(own)}):"
     return indent("\n".join([opening, *(f"    {line}" for line in lines)]), "    ")
+
+
+def _searched(piece: Piece, inner: Piece) -> str:
+    """Write the methods that look for the input of what is inside, and try one."""
+    growth = f", self.{piece.label}_pace[3]" if inner.step.grows else ""
+    states = [
+        f"self.{part.label}_{state}"
+        for part in inner.all_inside()
+        for state in part.step.states
+    ]
+    output = f"_{piece.label}_output"
+    lines = [
+        "",
+        f"def _{piece.label}(self, v):",
+        f"    found = {_call(piece, [f'self.{output}', 'v'])}",
+        f"    self._{inner.label}(found{growth})",
+        "    return found",
+        "",
+        f"def {output}(self, v):",
+        f"    states = [{', '.join(states)}]",
+        "    kept = [state.copy() for state in states]",
+        f"    y = self._{inner.label}(v{growth})",
+        "    for state, before in zip(states, kept):",
+        "        state[:] = before",
+        "    return y",
+    ]
+    return indent("\n".join(lines), "    ")
 
 
 def _call(piece: Piece, given: Sequence[str]) -> str:

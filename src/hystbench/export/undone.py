@@ -10,19 +10,12 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force
-from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
-from hystbench.blocks.step import (
-    PASSED,
-    Sampling,
-    Step,
-    polynomial,
-    through_samples,
-)
+from hystbench.blocks.step import Sampling, Step, polynomial, through_samples
+from hystbench.blocks.wrapping import Hysteresis
 from hystbench.record import FloatArray
 
 Ends = tuple[float, float]
@@ -34,9 +27,9 @@ KNOTS = 1001
 """Of the table that stands for a curve turned about."""
 FINER = 20
 """Times as many points, by which the curve is sampled and the table judged."""
-ROUNDING = 1e-14
-"""Share of the output's range within which play operators stand still: where their
-output says nothing of the input, it stays where it was."""
+ROUNDING = 1e-13
+"""Share of the output's range within which the input of hysteresis stands still: where
+the output says nothing of it, it stays where it was."""
 NEAR = 0.01
 """Share by which a rate may be off in the band that is told."""
 
@@ -95,59 +88,43 @@ def curve(block: Block, ends: Ends, sampling: Sampling) -> Step:
     return Step("looked_up", constants, differs=told)
 
 
-def plays(
-    block: GeneralizedPrandtlIshlinskii | PrandtlIshlinskii,
-    ends: Ends,
-    sampling: Sampling,
-) -> Step:
-    """Find the input of play operators, to rounding."""
-    count = len(block.thresholds)
-    terms, path, envelope = np.zeros((3, count)), 0.0, np.zeros(8)
-    terms[0] = block.weights
-    past = ""
-    if isinstance(block, PrandtlIshlinskii):
-        path = 1.0
-        for row, values in enumerate((block.square_weights, block.cube_weights), 1):
-            terms[row] = values or 0.0
-    else:
-        envelope = np.array(block.envelope)
-        past = PASSED if block.start == "settled" else ""
-    reach = np.ptp(block.simulate(np.array([*ends, *ends]), np.zeros(4), 1.0))
-    constants = {
-        "near": ROUNDING * float(reach),
-        "path": path,
-        "own": int(path == 0.0),
-        "envelope": envelope,
-        "count": count,
-        "thresholds": np.array(block.thresholds),
-        "terms": terms.ravel(),
-        "low": ends[0],
-        "high": ends[1],
-    }
-    states = {"w": count, "at": 2}
-    return Step("undo_plays", constants, states, grows=True, past=past)
+def hysteresis(
+    inner: Hysteresis, ends: Ends, by: RateDependentHysteresis | None = None
+) -> Making:
+    """Find the input of hysteresis by trial, its thresholds growing with a rate or not.
 
+    Raises
+    ------
+    CannotBe
+        If its slow loop does not rise, or fall, with its input.
+    """
+    up = np.linspace(*ends, KNOTS)
+    path = np.concatenate([up, up[::-1], up])
+    y = inner.grow(path, path, 1.0, None)
+    reach = float(np.ptp(y))
+    falling, rising = np.diff(y[KNOTS : 2 * KNOTS]), np.diff(y[2 * KNOTS :])
+    moved = np.concatenate([-falling, rising])
+    way = 1.0 if moved.sum() > 0 else -1.0
+    if reach == 0 or (way * moved < -1e-9 * reach).any():
+        raise CannotBe("its output does not rise or fall throughout with its input")
+    rate = (by.coefficient, by.exponent) if by else (0.0, 1.0)
 
-def growing_plays(
-    block: GeneralizedPrandtlIshlinskii | PrandtlIshlinskii,
-    by: RateDependentHysteresis,
-    ends: Ends,
-    sampling: Sampling,
-) -> Step:
-    """Do so with thresholds that grow with the rate of the interval before."""
-    step = plays(block, ends, sampling)
-    own = {
-        "coefficient": by.coefficient,
-        "exponent": by.exponent,
-        "dt": sampling.dt,
-    }
-    return Step(
-        "undo_growing_plays",
-        {**own, **step.constants},
-        {**step.states, "before": 3},
-        past=step.past,
-        differs="takes the rate of the interval before, which is one sample old",
-    )
+    def making(sampling: Sampling) -> Step:
+        constants = {
+            "near": ROUNDING * reach,
+            "low": ends[0],
+            "high": ends[1],
+            "way": way,
+            "coefficient": rate[0],
+            "exponent": rate[1],
+            "dt": sampling.dt,
+        }
+        told = "takes the rate of the interval before, which is one sample old"
+        states = {"at": 2, "pace": 4}
+        differs = told if by else ""
+        return Step("undo", constants, states, undoes=True, differs=differs)
+
+    return making
 
 
 def field(by: RateDependentHysteresis, sampling: Sampling) -> Step:
