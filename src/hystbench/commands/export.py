@@ -15,7 +15,6 @@ from hystbench.export import c, fmu, python
 from hystbench.export.described import describe
 from hystbench.export.inverse import describe_inverse
 from hystbench.export.past import begun, begun_inverse
-from hystbench.export.undone import Ends
 from hystbench.files import whole_folder
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
@@ -95,7 +94,9 @@ def export(
     sampling = Sampling(dt, points, duration, delay)
     try:
         described = (
-            describe_inverse(system, sampling, _both(*limits))
+            describe_inverse(
+                system, sampling, options.both_limits(*limits, "--inverse")
+            )
             if inverse
             else describe(system, sampling)
         )
@@ -131,10 +132,3 @@ def _record(system: Model, file: Path, wanted: float) -> FloatArray:
     if abs(dt - wanted) > 1e-6 * wanted:
         raise InputError(f"{file}: sampled every {dt:g} s; expected --dt, {wanted:g} s")
     return u
-
-
-def _both(low: float | None, high: float | None) -> Ends:
-    for name, value in (("low", low), ("high", high)):
-        if value is None:
-            raise InputError(f"--limit-{name}: expected it beside --inverse")
-    return (low or 0.0, high or 0.0)
