@@ -57,7 +57,7 @@ setup(
         Extension(
             "hystbench.kernels._kernels",
             sources=[f"{HERE}/{name}" for name in SOURCES],
-            depends=[f"{HERE}/lanes.h"],
+            depends=[f"{HERE}/lanes.h", f"{HERE}/forces.c"],
         ),
         # The hiding plant's own: it shares no code with the library above.
         Extension(

@@ -181,6 +181,22 @@ def asked_limits(
     return asked
 
 
+def both_limits(
+    limit_low: float | None, limit_high: float | None, beside: str
+) -> tuple[float, float]:
+    """Give both limits of an input.
+
+    Raises
+    ------
+    InputError
+        If one was not asked for.
+    """
+    if limit_low is None or limit_high is None:
+        missing = "low" if limit_low is None else "high"
+        raise InputError(f"--limit-{missing}: expected it beside {beside}")
+    return limit_low, limit_high
+
+
 def warn(lines: Iterable[str]) -> None:
     """Show warnings on the terminal, one line each."""
     for line in lines:

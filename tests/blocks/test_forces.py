@@ -7,7 +7,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from hystbench.blocks import registry
+from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.errors import InputError
 from hystbench.model import Model
 from hystbench.record import Channel
@@ -239,3 +241,21 @@ def test_a_parameter_out_of_bounds_is_refused_in_one_line(name, values, told):
     with pytest.raises(InputError, match=told) as caught:
         force(name, **values)
     assert "\n" not in str(caught.value)
+
+
+def test_dry_friction_turns_with_the_motion_within_a_step():
+    # Between turns a mass on a spring moves on a cosine about F / k or -F / k; each
+    # half swing ends 2 F / k nearer. Twenty-five samples a period.
+    friction, period, step, count = 0.2, 1.0, 0.043, 75
+    stiffness = (2 * np.pi / period) ** 2
+    t = np.arange(count) * step
+    swing = np.floor(2 * t / period)
+    about = np.where(swing % 2 == 0, 1.0, -1.0) * friction / stiffness
+    reach = 1.0 - 2 * friction / stiffness * swing - friction / stiffness
+    exact = about + reach * np.cos(2 * np.pi * t / period)
+    host = Mechanism(
+        mass=1.0, damping=0.0, stiffness=stiffness, start_position=1.0, hold="linear"
+    )
+    force = FrictionForce(coulomb=friction, presliding_distance=1e-9)
+    moved = host.driven(np.zeros(count), step, (force,))
+    assert np.abs(moved - exact).max() < 3e-4

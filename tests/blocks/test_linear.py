@@ -275,3 +275,12 @@ class TestStart:
         away = np.abs(self.simulate(v, "moving") - wanted)
         # It has been one for a second, twenty time constants.
         assert away.max() < 3 * 2 * 0.05 * np.exp(-19)
+
+
+def test_a_system_that_runs_away_within_an_interval_warns_of_nothing(recwarn):
+    """Exponentials of 1e9: a fit tries such values, and NaN is the answer."""
+    a = np.array([[0.0, 1e9], [1e9, 1e9]])
+    system = StateSpace(a, np.array([0.0, 1.0]), np.array([1.0, 0.0]), 0.0)
+    phi, _, _ = discretise(system, 1.0, "linear")
+    assert np.isnan(phi).all()
+    assert not recwarn.list

@@ -155,26 +155,38 @@ def test_c_compiles_as_cpp_would_use_it(augmented, tmp_path):
     subprocess.run(["./run"], cwd=tmp_path / "c", check=True)
 
 
-def test_the_fmu_is_accepted_and_fmpy_runs_it(augmented, tmp_path, monkeypatch):
-    fmpy = pytest.importorskip(
+@pytest.fixture
+def fmpy(monkeypatch):
+    found = pytest.importorskip(
         "fmpy", reason="FMPy is not installed (pip install fmpy)"
     )
-    from fmpy.build import build_platform_binary
-    from fmpy.validation import validate_fmu
-
     scripts = str(Path(sys.executable).parent)  # where FMPy's own CMake is
     monkeypatch.setenv("PATH", f"{scripts}:/usr/bin:/bin")
-    exported(tmp_path, augmented, "fmu")
-    file = tmp_path / "fmu" / "gpi_of_the_slow_loop_augmented.fmu"
+    return found
+
+
+def built(fmpy, file, tmp_path):
+    """Check a unit as FMPy does, also how it is to be built, and build it."""
+    from fmpy.build import build_platform_binary
+    from fmpy.validation import validate_fmu
+    from lxml import etree
+
     assert validate_fmu(str(file)) == []
-    folder = tmp_path / "unpacked"
-    built = tmp_path / "built"
-    built.mkdir()
+    folder, room = tmp_path / "unpacked", tmp_path / "built"
+    room.mkdir()
     with zipfile.ZipFile(file) as archive:
         archive.extractall(folder)
-    build_platform_binary(folder, build_dir=built)
+    schemas = Path(fmpy.__file__).parent / "schema" / "fmi3"
+    schema = etree.XMLSchema(etree.parse(schemas / "fmi3BuildDescription.xsd"))
+    schema.assertValid(etree.parse(folder / "sources" / "buildDescription.xml"))
+    build_platform_binary(folder, build_dir=room)
+    return folder
+
+
+def seen(fmpy, folder, u):
+    """Give what an importer sees: the output of a step at its end."""
     given = np.array(
-        list(zip(TIME, SINE, strict=True)), [("time", float), ("current", float)]
+        list(zip(TIME, u, strict=True)), [("time", float), ("current", float)]
     )
     found = fmpy.simulate_fmu(
         str(folder),
@@ -183,11 +195,47 @@ def test_the_fmu_is_accepted_and_fmpy_runs_it(augmented, tmp_path, monkeypatch):
         input=given,
         output=["displacement"],
     )
-    wanted = load_model(augmented).simulate(SINE, DT)
-    # The output of a step is seen at its end.
-    off = np.abs(found["displacement"][1:] - wanted[:-1])[6:]
     assert len(found) == len(TIME)
-    assert off.max() <= BEHIND * np.ptp(wanted)
+    return found["displacement"][1:]
+
+
+def test_the_fmu_is_accepted_and_fmpy_runs_it(augmented, tmp_path, fmpy):
+    exported(tmp_path, augmented, "fmu")
+    file = tmp_path / "fmu" / "gpi_of_the_slow_loop_augmented.fmu"
+    y = seen(fmpy, built(fmpy, file, tmp_path), SINE)
+    wanted = load_model(augmented).simulate(SINE, DT)
+    assert np.abs(y - wanted[:-1])[6:].max() <= BEHIND * np.ptp(wanted)
+
+
+#: Plays that a record has passed, and forces in balance with the first sample.
+SETTLED = """
+name: settled
+input: {name: current, unit: A}
+output: {name: displacement, unit: um}
+chain:
+- gpi:
+    envelope: {a0: 1.3, a1: 0.36, a2: 0.6, a3: -0.67, a4: 0.32, a5: 1.2, a6: 0.11,
+      a7: -0.025}
+    thresholds: [0.0, 0.05, 0.1]
+    weights: [1.0, 0.5, 0.25]
+    start: settled
+- mechanism: {mass: 0.002, damping: 0.2, stiffness: 100.0, bias: 30.0, start: settled}
+- stiffness: {quadratic: 0.0, cubic: 1000.0}
+- friction-force: {coulomb: 1.0, presliding_distance: 0.001}
+"""
+
+
+def test_a_unit_starts_as_the_record_that_it_was_exported_with(tmp_path, fmpy):
+    file, record = tmp_path / "model.yaml", tmp_path / "record.csv"
+    file.write_text(SETTLED)
+    u = 0.2 + SINE
+    rows = np.column_stack([TIME, u])
+    np.savetxt(record, rows, "%.17g", ",", header="time_s,current_A", comments="")
+    exported(tmp_path, file, "fmu", "--past", record)
+    folder = built(fmpy, tmp_path / "fmu" / "settled.fmu", tmp_path)
+    wanted = load_model(file).simulate(u, DT)
+    y = seen(fmpy, folder, u)
+    assert np.abs(y - wanted[:-1]).max() <= 1e-9 * np.ptp(wanted)
 
 
 def test_the_fmu_tells_its_units_and_what_its_steps_do_otherwise(augmented):

@@ -166,6 +166,22 @@ def mixed():
             ("gain", {"value": 1.0, "offset": 3.0}),
             ("mechanism", {**EXAMPLES["mechanism"], "start": "settled"}),
         ),
+        "a settled coordinate with forces": chain_of(
+            ("gain", {"value": 1.0, "offset": 3.0}),
+            ("mechanism", {**EXAMPLES["mechanism"], "start": "settled"}),
+            *((name, EXAMPLES[name]) for name in FORCES),
+        ),
+        "a settled coordinate against a stop": chain_of(
+            ("gain", {"value": 1.0, "offset": 3.0}),
+            ("mechanism",
+             {**EXAMPLES["mechanism"], "start": "settled", "start_position": 1e-3}),
+            ("exponential-stiffness", EXAMPLES["exponential-stiffness"]),
+            ("stop", EXAMPLES["stop"] | {"sides": "upper"}),
+        ),
+        "a settled sensor": chain_of(
+            ("gain", {"value": 1.0, "offset": 3.0}),
+            ("sensor-lag", {**EXAMPLES["sensor-lag"], "start": "settled"}),
+        ),
         "a store that overflows": chain_of(
             ("store", {**EXAMPLES["store"], "gain": 400.0, "bias": 100.0,
                        "start_level": 0.5, "output": "outflow"}),
@@ -259,17 +275,6 @@ def test_a_frequency_is_as_near_as_the_documentation_says(tmp_path):
         u = np.sin(2 * np.pi * share * np.arange(COUNT))
         off = np.abs(run.outputs(u)["lag"] - model.simulate(u, DT))[100:]
         assert allowed / 1e3 < off.max() < allowed
-
-
-def test_a_settled_start_is_an_input_that_was_fed_once(tmp_path):
-    values = EXAMPLES["gpi"] | {"start": "settled"}
-    model = model_of("settled", chain_of(("gpi", values)))
-    described = describe(model, SAMPLING)
-    assert any("fed once" in told for told in described.differences)
-    y = Compiled([described], tmp_path).outputs(np.tile(INPUT, 2))["settled"]
-    wanted = model.simulate(INPUT, DT)
-    assert np.abs(y[:COUNT] - wanted).max() > 0.01 * np.ptp(wanted)
-    assert np.abs(y[COUNT:] - wanted).max() < 1e-9 * np.ptp(wanted)
 
 
 def test_relays_that_remember_too_much_forget_the_smallest_loop(tmp_path):

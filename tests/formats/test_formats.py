@@ -40,6 +40,7 @@ needs_parquet = pytest.mark.skipif(
         ("octave-bare.txt", {"column 1": T, "column 2": U, "column 3": Y}),
         ("german.csv", {"Zeit [s]": T, "Spulenstrom [mA]": 1000 * U, "Weg [µm]": Y}),
         ("float.wav", {"channel 1": U / 2, "channel 2": Y / 8}),
+        pytest.param("octave.h5", {"t": T, "u": U, "y": Y}, marks=needs_h5py),
         pytest.param("v73.mat", {"t": T, "u": U, "y": Y}, marks=needs_h5py),
         pytest.param(
             "v73-runs.mat", {"a/i": U, "b/x": 0.5 * Y}, marks=needs_h5py
@@ -310,3 +311,13 @@ def test_a_cell_array_that_holds_itself_is_read_once(tmp_path, monkeypatch):
     np.testing.assert_array_equal(table.column("c(4)").values, U)
     assert len(table.columns) == 1
     assert len(calls) == 5  # the cell array and its four references
+
+
+@needs_tdms
+def test_a_file_that_ends_too_early_is_noted_and_nothing_printed(tmp_path, capfd):
+    whole = (FILES / "rig.tdms").read_bytes()
+    cut = tmp_path / "cut.tdms"
+    cut.write_bytes(whole[: len(whole) * 3 // 4])
+    table = read_table(cut)
+    assert any("less data than expected" in note for note in table.notes)
+    assert capfd.readouterr() == ("", "")

@@ -134,7 +134,14 @@ def test_within_the_band_a_filter_and_its_inverse_cancel():
 
 
 def test_the_bandwidth_ends_where_the_error_is_above_a_percent():
-    rows = bandwidth(load_model(TWIN), 15.0, 4 * DT, 300.0, Limits(-0.632, 0.632))
+    model, limits = load_model(TWIN), Limits(-0.632, 0.632)
+    rows = bandwidth(
+        model,
+        15.0,
+        4 * DT,
+        300.0,
+        lambda wanted: feedforward(model, wanted, 4 * DT, 300.0, limits).u,
+    )
     errors = {round(row.frequency_hz): row.error for row in rows}
     highest = holds_to(rows)
     assert errors[3] < 0.01
@@ -173,6 +180,29 @@ class TestCommand:
         header, *rows = out.read_text().splitlines()
         assert header == "frequency_hz,rms_error_percent,largest_input,said"
         assert len(rows) == 13
+
+    def test_sample_by_sample_the_model_moves_along_too(self, tmp_path):
+        out = tmp_path / "drive.csv"
+        limits = ("--limit-low", -2, "--limit-high", 2)
+        given = ("--sampled", "--reference", self.reference(tmp_path), "--out", out)
+        done = run_hystbench("invert", TWIN, *given)
+        assert done.returncode == 2
+        assert done.stderr == ("hystbench: --limit-low: expected it beside --sampled\n")
+        done = run_hystbench("invert", TWIN, *given, *limits)
+        assert done.returncode == 0, done.stderr
+        assert "inverted sample by sample" in done.stdout
+        with out.open() as stream:
+            rows = list(csv.DictReader(stream))
+        u = np.array([float(row["current_A"]) for row in rows])
+        assert error(load_model(TWIN), u, sine(50, 7.0)) < 0.02
+
+    def test_the_bandwidth_sample_by_sample(self, tmp_path):
+        out = tmp_path / "bandwidth.csv"
+        given = ("--dt", 4 * DT, "--stroke", 10, "--band", 100, "--out", out)
+        limits = ("--limit-low", -2, "--limit-high", 2)
+        done = run_hystbench("invert", TWIN, "--sampled", *given, *limits)
+        assert done.returncode == 0, done.stderr
+        assert "holds to 100 Hz" in done.stdout
 
     @pytest.mark.parametrize(
         ("given", "said"),

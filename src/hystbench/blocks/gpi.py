@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, choice, numbers
-from hystbench.blocks.step import PASSED_ONCE, Sampling, Step
+from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
@@ -110,13 +110,13 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         """Accept: the thresholds of play operators can grow."""
 
     def step(self, sampling: Sampling) -> Step:
-        """Give Eq. 9; exported code has seen nothing before its first sample."""
+        """Give Eq. 9."""
         constants = {
             "envelope": np.array(self.envelope),
             "count": len(self.weights),
             "thresholds": np.array(self.thresholds),
             "weights": np.array(self.weights),
         }
-        differs = PASSED_ONCE if self.start == "settled" else ""
+        past = PASSED if self.start == "settled" else ""
         states = {"w": len(self.weights)}
-        return Step("gpi", constants, states, grows=True, differs=differs)
+        return Step("gpi", constants, states, grows=True, past=past)

@@ -124,7 +124,9 @@ def discretise(
     augmented[:m, :m] = system.a * dt
     augmented[:m, m] = system.b * dt
     augmented[m, m + 1] = 1.0
-    exponential = expm(augmented)
+    # A fit may try what runs away within an interval: NaN, as of all that runs away.
+    with np.errstate(over="ignore", invalid="ignore"):
+        exponential = expm(augmented)
     phi = np.ascontiguousarray(exponential[:m, :m])
     step, ramp = exponential[:m, m], exponential[:m, m + 1]
     if hold == "zero-order":

@@ -10,11 +10,11 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.band_limited import held_lines
-from hystbench.blocks.force import Force, Motion, against, exported, rows
+from hystbench.blocks.force import Force, Motion, exported, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import StateSpace, discretise
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
-from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
+from hystbench.blocks.step import TURNED, Sampling, Step, line_corners, smooth_curve
 from hystbench.blocks.transfer_function import STARTS, path_from
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -26,8 +26,6 @@ MOST = 40
 """Steps of an interval, at most: the linear part is exact however fast it is."""
 CONTACT = 10
 """Steps of an interval that a stiff contact may ask for: it is stable without."""
-DOUBLINGS = 60
-"""Of the way on which a place of balance is looked for."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +38,10 @@ class Mechanism(HeldBlock):
 
     The linear part is exact over a step, in which the forces count with their mean over
     the way, which does their exact work (a discrete gradient): of second order, and
-    stable however stiff they are. A band-limited input is taken as straight lines on a
-    grid twice as fine. With ``start: settled`` it begins where the springs balance the
-    first value; friction holds nothing there yet.
+    stable however stiff they are. A step in which the motion turns back is taken in
+    eighths where a force turns with it. A band-limited input is taken as straight lines
+    on a grid twice as fine. With ``start: settled`` it begins where the springs balance
+    the first value; friction holds nothing there yet.
 
     References
     ----------
@@ -122,7 +121,7 @@ class Mechanism(HeldBlock):
             return Motion(q, v, q, force)
         q[0], v[0] = self.start_position, self.start_velocity
         if self.start != "rest":
-            q[0] += self._balance(self.gain * before + self.bias, forces)
+            q[0] += self._balance(self.gain * before + self.bias, numbers)
         parts = self._parts(step, forces)
         kernels.call(
             "hb_mechanism",
@@ -130,7 +129,7 @@ class Mechanism(HeldBlock):
             parts,
             step,
             float(self.holding != "zero-order"),
-            self._step(step / parts),
+            self._steps(step / parts),
             len(forces),
             numbers,
             np.zeros(len(forces)),
@@ -152,7 +151,7 @@ class Mechanism(HeldBlock):
         segments, points, corners = line_corners(self.holding, sampling.points)
         line = sampling.dt / segments
         parts = self._parts(line, forces)
-        balanced = 0.0 if self.start == "rest" else 1 / self.stiffness
+        balanced = 0.0 if self.start == "rest" else self.stiffness
         constants = {
             "gain": self.gain,
             "bias": self.bias,
@@ -162,19 +161,15 @@ class Mechanism(HeldBlock):
             "ramp": float(self.holding != "zero-order"),
             "parts": parts,
             "h": line / parts,
-            "step": self._step(line / parts).ravel(),
+            "step": self._steps(line / parts).ravel(),
             "shown": self._shown(),
             "start": np.array([self.start_position, self.start_velocity, balanced]),
             **exported(forces),
         }
         states = {"motion": 2, "memory": max(len(forces), 1), "history": 1 + points}
-        differs = [smooth_curve(points)] if segments > 1 else []
-        if self.start == "moving" or (self.start == "settled" and forces):
-            differs.append(
-                "starts where its linear spring alone holds its first sample, whatever "
-                "came before"
-            )
-        return Step("mechanism", constants, states, differs="; ".join(differs))
+        differs = smooth_curve(points) if segments > 1 else ""
+        past = TURNED if self.start == "moving" else ""
+        return Step("mechanism", constants, states, past=past, differs=differs)
 
     def _shown(self) -> FloatArray:
         """Weights of q, q', the forces inside and the driving force in the output."""
@@ -189,26 +184,11 @@ class Mechanism(HeldBlock):
         }
         return weights[self.output]
 
-    def _balance(self, p: float, forces: tuple[Force, ...]) -> float:
+    def _balance(self, p: float, numbers: FloatArray) -> float:
         """Find where the springs hold a force, next to where the linear one does."""
-        linear = p / self.stiffness
-
-        def over(q: float) -> float:
-            force = against(forces, np.array([q]), np.zeros(1))[0]
-            return float(self.stiffness * q + force - p)
-
-        first = over(linear)
-        if first == 0:
-            return linear
-        from scipy.optimize import brentq  # late: most starts are at rest
-
-        # Stiffer springs balance within the first step back; others further on.
-        step, end = -first / self.stiffness, linear
-        for _ in range(DOUBLINGS):
-            end, step = linear + step, 2 * step
-            if not over(end) * first > 0:
-                return float(brentq(over, linear, end, xtol=1e-300, rtol=1e-15))
-        return float("nan")
+        q, memory = np.zeros(1), np.zeros(len(numbers))
+        kernels.call("hb_settle", self.stiffness, p, len(numbers), numbers, memory, q)
+        return float(q[0])
 
     def _parts(self, dt: float, forces: tuple[Force, ...]) -> int:
         """Steps of an interval: short for the linear coordinate, and for a contact."""
@@ -218,6 +198,10 @@ class Mechanism(HeldBlock):
             for k in (self.stiffness, self.stiffness + contact)
         )
         return max(1, min(ceil(linear), MOST), min(ceil(stiff), CONTACT))
+
+    def _steps(self, dt: float) -> FloatArray:
+        """Weights of a step, and of an eighth of it."""
+        return np.array([self._step(dt), self._step(dt / 8)])
 
     def _step(self, dt: float) -> FloatArray:
         """Weights of q, q' and of the driving force at both ends of a step."""

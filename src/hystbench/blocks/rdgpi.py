@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import (
-    PASSED_ONCE,
+    PASSED,
     Sampling,
     Step,
     foretold,
@@ -83,8 +83,11 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
             "count": count,
         }
         states = {"history": 1 + sampling.points, "w": count}
-        told = [foretold(sampling.points, sampling.ahead)]
-        if self.start == "settled":
-            told.append(PASSED_ONCE)
-        differs = "; ".join(filter(None, told))
-        return Step("rdgpi", constants, states, forward=True, differs=differs)
+        return Step(
+            "rdgpi",
+            constants,
+            states,
+            forward=True,
+            past=PASSED if self.start == "settled" else "",
+            differs=foretold(sampling.points, sampling.ahead),
+        )

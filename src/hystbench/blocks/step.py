@@ -70,6 +70,12 @@ class Step:
     drives : int
         For a block that wraps hysteresis: 0 where it adds its own output to that of
         what is inside; else how often, at most, it calls what is inside in one sample.
+    undoes : bool
+        Whether it looks for the input of what is inside it, of which it tries some.
+    past : str
+        What came before the first sample, if that depends on samples to come:
+        :data:`PASSED` or :data:`TURNED`. What is remembered of a passage is the state
+        ``w``.
     differs : str
         How the step differs from the block's simulation of a whole record, if it does:
         the end of a sentence that begins with the block.
@@ -82,6 +88,8 @@ class Step:
     forward: bool = False
     grows: bool = False
     drives: int = 0
+    undoes: bool = False
+    past: str = ""
     differs: str = ""
 
 
@@ -210,6 +218,12 @@ def foretold(points: int, ahead: int = 0) -> str:
     )
 
 
-PASSED_ONCE = (
-    "starts at rest; that its input has passed once before is so after it was fed once"
-)
+PASSED, TURNED = "passed", "turned"
+"""What came before the first sample: its input passed once, and its hysteresis
+remembers that; or its input came as it leaves, the record turned about its start."""
+UNKNOWN_PAST = {
+    PASSED: "starts at rest, as without --past it is not known what has passed",
+    TURNED: "starts settled on its first sample, as without --past it is not known "
+    "what came before",
+}
+"""What code does that is given no record: it knows none of its samples to come."""

@@ -10,7 +10,7 @@ import numpy as np
 from hystbench.blocks.base import Place
 from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
 from hystbench.blocks.parameter import HUGE, choice, numbers
-from hystbench.blocks.step import Sampling, Step
+from hystbench.blocks.step import TURNED, Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -53,13 +53,10 @@ class TransferFunction(LinearBlock):
         return y[len(path) - len(z) :]
 
     def step(self, sampling: Sampling) -> Step:
-        """Move the state; exported code takes ``moving`` as ``settled``."""
+        """Move the state."""
         settled = self.start != "rest"
         step = linear_step(self.continuous(), sampling, self.holding, settled)
-        if self.start != "moving":
-            return step
-        started = "starts settled on its first sample, whatever came before"
-        return replace(step, differs="; ".join(filter(None, (step.differs, started))))
+        return replace(step, past=TURNED) if self.start == "moving" else step
 
     def check(self) -> None:
         """Refuse an improper or unstable transfer function."""

@@ -9,12 +9,15 @@ import click
 from hystbench import options
 from hystbench.blocks.held import HOLDS, Hold
 from hystbench.blocks.step import LARGEST_POINTS, Sampling
+from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
 from hystbench.export.described import describe
-from hystbench.export.inverse import Ends, describe_inverse
+from hystbench.export.inverse import describe_inverse
+from hystbench.export.past import begun, begun_inverse
 from hystbench.files import whole_folder
-from hystbench.model import load_model
+from hystbench.model import Model, load_model
+from hystbench.record import FloatArray, column_name
 
 
 @click.command()
@@ -45,6 +48,12 @@ from hystbench.model import load_model
     "--duration", type=float, help="Length in seconds of the record of a path of drift."
 )
 @click.option(
+    "--past",
+    type=options.FILE,
+    help="CSV file with time_s and the input, such as current_A: the code starts as "
+    "the simulation of this record, where MODEL says 'start: settled' or 'moving'.",
+)
+@click.option(
     "--hold",
     type=click.Choice(HOLDS),
     help="How the input moves between samples where MODEL does not say.",
@@ -64,6 +73,7 @@ def export(
     points: int,
     delay: int,
     duration: float | None,
+    past: Path | None,
     hold: Hold | None,
     inverse: bool,
     limit_low: float | None,
@@ -84,13 +94,18 @@ def export(
     sampling = Sampling(dt, points, duration, delay)
     try:
         described = (
-            describe_inverse(system, sampling, _both(*limits))
+            describe_inverse(
+                system, sampling, options.both_limits(*limits, "--inverse")
+            )
             if inverse
             else describe(system, sampling)
         )
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None
+    if past is not None:
+        start = begun_inverse if inverse else begun
+        described = start(described, system, _record(system, past, dt))
     name = described.name
     names = {
         "c": [f"{name}.h", f"{name}.c"],
@@ -111,8 +126,9 @@ def export(
         click.echo(line)
 
 
-def _both(low: float | None, high: float | None) -> Ends:
-    for name, value in (("low", low), ("high", high)):
-        if value is None:
-            raise InputError(f"--limit-{name}: expected it beside --inverse")
-    return (low or 0.0, high or 0.0)
+def _record(system: Model, file: Path, wanted: float) -> FloatArray:
+    """Read the input of a record, which has to have the code's interval."""
+    dt, u = read_input(file, column_name(system.input.name, system.input.unit))
+    if abs(dt - wanted) > 1e-6 * wanted:
+        raise InputError(f"{file}: sampled every {dt:g} s; expected --dt, {wanted:g} s")
+    return u

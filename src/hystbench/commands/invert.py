@@ -8,13 +8,16 @@ import click
 import numpy as np
 
 from hystbench import options
+from hystbench.blocks.step import Sampling
 from hystbench.dataset import read_input
 from hystbench.errors import InputError
+from hystbench.export import python
+from hystbench.export.inverse import describe_inverse
 from hystbench.files import write_csv
-from hystbench.inverse.bandwidth import HOLDS, bandwidth, holds_to
+from hystbench.inverse.bandwidth import HOLDS, Invert, bandwidth, holds_to
 from hystbench.inverse.feedforward import BAND_SHARE, Limits, feedforward
 from hystbench.model import Model, load_model
-from hystbench.record import column_name
+from hystbench.record import FloatArray, column_name
 
 
 @click.command()
@@ -34,6 +37,12 @@ from hystbench.record import column_name
 )
 @click.option("--limit-low", type=float, help="Lowest input of the actuator.")
 @click.option("--limit-high", type=float, help="Highest input of the actuator.")
+@click.option(
+    "--sampled",
+    is_flag=True,
+    help="Invert sample by sample, as exported code does, which knows no reference to "
+    "come; give both limits.",
+)
 @options.out
 def invert(
     model: Path,
@@ -43,6 +52,7 @@ def invert(
     band: float | None,
     limit_low: float | None,
     limit_high: float | None,
+    sampled: bool,
     out: Path,
 ) -> None:
     """Find the input that makes the output of MODEL follow a reference.
@@ -56,15 +66,28 @@ def invert(
     system = load_model(model)
     asked = options.asked_limits(limit_low, limit_high, None)
     limits = Limits(**asked)
+    if sampled:
+        if band is not None and reference is not None:
+            raise InputError("--band: expected none beside --sampled and --reference")
+        options.both_limits(limit_low, limit_high, "--sampled")
     if reference is not None:
         if dt is not None or stroke is not None:
             raise InputError("--dt and --stroke: expected none beside --reference")
-        _follow(system, model, reference, band, limits, out)
+        if sampled:
+            _follow_sampled(system, model, reference, limits, out)
+        else:
+            _follow(system, model, reference, band, limits, out)
         return
     if dt is None or stroke is None:
         missing = "--dt" if dt is None else "--stroke"
         raise InputError(f"{missing}: expected it, or a --reference")
-    _table(system, dt, stroke, _band(band, dt), limits, out)
+    top = _band(band, dt)
+
+    def iterated(wanted: FloatArray) -> FloatArray:
+        return feedforward(system, wanted, dt, top, limits).u
+
+    way = _by_code(system, model, dt, limits) if sampled else iterated
+    _table(system, dt, stroke, top, way, out)
 
 
 def _band(asked: float | None, dt: float) -> float:
@@ -86,14 +109,7 @@ def _follow(
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: {file}: "
         raise InputError(f"{where}{error}") from None
-    columns = {
-        "time_s": np.arange(len(reference)) * dt,
-        column_name(system.input.name, system.input.unit): found.u,
-        wanted: reference,
-        column_name("simulated", system.output.unit): found.y,
-    }
-    cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
-    write_csv(out, list(columns), zip(*cells, strict=True))
+    _write(out, system, dt, reference, found.u, found.y)
     exact = f"'{found.exact}' inverted exactly, " if found.exact else ""
     unit = system.input.unit
     click.echo(
@@ -106,10 +122,61 @@ def _follow(
         click.echo(f"{found.clipped} samples stand at a limit of the input")
 
 
-def _table(
-    system: Model, dt: float, stroke: float, band: float, limits: Limits, out: Path
+def _follow_sampled(
+    system: Model, model: Path, file: Path, limits: Limits, out: Path
 ) -> None:
-    rows = bandwidth(system, stroke, dt, band, limits)
+    dt, reference = read_input(
+        file, column_name(system.output.name, system.output.unit)
+    )
+    u = _by_code(system, model, dt, limits)(reference)
+    y = system.simulate(u, dt)
+    _write(out, system, dt, reference, u, y)
+    stroke = float(np.ptp(reference)) or 1.0
+    left = float(np.sqrt(np.mean((y - reference) ** 2))) / stroke
+    click.echo(
+        f"{out}: {len(reference)} samples, input from {u.min():.4g} to {u.max():.4g} "
+        f"{system.input.unit}; inverted sample by sample, as exported code does; the "
+        f"model's output is off by {100 * left:.3g} % of the stroke (RMS)"
+    )
+
+
+def _by_code(system: Model, model: Path, dt: float, limits: Limits) -> Invert:
+    """Feed the exported inverse."""
+    try:
+        described = describe_inverse(system, Sampling(dt), limits)
+    except InputError as error:
+        where = "" if str(error).startswith("--") else f"{model}: "
+        raise InputError(f"{where}{error}") from None
+
+    def invert(reference: FloatArray) -> FloatArray:
+        u: FloatArray = python.loaded(described).simulate(reference)
+        return u
+
+    return invert
+
+
+def _write(
+    out: Path,
+    system: Model,
+    dt: float,
+    reference: FloatArray,
+    u: FloatArray,
+    y: FloatArray,
+) -> None:
+    columns = {
+        "time_s": np.arange(len(reference)) * dt,
+        column_name(system.input.name, system.input.unit): u,
+        column_name(system.output.name, system.output.unit): reference,
+        column_name("simulated", system.output.unit): y,
+    }
+    cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
+    write_csv(out, list(columns), zip(*cells, strict=True))
+
+
+def _table(
+    system: Model, dt: float, stroke: float, band: float, way: Invert, out: Path
+) -> None:
+    rows = bandwidth(system, stroke, dt, band, way)
     header = ["frequency_hz", "rms_error_percent", "largest_input", "said"]
     cells = [
         [

@@ -11,9 +11,16 @@ from typing import Any
 
 import numpy as np
 
+from hystbench import kernels
 from hystbench.export.described import Described, Piece, needed
 
-LIBRARY = tuple(Path(__file__).with_name(name) for name in ("steps.c", "inside.c"))
+#: The laws of forces are those of the compiled kernel.
+LIBRARY = (
+    Path(kernels.__file__).with_name("forces.c"),
+    Path(__file__).with_name("steps.c"),
+    Path(__file__).with_name("inside.c"),
+    Path(__file__).with_name("inverse_steps.c"),
+)
 WIDTH = 88
 
 
@@ -38,7 +45,7 @@ def header(model: Described) -> str:
             *(states or ["    double none; /* the model remembers nothing */"]),
             f"}} {name}_state;",
             "",
-            "/* Nothing has ever entered. */",
+            _comment([model.begins]),
             f"void {name}_init({name}_state *state);",
             "",
             _comment(
@@ -82,6 +89,10 @@ def body(model: Described) -> str:
         for key, value in piece.step.constants.items()
         if isinstance(value, np.ndarray)
     ]
+    parts += [
+        _array(f"{model.name}_{state}_start", value)
+        for state, value in model.starts.items()
+    ]
     for piece in model.pieces:
         parts += [_wrapped(model, part) for part in piece.all_inside() if piece.inner]
     lines = [
@@ -99,8 +110,20 @@ def body(model: Described) -> str:
             lines.append(f"    if (call < {piece.wait}) return 0; /* none yet */")
     used = [] if any(model.all_states()) else ["    (void)s;"]
     name = model.name
+    begun = [
+        f"    memcpy(s->{state}, {name}_{state}_start, sizeof s->{state});"
+        for state in model.starts
+    ]
     parts += [
-        f"void {name}_init({name}_state *s)\n{{\n    memset(s, 0, sizeof *s);\n}}",
+        "\n".join(
+            [
+                f"void {name}_init({name}_state *s)",
+                "{",
+                "    memset(s, 0, sizeof *s);",
+                *begun,
+                "}",
+            ]
+        ),
         "\n".join(
             [
                 f"double {name}_step({name}_state *s, double input)",
@@ -136,6 +159,8 @@ def _wrapped(model: Described, piece: Piece) -> str:
     inner = piece.inner
     if inner is None:
         lines = [f"    return {_call(model, piece, own)};"]
+    elif piece.step.undoes:
+        return _searched(model, piece, inner)
     else:
         inside = f"{model.name}_{inner.label}(s"
         if not piece.step.drives:
@@ -153,6 +178,42 @@ def _wrapped(model: Described, piece: Piece) -> str:
                 "    return y;",
             ]
     return "\n".join([opening, "{", *lines, "}"])
+
+
+def _searched(model: Described, piece: Piece, inner: Piece) -> str:
+    """Write the function that looks for the input of what is inside.
+
+    Another tries an input, and puts back all that is remembered inside.
+    """
+    name, output = f"{model.name}_{piece.label}", f"{model.name}_{piece.label}_output"
+    growth = f", s->{piece.label}_pace[3]" if inner.step.grows else ""
+    inside = f"{model.name}_{inner.label}"
+    states = [
+        f"{part.label}_{state}"
+        for part in inner.all_inside()
+        for state in part.step.states
+    ]
+    call = _call(model, piece, [output, "s", "v"])
+    return "\n".join(
+        [
+            f"static double {output}(void *model, double v)",
+            "{",
+            f"    {model.name}_state *s = model;",
+            *(f"    double {key}[sizeof s->{key} / sizeof(double)];" for key in states),
+            *(f"    memcpy({key}, s->{key}, sizeof s->{key});" for key in states),
+            f"    const double y = {inside}(s, v{growth});",
+            *(f"    memcpy(s->{key}, {key}, sizeof s->{key});" for key in states),
+            "    return y;",
+            "}",
+            "",
+            f"static double {name}({model.name}_state *s, double v)",
+            "{",
+            f"    const double found = {call};",
+            f"    {inside}(s, found{growth});",
+            "    return found;",
+            "}",
+        ]
+    )
 
 
 def _call(model: Described, piece: Piece, given: Sequence[str]) -> str:

@@ -5,19 +5,19 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven, Host
 from hystbench.blocks.other_modes import OtherModes, Superposed
-from hystbench.blocks.step import LARGEST_POINTS, Sampling, Step
+from hystbench.blocks.step import LARGEST_POINTS, UNKNOWN_PAST, Sampling, Step
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.model import Model
-from hystbench.record import Channel
+from hystbench.record import Channel, FloatArray
 
 LARGEST_STATE = 1_000_000
 """Numbers of 8 bytes that a state may hold: 8 MB, far more than a controller has."""
@@ -88,6 +88,8 @@ class Described:
     input, output : Channel
     sampling : Sampling
     pieces : tuple of Piece
+    starts : mapping of str to ndarray of float
+        What states are at the start, by name; the others are zero.
     """
 
     name: str
@@ -96,6 +98,7 @@ class Described:
     output: Channel
     sampling: Sampling
     pieces: tuple[Piece, ...]
+    starts: Mapping[str, FloatArray] = field(default_factory=dict)
 
     def all_pieces(self) -> Iterator[Piece]:
         """Give every piece, what is inside another before it."""
@@ -130,11 +133,22 @@ class Described:
             f"({delay * self.sampling.dt:.12g} s), as asked; the first "
             f"{f'{delay} are' if delay > 1 else 'is'} 0."
         ]
-        return late[: bool(delay)] + [
-            f"{piece.label} {piece.step.differs}."
-            for piece in self.all_pieces()
-            if piece.step.differs
-        ]
+        told = late[: bool(delay)]
+        for piece in self.all_pieces():
+            own = [piece.step.differs]
+            if not self.starts:
+                own.append(UNKNOWN_PAST.get(piece.step.past, ""))
+            said = "; ".join(filter(None, own))
+            if said:
+                told.append(f"{piece.label} {said}.")
+        return told
+
+    @property
+    def begins(self) -> str:
+        """Say what the code has seen at its start."""
+        if self.starts:
+            return "It starts as on the record that it was exported with."
+        return "Nothing has ever entered."
 
     @property
     def memory(self) -> str:
@@ -190,6 +204,13 @@ def describe(model: Model, sampling: Sampling) -> Described:
         If the interval or the points make no sense, or a block cannot be exported.
     """
     _check_sampling(sampling)
+    piece_of = pieces_of(model)
+    makers: list[Maker] = [partial(piece_of, step) for step in model.steps]
+    return arranged(model.name, model.input, model.output, makers, sampling)
+
+
+def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
+    """Give what makes the piece of any step of a model, and of what is inside it."""
     labels = labels_of(model)
     places = {id(block): place for place, block in enumerate(model.chain, start=1)}
 
@@ -222,8 +243,7 @@ def describe(model: Model, sampling: Sampling) -> Described:
         inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times, ahead=0))
         return replace(around, inner=inner)
 
-    makers: list[Maker] = [partial(of_step, step) for step in model.steps]
-    return arranged(model.name, model.input, model.output, makers, sampling)
+    return of_step
 
 
 def labels_of(model: Model) -> dict[int, str]:

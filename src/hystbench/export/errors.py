@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import runpy
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +11,6 @@ from hystbench.blocks.step import Sampling, sample_rate
 from hystbench.export import python
 from hystbench.export.described import describe
 from hystbench.model import Model
-from hystbench.record import FloatArray
 
 DT = 1e-4
 """Sampling interval in seconds; the numbers do not depend on it."""
@@ -85,19 +81,10 @@ def error(case: Case, points: int, delay: int) -> float:
     wanted = model.simulate(u, DT)
     # The record's own end is no part of it: the curve through all samples turns there.
     part = slice(BEGUN, SAMPLES - BEGUN)
-    made = _run(model, Sampling(DT, points, delay=delay), u)[delay:]
+    exported = python.loaded(describe(model, Sampling(DT, points, delay=delay)))
+    made = exported.simulate(u)[delay:]
     off = (made - wanted[: len(made)])[part]
     return float(np.sqrt(np.mean(off**2) / np.mean(wanted[part] ** 2)))
-
-
-def _run(model: Model, sampling: Sampling, u: FloatArray) -> FloatArray:
-    """Run the exported module, as a user imports it."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "case.py"
-        file.write_text(python.module(describe(model, sampling)), encoding="utf-8")
-        exported = runpy.run_path(str(file))["Model"]()
-    output: FloatArray = exported.simulate(u)
-    return output
 
 
 def noise_of_rate(points: int, delay: int) -> float:

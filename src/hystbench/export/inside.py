@@ -1,7 +1,7 @@
 """A coordinate with forces inside, a function for each step as in steps.py.
 
-The functions of inside.c in Python. A force is a row of six numbers: its law's number,
-and those of the law.
+The functions of inside.c and forces.c in Python. A force is a row of six numbers: its
+law's number, and those of the law.
 """
 
 from __future__ import annotations
@@ -171,11 +171,14 @@ def way_of(count, forces, memory, q, alone, gives, h):
     """Find the way from q whose mean force leaves it, by Chandrupatla's method."""
 
     def miss(way):
-        each = (
-            mean_force(forces[6 * i : 6 * i + 6], q, way, way / h, memory[i])
-            for i in range(count)
-        )
-        return way - alone + gives * sum(each)
+        total = 0.0
+        for i in range(count):
+            f = forces[6 * i : 6 * i + 6]
+            if h > 0:
+                total += mean_force(f, q, way, way / h, memory[i])
+            else:  # on the way to a place of rest the force at its end counts
+                total += inner_force(f, q + way, 0.0, memory[i])
+        return way - alone + gives * total
 
     a, b = 0.0, alone
     at_a, at_b = miss(a), miss(b)
@@ -214,6 +217,42 @@ def way_of(count, forces, memory, q, alone, gives, h):
     return a if abs(at_a) < abs(at_b) else b
 
 
+def turns(count, forces):
+    """Tell whether a force turns with the direction of the motion."""
+    return any(int(forces[6 * i]) in (3, 5, 7) for i in range(count))
+
+
+def over(count, forces, memory, step, h, ends, q, v):
+    """Give the way of a part of an interval, and the velocity after it."""
+    now = np.array([q, v, *ends])
+    alone = float(step[:4] @ now) - q
+    way, gives = alone, step[2] + step[3]
+    if count:
+        way = way_of(count, forces, memory, q, alone, gives, h)
+    after = float(step[4:] @ now)
+    return way, after - (step[6] + step[7]) * ((alone - way) / gives)
+
+
+def moved(count, forces, memory, step, h, ends, q, v):
+    """Give q and v after a part, which is taken in eighths where the motion turns."""
+    way, after = over(count, forces, memory, step[:8], h, ends, q, v)
+    fine = 8 if after * v < 0 and turns(count, forces) else 1
+    slope = (ends[1] - ends[0]) / fine
+    for i in range(fine):
+        own = ends[0] + i * slope, ends[0] + (i + 1) * slope
+        if fine > 1:
+            way, after = over(count, forces, memory, step[8:], h / fine, own, q, v)
+        q, v = q + way, after
+        all_forces(count, forces, q, v, way, memory)
+    return q, v
+
+
+def balance(stiffness, p, count, forces, memory):
+    """Find where springs hold a force, next to where the linear one alone does."""
+    q = p / stiffness
+    return q + way_of(count, forces, memory, q, 0.0, 1 / stiffness, 0.0)
+
+
 def mechanism(
     gain,
     bias,
@@ -237,27 +276,20 @@ def mechanism(
     moves, p = history[0] > 0, gain * z + bias
     remember(points, history, p)
     if not moves:
-        motion[:] = start[0] + start[2] * p, start[1]
+        motion[:] = start[0], start[1]
+        if start[2] > 0:
+            motion[0] += balance(start[2], p, count, forces, memory)
     x, w = motion
     places = corners.reshape(segments + 1, points) @ history[1:]
-    gives, brakes = step[2] + step[3], step[6] + step[7]
     for i in range(segments if moves else 0):
         now, p = places[i], places[i + 1]
         slope = ramp * (p - now) / parts
         for s in range(parts):
             ends = now + s * slope, now + s * slope + slope
-            driven = step[2] * ends[0] + step[3] * ends[1]
-            alone = step[0] * x + step[1] * w + driven - x
-            way = alone
-            if count:
-                way = way_of(count, forces, memory, x, alone, gives, h)
-            w = step[4] * x + step[5] * w + step[6] * ends[0] + step[7] * ends[1]
-            w -= brakes * ((alone - way) / gives)
-            x += way
+            x, w = moved(count, forces, memory, step, h, ends, x, w)
             if not abs(x) < 1e100:
                 x = w = math.nan  # it has run away, and stays there
                 break
-            all_forces(count, forces, x, w, way, memory)
     motion[:] = x, w
     force = math.nan if math.isnan(x) else all_forces(count, forces, x, w, 0.0, memory)
     return shown @ (x, w, force, p)

@@ -1,45 +1,53 @@
-"""A model's inverse as steps: code that turns a wanted output into the input.
+"""A model's inverse as code that turns a wanted output into the input.
 
-Each block is undone by itself, the last one first. That can be done sample by sample
-where a block is a straight line, a first-order lag, linear dynamics that answer at
-once, or made of play operators, whose output rises with the input.
+Each block is undone by itself, the last one first, with what is known at a sample: the
+reference so far. What that leaves, each step says of itself.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
+from typing import Any, cast
 
 import numpy as np
 
+from hystbench.blocks.attached import Simulated
 from hystbench.blocks.base import Block
-from hystbench.blocks.gain import Gain
-from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
-from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
-from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
-from hystbench.blocks.step import (
-    PASSED_ONCE,
-    Sampling,
-    Step,
-    polynomial,
-    smooth_curve,
-    through_samples,
-)
+from hystbench.blocks.drift import Drift
+from hystbench.blocks.force import Driven, Force
+from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.mains_pickup import MainsPickup
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
+from hystbench.blocks.rdgpi import RateDependentPrandtlIshlinskii
+from hystbench.blocks.slew_limit import SlewLimit
+from hystbench.blocks.step import Sampling, Step
+from hystbench.blocks.wrapping import HystereticBlock, Wrapped
 from hystbench.errors import InputError
-from hystbench.export.described import Described, Maker, Piece, arranged, labels_of
+from hystbench.export import undone
+from hystbench.export.described import (
+    Described,
+    Maker,
+    Piece,
+    arranged,
+    labels_of,
+    pieces_of,
+)
+from hystbench.export.undone import Ends, Making
 from hystbench.model import Model
-from hystbench.record import FloatArray
 
 CAN_BE_UNDONE = (
-    "expected gain, gpi, hysteresis, prandtl-ishlinskii, a first-order lag, or linear "
-    "dynamics that answer at once; 'hystbench invert --reference' iterates for the rest"
+    "expected curves and hysteresis that rise or fall throughout, linear dynamics "
+    "without zeros in the right half plane, or a mechanism's motion; 'hystbench invert "
+    "--reference' iterates for the rest"
 )
-
-Ends = tuple[float, float]
-"""Lowest and highest value of a signal."""
 
 
 def describe_inverse(model: Model, sampling: Sampling, limits: Ends) -> Described:
-    """Ask for the step that undoes each block.
+    """Ask for the steps that undo each block.
 
     Parameters
     ----------
@@ -63,101 +71,124 @@ def describe_inverse(model: Model, sampling: Sampling, limits: Ends) -> Describe
             "out of reach"
         )
     labels, makers, ends = labels_of(model), list[Maker](), limits
-    for place, block in enumerate(model.chain, start=1):
+    piece_of = pieces_of(model)
+    places = {id(block): place for place, block in enumerate(model.chain, start=1)}
+    for step in model.steps:
+        block = _first(step)
         label = f"{labels[id(block)]}_undone"
-        makers.append(partial(_undone, place, block, label, ends))
-        ends = _through(block, ends)
+        where = f"chain: block {places[id(block)]}: {block.name}: "
+        inner = partial(piece_of, _inside(step))
+        try:
+            back = [
+                partial(_piece, label, number, where, making, inner)
+                for number, making in enumerate(_undone(step, ends), start=1)
+            ]
+        except undone.CannotBe as why:
+            raise _refused(where, str(why)) from None
+        makers = [*back, *makers]
+        ends = _through(step, ends)
     held = Step("limited", {"low": low, "high": high})
-    makers = [*reversed(makers), lambda _: Piece("limits", held)]
+    makers.append(lambda _: Piece("limits", held))
     name, sides = f"{model.name} inverse", (model.output, model.input)
     return arranged(name, *sides, makers, sampling)
 
 
-def _refused(place: int, block: Block, why: str) -> InputError:
+def _first(step: Simulated) -> Block:
+    """Give the block that a step of the model begins with."""
+    first: Any = step
+    while isinstance(first, Wrapped | Driven):
+        first = first.inner if isinstance(first, Wrapped) else first.host
+    block: Block = first
+    return block
+
+
+def _refused(where: str, why: str) -> InputError:
     return InputError(
-        f"chain: block {place}: {block.name}: no inverse that runs sample by sample, "
-        f"as {why}; {CAN_BE_UNDONE}"
+        f"{where}no inverse that runs sample by sample, as {why}; {CAN_BE_UNDONE}"
     )
 
 
-def _undone(
-    place: int, block: Block, label: str, ends: Ends, sampling: Sampling
+def _inside(step: Simulated) -> Any:
+    """Give the hysteresis that a step is, or that a rate is around."""
+    if isinstance(step, Wrapped) and isinstance(step.by, RateDependentHysteresis):
+        return step.inner
+    return step
+
+
+def _piece(
+    label: str,
+    number: int,
+    where: str,
+    making: Making,
+    inner: Maker,
+    sampling: Sampling,
 ) -> Piece:
-    if isinstance(block, Gain):
-        if block.value == 0:
-            raise _refused(place, block, "its value is 0")
-        return Piece(label, polynomial(-block.offset / block.value, 1 / block.value))
-    if isinstance(block, GeneralizedPrandtlIshlinskii | PrandtlIshlinskii):
-        return Piece(label, _plays(block, ends))
-    if isinstance(block, LinearBlock):
-        return Piece(label, _linear(place, block, sampling))
-    raise _refused(place, block, "none is known")
+    """Name a step after the block that it undoes, and put that in where it is tried."""
+    try:
+        step = making(sampling)
+    except undone.CannotBe as why:
+        raise _refused(where, str(why)) from None
+    tried = inner(replace(sampling, ahead=0)) if step.undoes else None
+    return Piece(label if number == 1 else f"{label}_{number}", step, tried)
 
 
-def _through(block: Block, ends: Ends) -> Ends:
+def _undone(step: Simulated, ends: Ends) -> Iterator[Making]:
+    """Give what undoes a step of the model, in the order of the inverse's signal."""
+    inner = _inside(step)
+    if isinstance(inner, RateDependentPrandtlIshlinskii) or _depends_on_rate(inner):
+        raise undone.CannotBe("its output depends on the rate that is sought")
+    if isinstance(step, Wrapped) and inner is not step:
+        by = cast(RateDependentHysteresis, step.by)
+        if by.form == "growing-thresholds":
+            yield undone.hysteresis(inner, ends, by)
+        else:
+            yield undone.hysteresis(inner, ends)
+            yield partial(undone.field, by)
+    elif isinstance(step, HystereticBlock | Wrapped):
+        yield undone.hysteresis(step, ends)
+    elif isinstance(step, LinearBlock):
+        yield from undone.linear(step)
+    elif isinstance(step, Mechanism):
+        yield from _motion(step, ())
+    elif isinstance(step, Driven) and isinstance(step.host, Mechanism):
+        yield from _motion(step.host, step.forces)
+    elif isinstance(step, InputDelay):
+        late = f"{step.delay_s:.6g} s"
+        yield partial(
+            undone.left, f"is left: what follows the reference is {late} late"
+        )
+    elif isinstance(step, SlewLimit):
+        slow = f"is left: it does nothing up to {step.rate:.6g} a second"
+        yield partial(undone.left, slow)
+    elif isinstance(step, Drift | MainsPickup):
+        yield partial(undone.left, "is left, as its start in time is not known")
+    elif isinstance(step, Block):
+        yield partial(undone.curve, step, ends)
+    else:
+        raise undone.CannotBe("none is known with what is attached to it")
+
+
+def _depends_on_rate(step: Any) -> bool:
+    """Tell whether a rate is around hysteresis that something else is around."""
+    return isinstance(step, Wrapped) and (
+        isinstance(step.by, RateDependentHysteresis) or _depends_on_rate(step.inner)
+    )
+
+
+def _motion(block: Mechanism, forces: tuple[Force, ...]) -> Iterator[Making]:
+    """Undo a coordinate: the force that its motion takes is what drives it."""
+    if block.output not in ("position", "velocity") or block.blend or not block.gain:
+        raise undone.CannotBe("its output is not a motion alone, or its gain is 0")
+    yield partial(undone.motion, block, forces)
+    yield partial(undone.straight, block.bias, block.gain)
+
+
+def _through(step: Simulated, ends: Ends) -> Ends:
     """Give what a slow signal between two ends becomes."""
-    if isinstance(block, LinearBlock):
-        gain = float(block.frequency_response(np.zeros(1))[0].real)
+    if isinstance(step, LinearBlock):
+        gain = float(step.frequency_response(np.zeros(1))[0].real)
         low, high = sorted(gain * end for end in ends)
         return low, high
     path = np.array([*ends, *ends])
-    passed = block.simulate(path, path, 1.0)
+    passed = step.simulate(path, path, 1.0)
     return float(passed.min()), float(passed.max())
-
-
-def _plays(block: GeneralizedPrandtlIshlinskii | PrandtlIshlinskii, ends: Ends) -> Step:
-    """Give the step that finds the input of play operators, to rounding."""
-    count = len(block.thresholds)
-    terms, path, envelope = np.zeros((3, count)), 0.0, np.zeros(8)
-    terms[0] = block.weights
-    differs = ""
-    if isinstance(block, PrandtlIshlinskii):
-        path = 1.0
-        for row, values in enumerate((block.square_weights, block.cube_weights), 1):
-            terms[row] = values or 0.0
-    else:
-        envelope = np.array(block.envelope)
-        differs = PASSED_ONCE if block.start == "settled" else ""
-    constants = {
-        "path": path,
-        "own": int(path == 0.0),
-        "envelope": envelope,
-        "count": count,
-        "thresholds": np.array(block.thresholds),
-        "terms": terms.ravel(),
-        "low": ends[0],
-        "high": ends[1],
-    }
-    return Step("undo_plays", constants, {"w": count, "at": 2}, differs=differs)
-
-
-def _linear(place: int, block: LinearBlock, sampling: Sampling) -> Step:
-    """Give the step that undoes linear dynamics."""
-    system = block.continuous()
-    if system.d != 0:
-        inverse = _reciprocal(system)
-        if (np.linalg.eigvals(inverse.a).real >= 0).any():
-            raise _refused(place, block, "its inverse is unstable")
-        return linear_step(inverse, sampling, "band-limited")
-    rise = float(system.c @ system.b)
-    if len(system.b) > 1 or rise == 0:
-        raise _refused(place, block, "it takes more than one derivative")
-    # y' = a y + c b v, with the rate of the curve through the samples.
-    points, ahead = sampling.points, sampling.ahead
-    rate = through_samples(points, lambda m: m * (-float(ahead)) ** max(m - 1, 0))
-    taps: FloatArray = rate / sampling.dt / rise
-    taps[ahead] -= system.a[0, 0] / rise
-    return Step(
-        "at_samples",
-        {"points": points, "taps": taps},
-        {"history": 1 + points},
-        forward=True,
-        differs=smooth_curve(points, ahead),
-    )
-
-
-def _reciprocal(system: StateSpace) -> StateSpace:
-    """Exchange input and output of a system that answers at once."""
-    d = system.d
-    a = system.a - np.outer(system.b, system.c) / d
-    return StateSpace(a, system.b / d, -system.c / d, 1 / d)

@@ -7,13 +7,17 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from textwrap import indent, wrap
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from hystbench.export.described import Described, Piece, needed
 
-LIBRARY = tuple(Path(__file__).with_name(name) for name in ("steps.py", "inside.py"))
+LIBRARY = tuple(
+    Path(__file__).with_name(f"{name}.py")
+    for name in ("steps", "inside", "inverse_steps")
+)
 WIDTH = 88
 
 CLASS = '''\
@@ -24,7 +28,7 @@ class Model:
         self.reset()
 
     def reset(self):
-        """Forget all that has entered."""
+        """Forget all that has entered. {begins}"""
 {reset}
 
     def step(self, u):
@@ -50,7 +54,15 @@ def module(model: Described) -> str:
         for key, value in piece.step.constants.items()
         if isinstance(value, np.ndarray)
     ]
-    reset = [f"self.{name} = np.zeros({size})" for name, size in model.all_states()]
+    constants += [
+        _array(f"{name.upper()}_START", value) for name, value in model.starts.items()
+    ]
+    reset = [
+        f"self.{name} = {name.upper()}_START.copy()"
+        if name in model.starts
+        else f"self.{name} = np.zeros({size})"
+        for name, size in model.all_states()
+    ]
     steps = [
         f"remember({piece.step.constants['points']}, self.{piece.history}, y)"
         for piece in model.watching
@@ -71,6 +83,7 @@ def module(model: Described) -> str:
         for part in piece.all_inside()
     ]
     body = CLASS.format(
+        begins=model.begins,
         reset=indent("\n".join(reset or ["pass"]), " " * 8),
         steps=indent("\n".join(filter(None, steps)), " " * 8),
     )
@@ -82,6 +95,13 @@ def module(model: Described) -> str:
         "\n".join([body.rstrip(), *methods]),
     ]
     return "\n\n\n".join(filter(None, parts)) + "\n"
+
+
+def loaded(model: Described) -> Any:
+    """Give the exported ``Model``, new, as one who imports the module makes it."""
+    made = ModuleType(model.name)
+    exec(module(model), made.__dict__)  # noqa: S102 - our own text
+    return made.Model()
 
 
 def _quoted(line: str) -> str:
@@ -103,6 +123,8 @@ def _method(piece: Piece) -> str:
     own = ["v"] + ["growth"] * piece.step.grows
     lines = [f"return {_call(piece, own)}"]
     inner = piece.inner
+    if inner is not None and piece.step.undoes:
+        return _searched(piece, inner)
     if inner is not None:
         given = ", ".join(["v"] + ["growth"] * inner.step.grows)
         if not piece.step.drives:
@@ -116,6 +138,33 @@ def _method(piece: Piece) -> str:
             ]
     opening = f"\ndef _{piece.label}(self, {', '.join(own)}):"
     return indent("\n".join([opening, *(f"    {line}" for line in lines)]), "    ")
+
+
+def _searched(piece: Piece, inner: Piece) -> str:
+    """Write the methods that look for the input of what is inside, and try one."""
+    growth = f", self.{piece.label}_pace[3]" if inner.step.grows else ""
+    states = [
+        f"self.{part.label}_{state}"
+        for part in inner.all_inside()
+        for state in part.step.states
+    ]
+    output = f"_{piece.label}_output"
+    lines = [
+        "",
+        f"def _{piece.label}(self, v):",
+        f"    found = {_call(piece, [f'self.{output}', 'v'])}",
+        f"    self._{inner.label}(found{growth})",
+        "    return found",
+        "",
+        f"def {output}(self, v):",
+        f"    states = [{', '.join(states)}]",
+        "    kept = [state.copy() for state in states]",
+        f"    y = self._{inner.label}(v{growth})",
+        "    for state, before in zip(states, kept):",
+        "        state[:] = before",
+        "    return y",
+    ]
+    return indent("\n".join(lines), "    ")
 
 
 def _call(piece: Piece, given: Sequence[str]) -> str:

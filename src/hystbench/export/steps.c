@@ -2,17 +2,12 @@
  *
  * Plain C99: no allocation, no pointer that is kept, no number that is not a double or
  * an int. States are arrays that are all zero at the start. hystbench copies what a
- * model needs of this file into the model's own.
+ * model needs of this file into the model's own, behind what it needs of forces.c.
  */
-#include <math.h>
 #include <string.h>
 
 #define HB_PI 3.14159265358979323846
 #define HB_POINTS 8 /* samples that a curve goes through at most */
-
-static double hb_least(double a, double b) { return a < b ? a : b; }
-
-static double hb_most(double a, double b) { return a > b ? a : b; }
 
 static double hb_weighted(int count, const double *weights, const double *values)
 {
@@ -60,13 +55,6 @@ static double hb_polynomial(int count, const double *coefficients, double z)
     return y;
 }
 
-static double hb_clip(double limit, double z) { return hb_most(-limit, hb_least(limit, z)); }
-
-static double hb_dead_zone(double half_width, double z)
-{
-    return z - hb_clip(half_width, z);
-}
-
 static double hb_saturation(double level, double sharpness, double z)
 {
     const double ratio = z / level;
@@ -79,12 +67,6 @@ static double hb_backlash(double half_width, double *started, double *w, double 
     if (*started == 0) *w = z;
     *started = 1;
     return hb_play(z, z, half_width, w);
-}
-
-/* Stand at a limit where the signal is beyond it. */
-static double hb_limited(double low, double high, double z)
-{
-    return hb_most(low, hb_least(high, z));
 }
 
 /* Weigh the newest samples. */
@@ -547,68 +529,4 @@ static double hb_store(double gain, double bias, int segments, int points,
     *level = h;
     const double spilt = over / (segments * parts * t);
     return outflow ? hb_outflow(rate, exponent, h) + caught * spilt : h;
-}
-
-/* What plays make of an input, their states being w: moved, where it is given, gets the
- * states then. */
-static double hb_of_plays(double path, int own, const double *envelope, int count,
-                          const double *thresholds, const double *terms,
-                          const double *w, double *moved, double v)
-{
-    const double *a = envelope;
-    const double left = own ? a[0] * tanh(a[1] * v + a[2]) + a[3] : v;
-    const double right = own ? a[4] * tanh(a[5] * v + a[6]) + a[7] : v;
-    double y = path * v;
-    for (int i = 0; i < count; i++) {
-        double p = w[i];
-        hb_play(left, right, thresholds[i], &p);
-        y += p * (terms[i] + p * (terms[count + i] + p * terms[2 * count + i]));
-        if (moved) moved[i] = p;
-    }
-    return y;
-}
-
-/* The input of plays: regula falsi, the end that stays halved (Illinois). at: the input
- * before, and how far it had moved. */
-static double hb_undo_plays(double path, int own, const double *envelope, int count,
-                            const double *thresholds, const double *terms, double low,
-                            double high, double *w, double *at, double z)
-{
-#define HB_OFF(v) \
-    (hb_of_plays(path, own, envelope, count, thresholds, terms, w, 0, v) - z)
-    double one = hb_most(low, hb_least(high, at[0])), other = one;
-    const double began = one;
-    double off_one = HB_OFF(one), off_other = off_one;
-    double step = at[1] > 0 ? at[1] : 1e-6 * (fabs(one) + 1e-6);
-    while (off_one != 0 && off_other != 0 && (off_other > 0) == (off_one > 0)) {
-        if (other == (off_other > 0 ? low : high)) break;
-        one = other;
-        off_one = off_other;
-        other = off_one > 0 ? hb_most(one - step, low) : hb_least(one + step, high);
-        off_other = HB_OFF(other);
-        step *= 2;
-    }
-    const int between = (off_other > 0) != (off_one > 0);
-    for (int turn = 0; turn < 200 && between && off_one != 0 && off_other != 0; turn++) {
-        const double least = hb_least(one, other), most = hb_most(one, other);
-        double middle = other - off_other * (other - one) / (off_other - off_one);
-        if (turn % 3 == 2 || !(middle > least && middle < most))
-            middle = 0.5 * (one + other);
-        if (!(middle > least && middle < most)) break;
-        if (most - least <= 1e-15 * (fabs(least) + fabs(most))) break;
-        const double off_middle = HB_OFF(middle);
-        if ((off_middle > 0) == (off_other > 0)) {
-            off_one *= 0.5;
-        } else {
-            one = other;
-            off_one = off_other;
-        }
-        other = middle;
-        off_other = off_middle;
-    }
-    at[0] = other;
-    at[1] = fabs(other - began);
-    hb_of_plays(path, own, envelope, count, thresholds, terms, w, w, other);
-    return other;
-#undef HB_OFF
 }

@@ -79,11 +79,6 @@ def late(samples, kept, z):
     return before
 
 
-def limited(low, high, z):
-    """Stand at a limit where the signal is beyond it."""
-    return min(max(z, low), high)
-
-
 def at_samples(points, taps, history, z):
     """Weigh the newest samples."""
     remember(points, history, z)
@@ -543,55 +538,3 @@ def store(
     if not outflow:
         return h
     return flow_out(rate, exponent, h) + caught * (over / (segments * parts * t))
-
-
-def of_plays(path, own, envelope, count, thresholds, terms, w, v):
-    """Give what plays make of an input, their states being w, and the states then."""
-    a, left, right = envelope, v, v
-    if own:
-        left = a[0] * math.tanh(a[1] * v + a[2]) + a[3]
-        right = a[4] * math.tanh(a[5] * v + a[6]) + a[7]
-    p = play(left, right, thresholds, w.copy())
-    first, second, third = terms.reshape(3, count)
-    return path * v + np.sum(p * (first + p * (second + p * third))), p
-
-
-def undo_plays(path, own, envelope, count, thresholds, terms, low, high, w, at, z):
-    """Find the input of plays: regula falsi, the end that stays halved (Illinois)."""
-
-    def off(v):
-        return of_plays(path, own, envelope, count, thresholds, terms, w, v)[0] - z
-
-    one = min(max(at[0], low), high)
-    other, began = one, one
-    off_one = off_other = off(one)
-    step = at[1] if at[1] > 0 else 1e-6 * (abs(one) + 1e-6)
-    while off_one != 0 and off_other != 0 and (off_other > 0) == (off_one > 0):
-        limit = low if off_other > 0 else high
-        if other == limit:
-            break
-        one, off_one = other, off_other
-        other = max(one - step, low) if off_one > 0 else min(one + step, high)
-        off_other = off(other)
-        step *= 2
-    if (off_other > 0) != (off_one > 0):
-        for turn in range(200):
-            if off_one == 0 or off_other == 0:
-                break
-            least, most = min(one, other), max(one, other)
-            middle = other - off_other * (other - one) / (off_other - off_one)
-            if turn % 3 == 2 or not least < middle < most:
-                middle = 0.5 * (one + other)
-            if not least < middle < most:
-                break
-            if most - least <= 1e-15 * (abs(least) + abs(most)):
-                break
-            off_middle = off(middle)
-            if (off_middle > 0) == (off_other > 0):
-                off_one *= 0.5
-            else:
-                one, off_one = other, off_other
-            other, off_other = middle, off_middle
-    at[0], at[1] = other, abs(other - began)
-    w[:] = of_plays(path, own, envelope, count, thresholds, terms, w, other)[1]
-    return other

@@ -12,6 +12,8 @@ from hystbench.formats.damaged import told
 from hystbench.formats.table import FREQUENCIES, INTERVALS, Column, Table, columns_of
 from hystbench.libraries import library
 
+OCTAVE = "OCTAVE_NEW_FORMAT"
+"""Marks a group in which Octave keeps one variable: its type and its value."""
 UNITS = ("units", "unit", "Units", "Unit", "unit_string")
 
 
@@ -24,6 +26,10 @@ def read(path: Path) -> Table:
 
     def take(name: str, item: Any) -> None:
         numbers.update(_numbers(name, item.attrs))
+        if OCTAVE in item.parent.attrs:
+            if not name.endswith("/value"):
+                return
+            name = name.removesuffix("/value")
         if not isinstance(item, h5py.Dataset):
             return
         unit = unit_of(item.attrs)

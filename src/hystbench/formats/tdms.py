@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from hystbench.formats.damaged import told
@@ -16,7 +19,7 @@ def read(path: Path) -> Table:
     nptdms = library("nptdms", "nptdms", path, "formats")
     columns: list[Column] = []
     notes: list[str] = []
-    with told(path, "TDMS file"):
+    with told(path, "TDMS file"), _heard(notes):
         content = nptdms.TdmsFile.read(path)
         for group in content.groups():
             for channel in group.channels():
@@ -37,3 +40,23 @@ def read(path: Path) -> Table:
                 columns += found[0]
                 notes += found[2]
     return Table(path, tuple(columns), {}, tuple(notes))
+
+
+class _Listener(logging.Handler):
+    def __init__(self, notes: list[str]) -> None:
+        super().__init__(logging.WARNING)
+        self.notes = notes
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.notes.append(f"nptdms says: {record.getMessage()}")
+
+
+@contextmanager
+def _heard(notes: list[str]) -> Iterator[None]:
+    """Note what the library would print, such as that a file ends too early."""
+    logger = logging.getLogger("nptdms")
+    before, logger.handlers = logger.handlers, [_Listener(notes)]
+    try:
+        yield
+    finally:
+        logger.handlers = before

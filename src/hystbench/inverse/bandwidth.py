@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.inverse.feedforward import Limits, feedforward
 from hystbench.model import Model
+from hystbench.record import FloatArray
 
 PERIODS = 4
 """Of each sine; the first two may still show how it began."""
@@ -28,8 +29,12 @@ class Row:
     said: str = ""
 
 
+Invert = Callable[[FloatArray], FloatArray]
+"""Gives the input for a reference."""
+
+
 def bandwidth(
-    model: Model, stroke: float, dt: float, band_hz: float, limits: Limits
+    model: Model, stroke: float, dt: float, band_hz: float, invert: Invert
 ) -> list[Row]:
     """Invert a model for sines of one stroke, from slow to the edge of the band.
 
@@ -41,9 +46,7 @@ def bandwidth(
     dt : float
         Sampling interval in seconds.
     band_hz : float
-        Up to this frequency errors are corrected.
-    limits : Limits
-        Those of the input.
+    invert : callable
 
     Returns
     -------
@@ -60,13 +63,13 @@ def bandwidth(
         time = np.arange(samples) * dt
         reference = rest + stroke / 2 * np.sin(2 * np.pi * frequency * time)
         try:
-            found = feedforward(model, reference, dt, band_hz, limits)
+            u = invert(reference)
         except InputError as error:
             rows.append(Row(float(frequency), None, None, str(error)))
             continue
-        off = (reference - found.y)[samples // 2 :]
+        off = (reference - model.simulate(u, dt))[samples // 2 :]
         left = float(np.sqrt(np.mean(off**2))) / stroke
-        rows.append(Row(float(frequency), left, float(np.abs(found.u).max())))
+        rows.append(Row(float(frequency), left, float(np.abs(u).max())))
     return rows
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hystbench.inverse.tracking import DRIVES, LINEAR, OWN, WITH, WITHOUT, Tracked
+from hystbench.inverse.tracking import CODE, DRIVES, LINEAR, OWN, WITH, WITHOUT, Tracked
 
 GOAL = 0.02
 """RMS error that is asked for, as a share of the stroke, to :data:`GOAL_HZ`."""
@@ -45,7 +45,8 @@ def verdict(rows: Sequence[Tracked]) -> str:
         f"RMS errors on the {len(within)} references to {GOAL_HZ:g} Hz, in % of the "
         f"stroke: {_range(within, LINEAR)} with a linear gain, "
         f"{_range(within, WITHOUT)} with the inverse of the slow loop's model, "
-        f"{_range(within, WITH)} with the gap's effects in it, and "
+        f"{_range(within, WITH)} with the gap's effects in it, "
+        f"{_range(within, CODE)} with the same sample by sample, as exported, and "
         f"{_range(within, OWN)} with the twin's own model, which no device comes with.",
         f"The goal, {100 * GOAL:g} %, is met on {len(within) - len(missed)} of "
         f"{len(within)} references"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +18,12 @@ what is lost to the dynamics needs more input than a slow motion of the same str
 RASTER_HZ = (5.0, 20.0)
 """Lines a second of the raster scans."""
 
-LINEAR, WITHOUT, WITH, OWN = "linear", "without", "with", "own"
+LINEAR, WITHOUT, WITH, CODE, OWN = "linear", "without", "with", "code", "own"
 DRIVES = {
     LINEAR: "no inverse: a linear gain",
     WITHOUT: "inverse without the gap's effects",
     WITH: "inverse with the gap's effects",
+    CODE: "the same sample by sample, as exported",
     OWN: "inverse of the plant itself",
 }
 
@@ -80,6 +81,20 @@ class Line:
         return cls(float(gain), float(offset))
 
 
+Way = Callable[[Reference], FloatArray]
+"""Gives the input for a reference."""
+
+
+def by_inverse(model: Model) -> Way:
+    """Take the whole reference for the inverse of a model."""
+    return lambda reference: feedforward(model, reference.y, reference.dt).u
+
+
+def by_line(line: Line) -> Way:
+    """Take a straight line for the inverse."""
+    return lambda reference: (reference.y - line.offset) / line.gain
+
+
 def references(
     signals: Sequence[Signal], highest_hz: Mapping[str, float], line: Line, rest: float
 ) -> list[Reference]:
@@ -120,11 +135,10 @@ def references(
 def track(
     plant: Model,
     input_zero_error: float,
-    models: Mapping[str, Model],
-    line: Line,
+    ways: Mapping[str, Way],
     wanted: Sequence[Reference],
 ) -> list[Tracked]:
-    """Drive the plant with the input that each model gives for each reference.
+    """Drive the plant with the input that each way gives for each reference.
 
     Parameters
     ----------
@@ -133,19 +147,14 @@ def track(
     input_zero_error : float
         The models are identified on inputs that were recorded with this error; inputs
         that they ask for are therefore this much larger than the plant's own.
-    models : mapping of str to Model
-        By drive; that of the plant itself knows of no such error.
-    line : Line
-        Gives the input without an inverse.
+    ways : mapping of str to callable
+        By drive; that by the plant itself knows of no such error.
     wanted : sequence of Reference
     """
     rows = []
     for reference in wanted:
-        u = (reference.y - line.offset) / line.gain
-        y = plant.simulate(u - input_zero_error, reference.dt)
-        rows.append(Tracked(reference, LINEAR, u, y))
-        for drive, model in models.items():
-            u = feedforward(model, reference.y, reference.dt).u
+        for drive, way in ways.items():
+            u = way(reference)
             error = 0.0 if drive == OWN else input_zero_error
             y = plant.simulate(u - error, reference.dt)
             rows.append(Tracked(reference, drive, u, y))

@@ -47,6 +47,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_hardening": (_SIZE, "iffffaa"),
     "hb_mechanism": (_SIZE, "iiffaiaaaaaa"),
     "hb_forces": (None, "iiaaaaa"),
+    "hb_settle": (None, "ffiaaa"),
     "hb_store": (None, "iifffffaaaa"),
     "hb_preisach": (None, "iifaaaaa"),
     "hb_jiles_atherton": (None, "iffffffaaa"),

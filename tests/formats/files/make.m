@@ -6,6 +6,7 @@ y = 2 * u + 0.25 * u .^ 2;
 fs = 1000;
 save -v7 octave-v7.mat t u y fs
 save -v6 octave-v6.mat t u y
+save -hdf5 octave.h5 t u y fs
 runs = struct('u', {u, 0.5 * u}, 'y', {y, 0.5 * y});
 save -v7 octave-runs.mat runs fs
 data = [t u y];

@@ -9,24 +9,34 @@ import click
 import numpy as np
 
 from hystbench import options
+from hystbench.blocks.step import Sampling
+from hystbench.export import python
+from hystbench.export.inverse import describe_inverse
 from hystbench.files import whole_folder, write_csv, write_text
 from hystbench.inverse.told import table, verdict
 from hystbench.inverse.tracking import (
+    CODE,
+    LINEAR,
     OWN,
     WITH,
     WITHOUT,
     Line,
     Reference,
     Tracked,
+    Way,
+    by_inverse,
+    by_line,
     references,
     track,
 )
-from hystbench.model import load_model
+from hystbench.model import Model, load_model
 from hystbench.record import FloatArray
 from hystbench.signals import load_signal
 
 SHOWN_S = 0.15
 """Time of the last reference that is kept, for the figure."""
+ROOM = 2.0
+"""Limits of the exported inverse, as a share of the signals' largest input."""
 WRITTEN = ("tracking.csv", "raster.csv", "tracking.md", "verdict.md")
 
 
@@ -54,15 +64,24 @@ def tracking(
     """Drive the twin open loop with inputs for references of the SIGNALS' forms.
 
     Each reference is followed with a linear gain, with the inverse of the slow loop's
-    model, with that of the augmented model, and with that of the twin itself.
+    model, with that of the augmented model, also as code that is fed sample by sample,
+    and with that of the twin itself.
     """
     given = [load_signal(path) for path in signals]
     twin, of_loop = load_model(plant), load_model(base)
-    models = {WITHOUT: of_loop, WITH: load_model(augmented), OWN: twin}
+    with_effects = load_model(augmented)
     line = Line.of(of_loop, load_signal(slow))
     rest = float(twin.simulate(np.zeros(64), given[0].dt)[-1])
     wanted = references(given, settings["highest_hz"], line, rest)
-    rows = track(twin, settings["input_zero_error"], models, line, wanted)
+    largest = max(float(np.abs(signal.u).max()) for signal in given)
+    ways = {
+        LINEAR: by_line(line),
+        WITHOUT: by_inverse(of_loop),
+        WITH: by_inverse(with_effects),
+        CODE: _by_code(with_effects, ROOM * largest),
+        OWN: by_inverse(twin),
+    }
+    rows = track(twin, settings["input_zero_error"], ways, wanted)
     with whole_folder(out, WRITTEN) as fresh:
         cells = [_cells(row, twin.output.unit) for row in rows]
         values = (list(each.values()) for each in cells)
@@ -71,6 +90,17 @@ def tracking(
         write_csv(fresh / "raster.csv", list(scan), _lines(scan))
         write_text(fresh / "tracking.md", table(rows, twin.output.unit))
         write_text(fresh / "verdict.md", verdict(rows))
+
+
+def _by_code(model: Model, limit: float) -> Way:
+    """Feed what ``hystbench export --inverse`` writes, sample by sample."""
+
+    def way(reference: Reference) -> FloatArray:
+        code = describe_inverse(model, Sampling(reference.dt), (-limit, limit))
+        u: FloatArray = python.loaded(code).simulate(reference.y)
+        return u
+
+    return way
 
 
 def _cells(row: Tracked, unit: str) -> dict[str, str]:

@@ -1,0 +1,301 @@
+/* Forces against one coordinate: their laws, and the way of a step against them.
+ *
+ * A force is a row of six numbers: its law's number, and those of the law. mechanism.c
+ * includes this file, and `hystbench export` copies what a model needs of it into C99
+ * that stands alone: so no type of its own, and nothing but mathematics.
+ */
+#include <math.h>
+
+static double hb_least(double a, double b) { return a < b ? a : b; }
+
+static double hb_most(double a, double b) { return a > b ? a : b; }
+
+static double hb_clip(double limit, double z) { return hb_most(-limit, hb_least(limit, z)); }
+
+static double hb_dead_zone(double half_width, double z)
+{
+    return z - hb_clip(half_width, z);
+}
+
+/* Mean of a dead zone between two places. */
+static double hb_mean_dead_zone(double from, double to, double gap)
+{
+    const double a = hb_dead_zone(gap, from), b = hb_dead_zone(gap, to);
+    return a * b > 0 || from == to ? (a + b) / 2 : (b - a) / (to - from) * (b + a) / 2;
+}
+
+/* Mean of a dead zone over a way on which z moves along until its reach holds it. */
+static double hb_mean_held(double z, double way, double reach, double gap)
+{
+    const double from = hb_clip(reach, z), to = hb_clip(reach, z + way);
+    const double moved = to - from;
+    if (way == 0) return hb_dead_zone(gap, from);
+    const double rest = way - moved;
+    const double climbed = hb_mean_dead_zone(from, to, gap) * moved;
+    return (climbed + hb_dead_zone(gap, to) * rest) / way;
+}
+
+/* (exp(y) - 1) / y. */
+static double hb_phi1(double y) { return fabs(y) < 1e-8 ? 1 + y / 2 : expm1(y) / y; }
+
+/* (exp(y) - 1 - y) / y^2, near zero by its series. */
+static double hb_phi2(double y)
+{
+    if (fabs(y) > 0.3) return (expm1(y) - y) / (y * y);
+    double sum = 0;
+    for (int k = 14; k > 1; k--) sum = (1 + y * sum) / k;
+    return sum;
+}
+
+/* Moves x, which follows x' = 1 + a x, and gives its integral over the way. */
+static double hb_integral_of(double *x, double a, double way)
+{
+    const double slope = 1 + a * *x, from = *x;
+    if (!(slope > 0)) return from * way; /* it rests there */
+    *x += slope * way * hb_phi1(a * way);
+    return way * (from + slope * way * hb_phi2(a * way));
+}
+
+/* Bouc-Wen's operator with exponent 1, solved exactly: z of a reach of one after a way
+ * in units of the yield distance, and its integral over the way.  Unloading is
+ * 2 share |z| less stiff than in Dahl's form, which has a share of zero. */
+static double hb_bouc_wen(double z, double way, double share, double *integral)
+{
+    const double sign = way < 0 ? -1 : 1, b = 2 * share - 1, length = fabs(way);
+    double x = sign * z, until = 0;
+    *integral = 0;
+    if (x < 0) { /* unloading, until x is zero */
+        until = fabs(b) < 1e-9 ? -x : b * x > -1 ? -log1p(b * x) / b : length;
+        until = fmin(until, length);
+        *integral += hb_integral_of(&x, b, until);
+    }
+    *integral += hb_integral_of(&x, -1, length - until); /* loading */
+    return sign * x;
+}
+
+/* The largest force of friction at a velocity, the largest at all being f[1] + f[2]. */
+static double hb_sliding(const double *f, double v)
+{
+    return f[1] + (f[3] > 0 ? f[2] * exp(-(v / f[3]) * (v / f[3])) : 0);
+}
+
+/* How far friction gives way; its stiffness is that of the largest force at rest. */
+static double hb_friction_reach(const double *f, double v)
+{
+    const double most = hb_sliding(f, 0);
+    return most > 0 ? f[4] * (hb_sliding(f, v) / most) : 0;
+}
+
+/* What a force remembers after a way, of its memory before it; v is that at its end. */
+static double hb_remembered(const double *f, double way, double v, double memory)
+{
+    double integral;
+    switch ((int)f[0]) {
+    case 3: /* friction */
+        return hb_clip(hb_friction_reach(f, v), memory + way);
+    case 5: /* hysteretic */
+        return hb_bouc_wen(memory, way / f[2], f[3], &integral);
+    case 7: /* slider */
+        return hb_clip(f[2], memory + way);
+    }
+    return memory;
+}
+
+/* A force: its law's number, then the numbers of the law. */
+static double hb_force(const double *f, double q, double v, double memory)
+{
+    switch ((int)f[0]) {
+    case 0: /* stiffness */
+        return q * q * (f[1] + f[2] * q);
+    case 1: /* sinh */
+        return f[1] * (f[2] * sinh(q / f[2]) - q);
+    case 2: /* stop */ {
+        const double way = q - f[3];
+        return f[4] * way < 0 ? 0 : f[1] * hb_dead_zone(f[2], way);
+    }
+    case 3: /* friction */
+        return hb_sliding(f, 0) * memory / f[4];
+    case 8: /* smooth */
+        return f[1] * tanh(v / f[2]);
+    case 4: /* drag */
+        return f[1] * v * fabs(v);
+    case 5: /* hysteretic */
+        return f[1] * memory;
+    case 6: /* gravity */
+        return f[1] * (sin(q + f[2]) - sin(f[2]));
+    case 7: /* slider */
+        return f[1] * hb_dead_zone(f[3], memory);
+    }
+    return NAN;
+}
+
+/* A force's mean over a way from q, which is its work over the way; v is the mean
+ * velocity. */
+static double hb_mean_force(const double *f, double q, double way, double v,
+                            double memory)
+{
+    const double to = q + way, middle = q + way / 2, half = way / 2;
+    switch ((int)f[0]) {
+    case 0: /* stiffness */
+        return f[1] * (q * q + q * to + to * to) / 3 +
+               f[2] * middle * (q * q + to * to) / 2;
+    case 1: /* sinh */ {
+        const double y = half / f[2];
+        const double spread = y == 0 ? 1 : sinh(y) / y;
+        return f[1] * (f[2] * sinh(middle / f[2]) * spread - middle);
+    }
+    case 2: /* stop */ {
+        double from = q - f[3], end = to - f[3];
+        if (f[4] != 0) { /* a side without contact counts as the middle */
+            from = f[4] * fmax(0, f[4] * from);
+            end = f[4] * fmax(0, f[4] * end);
+        }
+        const double mean = hb_mean_dead_zone(from, end, f[2]);
+        return f[1] * (way == 0 ? mean : mean * ((end - from) / way));
+    }
+    case 3: /* friction */
+        return hb_sliding(f, 0) / f[4] *
+               hb_mean_held(memory, way, hb_friction_reach(f, v), 0);
+    case 8: /* smooth */
+        return f[1] * tanh(v / f[2]);
+    case 4: /* drag */
+        return f[1] * v * fabs(v);
+    case 5: /* hysteretic */ {
+        double integral;
+        if (way == 0) return f[1] * memory;
+        hb_bouc_wen(memory, way / f[2], f[3], &integral);
+        return f[1] * integral / (way / f[2]);
+    }
+    case 6: /* gravity */
+        return f[1] * (sin(middle + f[2]) * (half == 0 ? 1 : sin(half) / half) -
+                       sin(f[2]));
+    case 7: /* slider */
+        return f[1] * hb_mean_held(memory, way, f[2], f[3]);
+    }
+    return NAN;
+}
+
+/* Moves all memories by a way and gives the sum of the forces at its end. */
+static double hb_all_forces(int count, const double *forces, double q, double v,
+                            double way, double *memory)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        const double *f = forces + 6 * i;
+        memory[i] = hb_remembered(f, way, v, memory[i]);
+        sum += hb_force(f, q, v, memory[i]);
+    }
+    return sum;
+}
+
+/* By how much a way from q is too long for the mean force over it: without forces it is
+ * `alone`, and less by `gives` for each unit of force. A way that takes no time, h = 0,
+ * is one to a place of rest: the force at its end counts. */
+static double hb_miss(int count, const double *forces, const double *memory, double q,
+                      double alone, double gives, double h, double way)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        const double *f = forces + 6 * i;
+        sum += h > 0 ? hb_mean_force(f, q, way, way / h, memory[i])
+                     : hb_force(f, q + way, 0, memory[i]);
+    }
+    return way - alone + gives * sum;
+}
+
+/* The way of a part, by Chandrupatla's method; NaN where there is none.  The miss grows
+ * with the way at least as fast where no force falls: between zero and the way without
+ * forces, or the one with the force of the beginning, there is then one root. */
+static double hb_way_of(int count, const double *forces, const double *memory, double q,
+                        double alone, double gives, double h)
+{
+#define HB_MISS(way) hb_miss(count, forces, memory, q, alone, gives, h, way)
+    double a = 0, at_a = HB_MISS(0), b = alone, at_b = HB_MISS(b);
+    if (at_a == 0) return 0;
+    if (at_b == 0) return b;
+    if ((at_a > 0) == (at_b > 0)) b = -at_a, at_b = HB_MISS(b);
+    for (int i = 0; i < 100 && (at_a > 0) == (at_b > 0); i++) {
+        a = b, at_a = at_b;
+        b *= 2, at_b = HB_MISS(b);
+    }
+    if (!((at_a > 0) != (at_b > 0))) return NAN;
+    double t = at_a / (at_a - at_b);
+    for (int i = 0; i < 100; i++) {
+        double c = b, at_c = at_b;
+        const double x = a + (t > 0 && t < 1 ? t : 0.5) * (b - a);
+        const double at_x = HB_MISS(x);
+        if ((at_x > 0) == (at_a > 0))
+            c = a, at_c = at_a;
+        else
+            b = a, at_b = at_a;
+        a = x, at_a = at_x;
+        const double best = fabs(at_a) < fabs(at_b) ? a : b, apart = fabs(b - a);
+        const double near = 4e-16 * fabs(best) + 1e-16 * fabs(alone);
+        if (at_a == 0 || apart <= near) return at_a == 0 ? a : best;
+        const double xi = (a - b) / (c - b);
+        const double phi = at_c == at_b ? 1 : (at_a - at_b) / (at_c - at_b);
+        t = 0.5;
+        if (phi != 1 && phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi)
+            t = at_a / (at_b - at_a) * at_c / (at_b - at_c) +
+                (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b);
+        t = fmax(near / apart / 2, fmin(1 - near / apart / 2, t));
+    }
+    return fabs(at_a) < fabs(at_b) ? a : b;
+#undef HB_MISS
+}
+
+/* Whether a force turns with the direction of the motion. */
+static int hb_turns(int count, const double *forces)
+{
+    for (int i = 0; i < count; i++) {
+        const int kind = (int)forces[6 * i];
+        if (kind == 3 || kind == 5 || kind == 7) return 1;
+    }
+    return 0;
+}
+
+/* The way of a part h of an interval from q and v, and v after it. What drives it goes
+ * from one value to another; step: q and v after the part of q, v and both values. */
+static double hb_over(int count, const double *forces, const double *memory,
+                      const double *step, double h, double from, double to, double q,
+                      double v, double *after)
+{
+    const double gives = step[2] + step[3];
+    const double alone = step[0] * q + step[1] * v + step[2] * from + step[3] * to - q;
+    const double way =
+        count ? hb_way_of(count, forces, memory, q, alone, gives, h) : alone;
+    *after = step[4] * q + step[5] * v + step[6] * from + step[7] * to;
+    *after -= (step[6] + step[7]) * ((alone - way) / gives);
+    return way;
+}
+
+/* Moves q, v and all memories over a part of an interval. step goes on with the numbers
+ * for an eighth of it: where the motion turns back within a part, a force's mean over
+ * the way is not its mean over the time, so that the part is taken in eighths. */
+static void hb_moved(int count, const double *forces, double *memory,
+                     const double *step, double h, double from, double to, double *q,
+                     double *v)
+{
+    double after, way;
+    way = hb_over(count, forces, memory, step, h, from, to, *q, *v, &after);
+    const int fine = after * *v < 0 && hb_turns(count, forces) ? 8 : 1;
+    for (int i = 0; i < fine; i++) {
+        const double now = from + i * (to - from) / fine;
+        const double then = from + (i + 1) * (to - from) / fine;
+        if (fine > 1)
+            way = hb_over(count, forces, memory, step + 8, h / fine, now, then, *q, *v,
+                          &after);
+        *q += way;
+        *v = after;
+        hb_all_forces(count, forces, *q, *v, way, memory);
+    }
+}
+
+/* Where springs hold a force p, next to where the linear one alone does; NaN where they
+ * nowhere do. memory is all zero: friction holds nothing there yet. */
+static double hb_balance(double stiffness, double p, int count, const double *forces,
+                         const double *memory)
+{
+    const double q = p / stiffness;
+    return q + hb_way_of(count, forces, memory, q, 0, 1 / stiffness, 0);
+}
