@@ -16,6 +16,12 @@ EXAMPLES = {
     },
     "gravity": {"amplitude": 2.0, "angle": 0.3},
     "hysteretic-force": {"largest": 0.2, "yield_distance": 1e-3, "sharing": 0.6},
+    "logarithmic-creep": {
+        "magnitude": 0.1,
+        "first_time_s": 0.01,
+        "last_time_s": 5.0,
+        "power": 0.2,
+    },
     "mechanism": {"mass": 0.002, "damping": 0.2, "stiffness": 100.0},
     "impedance": {"mass": 1e-4, "damping": 0.05, "stiffness": 3.0, "bias": 0.2},
     "slider-with-gap": {"contact_stiffness": 80.0, "slip_force": 0.1, "gap": 5e-4},
