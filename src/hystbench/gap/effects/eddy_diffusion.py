@@ -26,10 +26,10 @@ class EddyDiffusion(Effect):
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer each shape of the core, behind the drive's limits as well.
 
-        A half-space shows at a hundredth of the time: it delays by the root of it.
+        A half-space goes by the root of its time, and shows at a far shorter one.
         """
         times = logarithmic(scene.step / 5, scene.span / 5, 1.5)
-        quick = logarithmic(scene.step / 100, scene.span / 100, 1.5)
+        quick = logarithmic(1e-4 * scene.step, scene.span / 100, 1)
         for place in places_in_drive(scene, linear=True):
             for geometry in GEOMETRIES:
                 yield self.inserted(
