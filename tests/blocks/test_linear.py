@@ -81,9 +81,7 @@ def test_creep_over_decades_follows_a_step_as_a_power_of_time(power):
 
 
 def test_creep_over_decades_needs_two_times():
-    with pytest.raises(
-        InputError, match=r"last_time_s: 1; .*more than"
-    ):
+    with pytest.raises(InputError, match=r"last_time_s: 1; .*more than"):
         LogarithmicCreep(magnitude=0.1, first_time_s=1.0, last_time_s=1.0)
 
 

@@ -59,6 +59,20 @@ HIDDEN = {
             ),
         ),
     ),
+    "fractional": (
+        "creep",
+        (LOOP,),
+        (
+            LOOP,
+            block(
+                "logarithmic-creep",
+                magnitude=0.4,
+                first_time_s=2e-3,
+                last_time_s=10.0,
+                power=0.4,
+            ),
+        ),
+    ),
     "plays": ("hysteresis", (GAIN,), (PLAYS, GAIN)),
     "acting-field, 0.5": (
         "rate-dependent-hysteresis",

@@ -55,9 +55,10 @@ class Creep(Effect):
                 free=("magnitudes", "time_constants_s"),
             )
             yield replace(found, charge=2.0 * count)
-        yield self._logarithmic(scene)
+        for form, power in POWERS.items():
+            yield self._over_decades(scene, form, power)
 
-    def _logarithmic(self, scene: Scene) -> Variant:
+    def _over_decades(self, scene: Scene, form: str, power: float) -> Variant:
         """All time constants between two, as of a material without a time of its own.
 
         They begin anywhere between the sampling interval and the slowest that one
@@ -66,8 +67,9 @@ class Creep(Effect):
         found = self.inserted(
             scene,
             scene.behind_material,
+            lambda given: {"power": power, **given},
             law="logarithmic-creep",
-            form="logarithmic",
+            form=form,
             grids={
                 "first_time_s": logarithmic(scene.step, scene.span / 20, 1),
                 "last_time_s": logarithmic(scene.span / 2, 10 * scene.span, 1),
@@ -83,5 +85,7 @@ class Creep(Effect):
         return replace(found, charge=4.0)
 
 
+POWERS = {"logarithmic": 0.0, "fractional": 0.3}
+"""Of time, with which creep over decades grows: where the refit starts."""
 SPREAD = 5.0
 """Ratio between neighbouring time constants of three elements."""
