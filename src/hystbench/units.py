@@ -173,6 +173,10 @@ def alike(place: str, unit: str, references: Iterable[str]) -> str | None:
     InputError
         If it is no unit.
     """
+    references = tuple(references)
+    simple = _SIMPLE.fullmatch(plain(unit))
+    if simple is not None and simple[2] in references:
+        return simple[2]  # known without a library that takes long to load
     base, with_force = _made_of(place, unit)
     for reference in references:
         if (base, with_force) == _made_of(place, reference):

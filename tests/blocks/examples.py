@@ -20,6 +20,11 @@ EXAMPLES = {
         "numerator": [3.0, 50.0],
         "denominator": [1.0, 4.0, 900.0],
         "hold": "linear",
+    "logarithmic-creep": {
+        "magnitude": 0.1,
+        "first_time_s": 0.01,
+        "last_time_s": 5.0,
+        "power": 0.2,
     },
     "mechanism": {"mass": 0.002, "damping": 0.2, "stiffness": 100.0},
     "impedance": {"mass": 1e-4, "damping": 0.05, "stiffness": 3.0, "bias": 0.2},

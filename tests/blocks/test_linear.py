@@ -19,6 +19,7 @@ from hystbench.blocks.linear import (
     discretise_modes,
     respond,
 )
+from hystbench.blocks.logarithmic_creep import LogarithmicCreep
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.transfer_function import TransferFunction
@@ -53,17 +54,46 @@ CASES = {
 
 def test_every_linear_block_has_a_case():
     linear = {k for k, block in registry().items() if issubclass(block, LinearBlock)}
-    # Diffusion is no ratio of polynomials; its own test is below.
-    assert linear == {*CASES, "eddy-diffusion"}
+    # Diffusion is no ratio of polynomials; its own test is below, and so is that of
+    # creep over decades.
+    assert linear == {*CASES, "eddy-diffusion", "logarithmic-creep"}
 
 
-@pytest.mark.parametrize("geometry", ["slab", "rod"])
+@pytest.mark.parametrize("power", [0.0, 0.3])
+def test_creep_over_decades_follows_a_step_as_a_power_of_time(power):
+    """Between the ends it grows evenly in log time, or as that power of time."""
+    block = LogarithmicCreep(
+        magnitude=0.5, first_time_s=1e-4, last_time_s=1e3, power=power
+    )
+    system = block.continuous()
+    rates, shares = -np.diag(system.a), system.b * system.c
+    assert np.sum(shares / rates) == pytest.approx(0.5)
+    assert system.d == 1.0
+    time = 10.0 ** np.arange(-2, 2)
+    settled = (shares / rates) @ -np.expm1(-np.outer(rates, time))
+    each_decade = np.diff(settled)
+    if power:
+        ratios = each_decade[1:] / each_decade[:-1]
+        assert ratios == pytest.approx(10**power, rel=0.05)
+    else:
+        # Seven decades share the whole.
+        assert each_decade == pytest.approx(0.5 / 7, rel=0.1)
+
+
+def test_creep_over_decades_needs_two_times():
+    with pytest.raises(InputError, match=r"last_time_s: 1; .*more than"):
+        LogarithmicCreep(magnitude=0.1, first_time_s=1.0, last_time_s=1.0)
+
+
+@pytest.mark.parametrize("geometry", ["slab", "rod", "half-space"])
 def test_eddy_diffusion_is_the_analytic_response(geometry):
     tau = 0.003
     frequency = np.logspace(-1, 3, 40)
     q = np.sqrt(2j * np.pi * frequency * tau)
     if geometry == "slab":
         expected = np.tanh(q) / q
+    elif geometry == "half-space":
+        expected = 1 / (1 + q)
     else:
         expected = 2 * scipy.special.iv(1, q) / (q * scipy.special.iv(0, q))
     block = EddyDiffusion(time_constant_s=tau, geometry=geometry)

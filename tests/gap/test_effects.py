@@ -179,7 +179,7 @@ def test_a_neutral_variant_changes_nothing_where_all_is_zero(chain, variant):
 NOTHING = {
     "input-delay": {"delay_s": 0.0},
     "drive-lag": {"time_constant_s": 1e-7},
-    "eddy-diffusion": {"time_constant_s": 1e-7},
+    "eddy-diffusion": {"time_constant_s": 1e-12},
     "drive-saturation": {"limit": 1e6},
     "slew-limit": {"rate": 1e8},
     "dead-zone": {"half_width": 0.0},
@@ -391,6 +391,8 @@ SLOWER, LARGER = 2.5, 40.0
 SCALES = {
     "time_constant_s": SLOWER,
     "second_time_constant_s": SLOWER,
+    "first_time_s": SLOWER,
+    "last_time_s": SLOWER,
     "delay_s": SLOWER,
     "frequency_hz": 1 / SLOWER,
     "damping_ratio": 1.0,

@@ -36,6 +36,43 @@ HIDDEN = {
         (LOOP,),
         (block("saturation", level=1.0, sharpness=6.0), LOOP),
     ),
+    "algebraic": (  # Froelich's law
+        "saturation",
+        (LOOP,),
+        (LOOP, block("saturation", level=100.0, sharpness=1.0)),
+    ),
+    "half-space": (
+        "eddy-diffusion",
+        (LOOP,),
+        (block("eddy-diffusion", time_constant_s=1e-4, geometry="half-space"), LOOP),
+    ),
+    "logarithmic": (
+        "creep",
+        (LOOP,),
+        (
+            LOOP,
+            block(
+                "logarithmic-creep",
+                magnitude=0.3,
+                first_time_s=2e-3,
+                last_time_s=10.0,
+            ),
+        ),
+    ),
+    "fractional": (
+        "creep",
+        (LOOP,),
+        (
+            LOOP,
+            block(
+                "logarithmic-creep",
+                magnitude=0.4,
+                first_time_s=2e-3,
+                last_time_s=10.0,
+                power=0.4,
+            ),
+        ),
+    ),
     "plays": ("hysteresis", (GAIN,), (PLAYS, GAIN)),
     "acting-field, 0.5": (
         "rate-dependent-hysteresis",

@@ -72,6 +72,26 @@ def lag(time_constant_s: float) -> StateSpace:
     return StateSpace(np.array([[-rate]]), np.array([rate]), np.array([1.0]), 0.0)
 
 
+def low_pass(
+    v: FloatArray, dt: float, time_constant_s: float, start: float = 0.0
+) -> FloatArray:
+    """Send a signal that moves straight between samples through a first-order lag.
+
+    Parameters
+    ----------
+    v : ndarray, shape (n,)
+    dt, time_constant_s : float
+        In seconds.
+    start : float
+        Where signal and lag have rested before.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    return start + respond(lag(time_constant_s), v - start, dt, "linear")
+
+
 def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatArray:
     """Compute the response of a linear system from rest.
 

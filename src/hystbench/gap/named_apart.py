@@ -33,11 +33,12 @@ def named_apart(
     records have of their own is looked for beside the effects that were named, beside
     those of them that do not do the same to all records, and beside the base alone. It
     is taken off the records and naming begins again; what is named then tells better
-    what the records have of their own, and so on while the score falls. The whole has
-    to lower the score of the first names by as much as a first effect has to lower it,
-    all numbers charged; of names that are themselves new in every record, such as a
-    drift, it only has to be the better one. And noise alone has to be left: numbers of
-    one record stand in for any law that its rate or its amplitude brings out.
+    what the records have of their own, and so on while the score falls and the names
+    change. The whole has to lower the score of the first names by as much as a first
+    effect has to lower it, all numbers charged; of names that are themselves new in
+    every record, such as a drift, it only has to be the better one. And noise alone has
+    to be left: numbers of one record stand in for any law that its rate or its
+    amplitude brings out.
 
     Parameters
     ----------
@@ -75,7 +76,10 @@ def named_apart(
             break
         square = floor_rms**2
         share = apart.share(start, square, start.power(square))
+        same = _names(again) == _names(found[1])
         found, least = (apart, again, replace(own, share=share)), value
+        if same:
+            break  # naming has told all that it can
         likely = _likely(start, (on_records(again.state, start.records),), score)
     # Beside more than noise they cannot be told from what the simulator does wrong.
     if found[1].state.power(score.floor) > ABOVE * score.floor:
@@ -83,6 +87,10 @@ def named_apart(
             say("more than noise is left beside that: it is not told")
         return start, named, NONE
     return found
+
+
+def _names(named: Named) -> set[tuple[str, str]]:
+    return {(item.effect, item.form) for item in named.state.added}
 
 
 SHARED = {"input-delay", "calibration-error"}

@@ -33,6 +33,8 @@ LONGEST = 1 / 20
 """Of a record, that it may be late or early by, as for a delay that all share."""
 FINER = 1e-3
 """Of a sampling interval, to which a delay is found."""
+NEWTON = 8
+"""Steps of Gauss and Newton to it, at most."""
 
 
 class Own(NamedTuple):
@@ -283,17 +285,22 @@ def fitted(
     alike |= squares <= ROUNDING * np.mean(y**2)
     place = int(np.flatnonzero(alike)[np.argmin(np.abs(shifts[alike]))])
     low, high = shifts[max(place - 1, 0)], shifts[min(place + 1, len(shifts) - 1)]
-    from scipy.optimize import minimize_scalar  # late: it takes long to load
-
-    least = minimize_scalar(
-        lambda shift: at(shift)[0],
-        bounds=(low, high),
-        method="bounded",
-        options={"xatol": FINER},
-    )
-    return min(at(float(least.x)), at(float(shifts[place])), key=lambda item: item[0])[
-        1
-    ]
+    shift = float(shifts[place])
+    best = at(shift)
+    for _ in range(NEWTON):
+        own = best[1]
+        x = own.of(simulated, record.dt)
+        # Later by a sample, the signal is less by its slope.
+        columns = [-np.gradient(x)[:until]]
+        columns += [x[:until]] if "gain" in kinds else []
+        columns += [np.ones(len(y))] if "offset" in kinds else []
+        found = np.linalg.lstsq(np.column_stack(columns), y - x[:until], rcond=None)[0]
+        moved = float(np.clip(shift + found[0], low, high))
+        there = at(moved)
+        if there[0] >= best[0] or abs(moved - shift) < FINER:
+            break
+        shift, best = moved, there
+    return min(best, there, key=lambda item: item[0])[1]
 
 
 COARSE, NEAREST = 401, 40

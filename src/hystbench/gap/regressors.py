@@ -9,13 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench.blocks.linear import low_pass
 from hystbench.gap.compared import Compared
-from hystbench.operators import play
+from hystbench.gap.landmarks import Landmarks
+from hystbench.operators import play, state_space
 from hystbench.record import FloatArray
 
 Rows = NDArray[np.intp] | slice
@@ -122,7 +124,7 @@ class Regressors:
             columns += [_lagged(signal, lag / dt, position) for lag in self.lags_s]
         for signal in signals:
             columns += [
-                _low_pass(signal, dt, time_constant)[rows]
+                low_pass(signal, dt, time_constant, signal[0])[rows]
                 for time_constant in self.time_constants_s
             ]
         plays, _ = play(u, self.excursion * np.array(THRESHOLDS))
@@ -133,8 +135,7 @@ class Regressors:
         s, dt = self.simulated(compared.simulated), compared.record.dt
         columns: list[FloatArray] = []
         for frequency in self.frequencies_hz:
-            ringing = _ringing(s, dt, frequency)[rows]
-            columns += [ringing.real, ringing.imag]
+            columns += [part[rows] for part in _ringing(s, dt, frequency)]
         return np.column_stack(columns)
 
     def state(self, compared: Compared, rows: Rows) -> FloatArray:
@@ -157,12 +158,25 @@ Family = Literal["plain", "modes", "landmarks"]
 
 
 @dataclass(frozen=True)
+class ColumnScale:
+    """Middle and spread of each column over the rows that fit, shape (m,) each."""
+
+    middle: FloatArray
+    spread: FloatArray
+
+    def __call__(self, raw: FloatArray) -> FloatArray:
+        """Bring columns to middle 0 and spread 1, and append a constant one."""
+        scaled = (raw - self.middle) / self.spread
+        return np.column_stack([scaled, np.ones(len(raw))])
+
+
+@dataclass(frozen=True)
 class Columns:
     """Columns made of regressors, standardised by the rows that fit."""
 
     regressors: Regressors
-    landmarks: Any
-    scaler: Any
+    landmarks: Landmarks
+    scale: ColumnScale
     families: tuple[Family, ...]  # of each column
 
     @classmethod
@@ -170,34 +184,27 @@ class Columns:
         cls, compared: Sequence[Compared], rows: Sequence[Rows]
     ) -> tuple[Columns, FloatArray]:
         """Learn landmarks and scales; give the table of those rows as well."""
-        from sklearn.kernel_approximation import Nystroem
-        from sklearn.preprocessing import StandardScaler
-
         regressors = Regressors.of(compared)
         pairs = list(zip(compared, rows, strict=True))
         state = np.concatenate([regressors.state(*pair) for pair in pairs])
-        landmarks = Nystroem(
-            gamma=1 / state.shape[1],
-            n_components=min(LANDMARKS, len(state)),
-            random_state=0,
-        ).fit(state)
+        landmarks = Landmarks.among(state, LANDMARKS)
         parts = [_parts(regressors, landmarks, *pair) for pair in pairs]
         widths = {name: part.shape[1] for name, part in parts[0].items()}
         families = [name for name, width in widths.items() for _ in range(width)]
         raw = np.concatenate([np.hstack(list(part.values())) for part in parts])
-        scaler = StandardScaler().fit(raw)
-        return cls(regressors, landmarks, scaler, (*families, "plain")), _whole(
-            scaler, raw
-        )
+        spread = raw.std(axis=0)
+        scale = ColumnScale(raw.mean(axis=0), np.where(spread > 0, spread, 1.0))
+        columns = cls(regressors, landmarks, scale, (*families, "plain"))
+        return columns, scale(raw)
 
     def table(self, compared: Compared, rows: Rows) -> FloatArray:
         """Standardised columns and a constant one, shape (rows, m)."""
         parts = _parts(self.regressors, self.landmarks, compared, rows)
-        return _whole(self.scaler, np.hstack(list(parts.values())))
+        return self.scale(np.hstack(list(parts.values())))
 
 
 def _parts(
-    regressors: Regressors, landmarks: Any, compared: Compared, rows: Rows
+    regressors: Regressors, landmarks: Landmarks, compared: Compared, rows: Rows
 ) -> dict[Family, FloatArray]:
     """Columns of each family, not yet standardised."""
     state = regressors.state(compared, rows)
@@ -208,29 +215,21 @@ def _parts(
     return {
         "plain": np.hstack([linear, *turns, products]),
         "modes": regressors.modes(compared, rows),
-        "landmarks": landmarks.transform(state),
+        "landmarks": landmarks.seen_from(state),
     }
 
 
-def _whole(scaler: Any, raw: FloatArray) -> FloatArray:
-    return np.column_stack([scaler.transform(raw), np.ones(len(raw))])
+def _ringing(signal: FloatArray, dt: float, frequency_hz: float) -> list[FloatArray]:
+    """Pass through a damped mode: two signals a quarter period apart.
 
-
-def _low_pass(signal: FloatArray, dt: float, time_constant_s: float) -> FloatArray:
-    """First-order low-pass; before the record it rests where that begins."""
-    from scipy.signal import lfilter
-
-    keep = float(np.exp(-dt / time_constant_s))
-    low, _ = lfilter([1 - keep], [1, -keep], signal, zi=[keep * signal[0]])
-    return np.asarray(low)
-
-
-def _ringing(signal: FloatArray, dt: float, frequency_hz: float) -> Any:
-    """Pass through a damped mode, complex: its two parts are a quarter period apart."""
-    from scipy.signal import lfilter
-
+    They are the parts of ``z(k) = p z(k-1) + (1 - |p|) v(k)`` with the mode's pole p.
+    """
     pole = np.exp((-DAMPING + 1j) * 2 * np.pi * frequency_hz * dt)
-    return lfilter([1 - abs(pole)], [1, -pole], signal)
+    turn = np.array([[pole.real, -pole.imag], [pole.imag, pole.real]])
+    drive = np.array([1 - abs(pole), 0.0])
+    return [
+        state_space(turn, drive, turn[k], float(drive[k]), signal)[0] for k in (0, 1)
+    ]
 
 
 def _lagged(signal: FloatArray, lag: float, position: NDArray[np.intp]) -> FloatArray:

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hystbench.blocks.linear import low_pass
 from hystbench.gap.state import State
 from hystbench.operators import play
 from hystbench.record import FloatArray, Record
@@ -125,7 +126,7 @@ def _cosines(record: Record, count: int) -> FloatArray:
 
 
 def _slow_power(dt: float, u: FloatArray, y: FloatArray, times: FloatArray) -> Columns:
-    averages = [low_pass(u**2, dt, tau, 0.0) for tau in times]
+    averages = [low_pass(u**2, dt, tau) for tau in times]
     return [*averages, *(x * y for x in averages)]
 
 
@@ -157,14 +158,5 @@ def _memory(dt: float, u: FloatArray, times: FloatArray) -> Columns:
     return [
         *plays,
         *(x**2 for x in plays[1:3]),
-        *(low_pass(u, dt, tau, 0.0) for tau in times[2:]),
+        *(low_pass(u, dt, tau) for tau in times[2:]),
     ]
-
-
-def low_pass(signal: FloatArray, dt: float, tau: float, start: float) -> FloatArray:
-    """Send a signal through a first-order low-pass that has rested at ``start``."""
-    from scipy.signal import lfilter  # late: it takes long to load
-
-    keep = float(np.exp(-dt / tau))
-    passed, _ = lfilter([1 - keep], [1, -keep], signal, zi=[keep * start])
-    return np.asarray(passed)

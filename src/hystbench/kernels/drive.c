@@ -29,14 +29,15 @@ EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
 
 /* s > 0 with s + scale (s / unit)^power = all, power at least 1.  The left side is
  * convex and rises at least as steeply as s: the steps of Newton, from the left at most
- * once, come down on the solution from above. */
+ * once, come down on the solution from above. The error after a step is of the order of
+ * the square of the step, so that one of a ten-millionth is the last. */
 static double split(double all, double scale, double unit, double power, double s)
 {
     for (int step = 0; step < 60 && s > 0; step++) {
         const double rest = scale * pow(s / unit, power);
         const double change = (s + rest - all) / (1 + power * rest / s);
         s -= change;
-        if (fabs(change) <= 1e-13 * all) break;
+        if (fabs(change) <= 1e-7 * all) break;
     }
     return s;
 }

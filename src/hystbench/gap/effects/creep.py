@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,10 +13,11 @@ from hystbench.gap.scene import Scene
 
 
 class Creep(Effect):
-    """One slow element, or three a decade and a half apart."""
+    """One slow element, three a decade and a half apart, or all over some decades."""
 
     name = "creep"
     place = "mechanics"
+    laws: ClassVar = ("logarithmic-creep",)
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
         """Offer creep behind the hysteresis.
@@ -54,7 +55,37 @@ class Creep(Effect):
                 free=("magnitudes", "time_constants_s"),
             )
             yield replace(found, charge=2.0 * count)
+        for form, power in POWERS.items():
+            yield self._over_decades(scene, form, power)
+
+    def _over_decades(self, scene: Scene, form: str, power: float) -> Variant:
+        """All time constants between two, as of a material without a time of its own.
+
+        They begin anywhere between the sampling interval and the slowest that one
+        record shows, and may go on beyond it.
+        """
+        found = self.inserted(
+            scene,
+            scene.behind_material,
+            lambda given: {"power": power, **given},
+            law="logarithmic-creep",
+            form=form,
+            grids={
+                "first_time_s": logarithmic(scene.step, scene.span / 20, 1),
+                "last_time_s": logarithmic(scene.span / 2, 10 * scene.span, 1),
+            },
+            limits={
+                "first_time_s": (scene.step / 5, scene.span / 5),
+                "last_time_s": (scene.span / 4, 100 * scene.span),
+            },
+            unit={"magnitude": 1e-3},
+            positive=("magnitude",),
+            free=("magnitude", "first_time_s", "last_time_s", "power"),
+        )
+        return replace(found, charge=4.0)
 
 
+POWERS = {"logarithmic": 0.0, "fractional": 0.3}
+"""Of time, with which creep over decades grows: where the refit starts."""
 SPREAD = 5.0
 """Ratio between neighbouring time constants of three elements."""

@@ -1,4 +1,4 @@
-"""``eddy-diffusion``: the field diffuses into a conducting slab or rod."""
+"""``eddy-diffusion``: the field diffuses into a conducting core."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+from hystbench.blocks.eddy_diffusion import GEOMETRIES
 from hystbench.gap.effects.base import (
     Effect,
     Values,
@@ -17,22 +18,28 @@ from hystbench.gap.scene import Scene
 
 
 class EddyDiffusion(Effect):
-    """Magnetic diffusion before the material, in a slab or in a rod."""
+    """Magnetic diffusion before the material, in a slab, a rod or a half-space."""
 
     name = "eddy-diffusion"
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer both shapes of the cross-section, behind the drive's limits as well."""
+        """Offer each shape of the core, behind the drive's limits as well.
+
+        A half-space goes by the root of its time, and shows at a far shorter one.
+        """
         times = logarithmic(scene.step / 5, scene.span / 5, 1.5)
+        quick = logarithmic(1e-4 * scene.step, scene.span / 100, 1)
         for place in places_in_drive(scene, linear=True):
-            for geometry in ("slab", "rod"):
+            for geometry in GEOMETRIES:
                 yield self.inserted(
                     scene,
                     place,
                     partial(_values, geometry),
                     form=geometry,
-                    grids={"time_constant_s": times},
+                    grids={
+                        "time_constant_s": quick if geometry == "half-space" else times
+                    },
                 )
 
 

@@ -9,8 +9,10 @@ import numpy as np
 from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
 from hystbench.gap.scene import Scene
 
-SHARPEST = 50.0
-"""Beyond it, a corner is a corner."""
+SOFTEST, SHARPEST = 1.0, 50.0
+"""Froelich's law of magnetisation; beyond the other one, a corner is a corner."""
+WEAKEST = 1000.0
+"""Largest signals that the level may be of the softest law, whose curve is nearest."""
 
 
 class Saturation(Effect):
@@ -37,6 +39,12 @@ class Saturation(Effect):
             scene,
             place,
             form=f"{of}, algebraic" if of else "algebraic",
-            grids={"level": levels, "sharpness": np.array([2.0, 3.0, 4.5, 8.0])},
-            limits={"sharpness": (2.0, SHARPEST)},
+            grids={
+                "level": levels,
+                "sharpness": np.array([SOFTEST, 2.0, 3.0, 4.5, 8.0]),
+            },
+            limits={
+                "level": (0.5 * largest, WEAKEST * largest),
+                "sharpness": (SOFTEST, SHARPEST),
+            },
         )

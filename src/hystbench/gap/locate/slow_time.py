@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import cast
 
 import numpy as np
 
+from hystbench.blocks.linear import low_pass
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.regression import (
     Form,
@@ -82,14 +82,6 @@ def slow_forms(samples: Samples) -> tuple[dict[str, Form], FloatArray]:
         "creep and heat together": fit_form(samples, [*crept[1::2], *heated[1::2]]),
     }
     return forms, times
-
-
-def low_pass(values: FloatArray, dt: float, tau: float) -> FloatArray:
-    """Low-pass of first order from rest, the input held between samples."""
-    from scipy.signal import lfilter  # late: it takes long to load
-
-    keep = np.exp(-dt / tau)
-    return cast(FloatArray, lfilter([0.0, 1 - keep], [1.0, -keep], values))
 
 
 def block_means(values: FloatArray, size: int) -> FloatArray:
