@@ -73,12 +73,12 @@ def test_noise_reaches_the_ratio(creep):
     clear = fit(make_case(replace(CREEP, ratio_db=60.0)))
     plain = make_case(CaseSpec(3, "none", (), "gpi", 20.0))
     # the effect's own size, from records: the difference's power less the noise's
-    both = rms(clear - fit(plain)) ** 2 - plain.truth["noise_rms_um"] ** 2
+    both = rms(clear - fit(plain)) ** 2 - plain.truth["noise_rms"] ** 2
     effect = np.sqrt(both)
     noise = rms(fit(creep) - clear)
     assert 20 * np.log10(effect / noise) == pytest.approx(20.0, abs=0.2)
-    assert creep.truth["noise_rms_um"] == pytest.approx(noise, rel=0.03)
-    assert creep.truth["effects"][0]["rms_um"] == pytest.approx(effect, rel=0.03)
+    assert creep.truth["noise_rms"] == pytest.approx(noise, rel=0.03)
+    assert creep.truth["effects"][0]["rms"] == pytest.approx(effect, rel=0.03)
 
 
 def test_the_noise_is_white(creep):
@@ -103,16 +103,16 @@ def test_the_base_of_plays_is_the_plant_but_for_noise(seed):
     case = make_case(CaseSpec(seed, "none", (), "gpi", 20.0))
     slow = case.records[0]
     left = slow.y - case.model.simulate(slow.u, slow.dt)
-    assert rms(left) == pytest.approx(case.truth["noise_rms_um"], rel=0.05)
+    assert rms(left) == pytest.approx(case.truth["noise_rms"], rel=0.05)
     assert case.truth["effects"] == []
     # and everywhere the model's own error of sampling is a small part of the output
-    assert case.truth["base_error_fit_rms_um"] < 0.01 * case.truth["output_rms_um"]
+    assert case.truth["base_error_fit_rms"] < 0.01 * case.truth["output_rms"]
 
 
 @pytest.mark.parametrize("family", ["preisach", "jiles-atherton"])
 def test_the_base_of_another_family_is_near_and_wrong(family):
     truth = make_case(CaseSpec(0, "none", (), family, 20.0)).truth
-    share = truth["base_error_fit_rms_um"] / truth["output_rms_um"]
+    share = truth["base_error_fit_rms"] / truth["output_rms"]
     assert 1e-3 < share < 0.04
 
 

@@ -294,9 +294,9 @@ def _shrink(truth: Mapping[str, Any], gap: Mapping[str, Any] | None) -> float | 
     if gap is None:
         return 0.0
     hold_out = truth["hold_out"]
-    below = truth["noise_rms_um"] ** 2 + hold_out["base_error_rms_um"] ** 2
+    below = truth["noise_rms"] ** 2 + hold_out["base_error_rms"] ** 2
     explainable = gap["before"] ** 2 - below
-    if explainable <= 0.1 * hold_out["explainable_rms_um"] ** 2:
+    if explainable <= 0.1 * hold_out["explainable_rms"] ** 2:
         return None
     if gap["after"] is None:  # the model runs away on a record: nothing is closed
         return 0.0

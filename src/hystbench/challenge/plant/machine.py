@@ -164,8 +164,11 @@ def fill(
     return level
 
 
-def decimated(fine: FloatArray) -> FloatArray:
-    """Take the record's samples off the fine grid, behind a low-pass without delay."""
+def decimated(fine: FloatArray, steps: int = FINE) -> FloatArray:
+    """Take the record's samples off a grid of so many steps a sample.
+
+    A low-pass without delay stands before.
+    """
     from scipy.signal import resample_poly  # late: not needed for actuators
 
-    return np.asarray(resample_poly(fine, 1, FINE), dtype=np.float64)
+    return np.asarray(resample_poly(fine, 1, steps), dtype=np.float64)
