@@ -3,7 +3,7 @@
 # the judge, who has the answers as input, makes it anew from the seeds.
 import math
 
-from hystbench.challenge.contest.plan import numbers, sizes
+from hystbench.challenge.contest.plan import numbers, plan
 from hystbench.commands.rival import RIVALS
 from hystbench.entrants.environment import begun_by, not_entered
 from hystbench.errors import nearest
@@ -31,14 +31,19 @@ if CONTEST["solver"] not in CONTEST["solvers"]:
     )
 
 
-def blind_scale(name):
-    """How large a set is held."""
-    return CONTEST["transfer_scale" if name == "transfer" else "scale"]
+def blind_cases(name):
+    """Which cases of a set are held: how many, and of which kinds."""
+    return {
+        "name": name,
+        "scale": CONTEST["transfer_scale" if name == "transfer" else "scale"],
+        "without": CONTEST["without"],
+        "only": CONTEST["only"],
+    }
 
 
 def blind_chunks(name):
     """Numbers of the chunks of a set."""
-    return numbers(sum(sizes(name, blind_scale(name))), CONTEST["chunk"])
+    return numbers(len(plan(**blind_cases(name))), CONTEST["chunk"])
 
 
 def blind_entrants(wildcards):
@@ -57,8 +62,7 @@ def blind_case_settings(wildcards):
     """Which cases a chunk holds."""
     return settings_text(
         {
-            "set": wildcards.set,
-            "scale": blind_scale(wildcards.set),
+            "plan": blind_cases(wildcards.set),
             "size": CONTEST["chunk"],
             "chunk": wildcards.chunk,
         }

@@ -179,11 +179,11 @@ def reach_of(machine: Machine) -> Reach:
         force.append(motion.force)
         position.append(motion.position)
         velocity.append(motion.velocity)
-    largest = [
+    reach, speed, most, read = (
         float(max(np.max(np.abs(x)) for x in parts))
         for parts in (position, velocity, force, output)
-    ]
-    return Reach(*largest, machine.part.stiffness or largest[2] / largest[0])
+    )
+    return Reach(reach, speed, most, read, machine.part.stiffness or most / reach)
 
 
 def draw_machine(
@@ -277,7 +277,7 @@ def linear_parts(machine: Machine, signals: Signals) -> Signals:
     def solved(logs: FloatArray) -> tuple[FloatArray, FloatArray]:
         x = np.concatenate(modelled(logs))
         design = np.stack([x, np.ones_like(x)], axis=1)
-        return design, np.linalg.lstsq(design, pooled, rcond=None)[0]
+        return design, np.asarray(np.linalg.lstsq(design, pooled)[0])
 
     def left(logs: FloatArray) -> FloatArray:
         design, numbers = solved(logs)

@@ -1,12 +1,10 @@
-"""The records that a machine is tried with, on a clock of a thousand samples a unit.
+"""The records that a machine is tried with.
 
-Commands are those of :mod:`hystbench.challenge.excitation`, whose nominal rate is 4 kHz:
-a machine that is sampled at another rate sees the same samples.
+Commands are those of :mod:`hystbench.challenge.excitation`, whose nominal rate is
+4 kHz: a machine that is sampled at another rate sees the same samples.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 
@@ -20,20 +18,25 @@ from hystbench.challenge.excitation import (
     sine,
     staircase,
 )
+from hystbench.challenge.excitation import PERIOD as NOMINAL_PERIOD
 
 #: Samples of a record to fit, of one held out, and of a multisine's period.
-FIT, HELD_OUT, PERIOD = 3000, 2000, 1000
+FIT, HELD_OUT, PERIOD = 1500, 1000, 500
 
 
-def _twice_as_fast(function: Function) -> Function:
-    return lambda t: function(2.0 * t)
+#: A multisine's nominal period is :data:`hystbench.challenge.excitation.PERIOD`.
+_FASTER = NOMINAL_PERIOD / PERIOD
+
+
+def _faster(function: Function) -> Function:
+    return lambda t: function(_FASTER * t)
 
 
 def _tones(
     random: np.random.Generator, low: float, high: float, peak: float
 ) -> Function:
-    """Multisine whose period is a thousand samples."""
-    return _twice_as_fast(multisine(random, low / 2.0, high / 2.0, peak))
+    """Multisine whose period is five hundred samples."""
+    return _faster(multisine(random, low / _FASTER, high / _FASTER, peak))
 
 
 def _steps(
@@ -77,22 +80,17 @@ def machine_records(
     )
 
 
-def filling(
-    random: np.random.Generator, middle: float
-) -> tuple[Excitation, ...]:
+def filling(random: np.random.Generator, middle: float) -> tuple[Excitation, ...]:
     """Inflows of a tank, none of them below zero, in the same order."""
 
     def raised(function: Function, most: float) -> Function:
         return lambda t: np.asarray(most * (0.55 + 0.45 * function(t)))
 
-    made: Callable[[Excitation, float], Excitation] = lambda item, most: Excitation(
-        item.name,
-        item.use,
-        item.rate_hz,
-        item.samples,
-        raised(item.function, most),
-        item.period_samples,
-    )
+    def made(item: Excitation, most: float) -> Excitation:
+        function = raised(item.function, most)
+        samples, period = item.samples, item.period_samples
+        return Excitation(item.name, item.use, FAST, samples, function, period)
+
     levels = (0.6, 1.0, 0.9, 1.0, 0.95, 0.8)
     records = machine_records(random, middle)
     return tuple(made(item, most) for item, most in zip(records, levels, strict=True))

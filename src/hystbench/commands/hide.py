@@ -21,7 +21,11 @@ from hystbench.errors import InputError
     "--kind",
     help="single, pair, triple, none or unlisted: draw the effects, or say none.",
 )
-@click.option("--family", default="gpi", help="gpi, preisach, jiles-atherton, mass-spring, free-mass, ...")
+@click.option(
+    "--family",
+    default="gpi",
+    help="gpi, preisach, jiles-atherton, mass-spring, free-mass, ...",
+)
 @click.option("--ratio-db", type=float, default=20.0, help="Gap over noise, in dB.")
 @click.option("--seed", type=int, required=True)
 @click.option("--spread", type=float, default=1.0, help="Factor on the ranges.")

@@ -1,7 +1,7 @@
 """What can be hidden in a machine: forces inside, and curves before and behind it.
 
-Sizes are drawn as shares of how far, how fast and by what force the linear machine moves
-on its fit records.
+Sizes are drawn as shares of how far, how fast and by what force the linear machine
+moves on its fit records.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Machines: one moving part with forces inside, and tanks in a row.
 
 Their physics and numerics are their own: velocity Verlet with set-valued friction for a
-part, the classical Runge-Kutta method for tanks, on a grid much finer than the record's.
+part, the classical Runge-Kutta method for tanks, on a grid much finer than the
+record's.
 """
 
 from __future__ import annotations
