@@ -15,7 +15,7 @@ from hystbench.challenge.plant.actuator import Actuator, Mode
 from hystbench.challenge.plant.effects import APART, KINDS, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
 from hystbench.challenge.plant.kind import Range, draw
-from hystbench.challenge.spec import FAMILIES, CaseSpec, draw_spec
+from hystbench.challenge.spec import ACTUATORS, CaseSpec, draw_spec
 from hystbench.challenge.where import held, shortest
 from hystbench.errors import InputError
 
@@ -210,7 +210,7 @@ def excitations():
 
 
 @pytest.mark.parametrize(
-    ("family", "spread"), [*((family, 1.0) for family in FAMILIES), ("gpi", 3.0)]
+    ("family", "spread"), [*((family, 1.0) for family in ACTUATORS), ("gpi", 3.0)]
 )
 @pytest.mark.parametrize("name", KINDS)
 def test_every_effect_shows_on_every_family(family, name, spread, excitations):
@@ -247,7 +247,7 @@ def test_a_biased_loop_is_read_from_its_own_middle(excitations):
     # Over the largest loop a bias then tilts and bends, and shifts nothing.
     item = excitations["slow-loop"]
     effect = draw(KINDS["asymmetry"], np.random.default_rng(2), 1.0, ("field-bias",))
-    for family in FAMILIES:
+    for family in ACTUATORS:
         loop = draw_loop(family, np.random.default_rng(3))
         y, plain = (
             Actuator(loop, None, effects, 0).read(item, item.dt, item.samples, 0)
@@ -309,7 +309,7 @@ def test_spread_multiplies_what_shifts_within_physics():
 
 @given(st.integers(0, 10**6), st.sampled_from(["pair", "triple", "single"]))
 def test_drawn_effects_may_meet(seed, kind):
-    for family in FAMILIES:
+    for family in ACTUATORS:
         spec = draw_spec(seed, kind, family, 20.0)
         assert len(set(spec.effects)) == {"single": 1, "pair": 2, "triple": 3}[kind]
         assert not any(pair <= set(spec.effects) for pair in APART)

@@ -8,8 +8,10 @@ from hystbench.commands.rival import RIVALS
 from hystbench.entrants.environment import begun_by, not_entered
 from hystbench.errors import nearest
 
-BLIND = "results/blind"
 CONTEST = config["blind"]
+# Machines have a score of their own, beside that of actuators.
+OF_MACHINES = CONTEST["set"].startswith("mechanisms")
+BLIND = "results/blind-mechanisms" if OF_MACHINES else "results/blind"
 PLANT_KERNELS = sorted(map(str, PACKAGE.glob("challenge/kernels/*.so")))
 # Solvers that need a package that is not there, and those that enter.
 SKIPPED = {
@@ -23,6 +25,11 @@ BLIND_SOLVERS = {CONTEST["set"]: ENTERED}
 if CONTEST["transfer_scale"]:
     BLIND_SOLVERS["transfer"] = list(
         dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
+    )
+if OF_MACHINES and CONTEST["transfer_scale"]:
+    refuse(
+        f"{PLACE}: blind: transfer_scale: {CONTEST['transfer_scale']:g} with the set "
+        f"{CONTEST['set']!r}; expected 0, as machines have no transfer set"
     )
 if CONTEST["solver"] not in CONTEST["solvers"]:
     refuse(

@@ -16,7 +16,8 @@ from hystbench.errors import InputError, nearest
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
 CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
 COUNTS = {"single": 1, "pair": 2, "triple": 3, "none": 0, "unlisted": 1}
-FAMILIES = (*DRAWS, *inside.MACHINES)
+ACTUATORS = tuple(DRAWS)
+FAMILIES = (*ACTUATORS, *inside.MACHINES)
 #: Known to the plant of plays alone: beside another family the base's loop is wrong
 #: in any case.
 GPI_ONLY = ("hysteresis-shape",)
@@ -78,6 +79,12 @@ class CaseSpec:
                 f"campaign: {self.campaign!r} of the family {self.family!r}; expected "
                 "'standard', as machines have one set of records"
             )
+        for name in self.effects:
+            if name in GPI_ONLY and self.family in ACTUATORS and self.family != "gpi":
+                raise InputError(
+                    f"effect: {name!r} beside the family {self.family!r}; expected "
+                    "the family 'gpi', as the base's loop is wrong beside any other"
+                )
         known = _known(self.kind, self.family)
         for name in self.effects:
             if name not in known:

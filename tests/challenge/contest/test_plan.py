@@ -19,7 +19,6 @@ from hystbench.challenge.plant.inside import MACHINES, hidden_in
 from hystbench.errors import InputError
 from tests.conftest import ROOT
 
-
 #: Sets whose seeds serve a score alone.
 PUBLISHED = ("published", "transfer", "mechanisms")
 
@@ -160,7 +159,7 @@ def test_kinds_that_are_left_out_and_the_rest_make_the_whole_set():
 
 
 def test_a_kind_that_is_left_out_must_be_known_and_leave_some():
-    with pytest.raises(InputError, match="without: 'fricton'.*friction"):
+    with pytest.raises(InputError, match=r"without: 'fricton'.*friction"):
         plan("mechanisms", without=["fricton"])
     with pytest.raises(InputError, match="no case of the set 'small' is left"):
         plan("small", only=["tank"])
