@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.challenge.excitation import FAST, Excitation
 from hystbench.challenge.machine_records import filling, machine_records
-from hystbench.challenge.plant.inside import Hidden, Reach
+from hystbench.challenge.plant.hidden import Hidden, Reach
 from hystbench.challenge.plant.machine import (
     FINE,
     Motion,

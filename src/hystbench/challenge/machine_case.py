@@ -14,7 +14,8 @@ from hystbench.challenge.machine import (
     linear_parts,
     reach_of,
 )
-from hystbench.challenge.plant.inside import EFFECTS, Hidden, Reach, draw
+from hystbench.challenge.plant.hidden import Hidden, Reach, draw
+from hystbench.challenge.plant.inside import EFFECTS
 from hystbench.challenge.spec import CaseSpec
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
