@@ -50,7 +50,13 @@ SOURCES = [
 ]
 
 PLANT = "src/hystbench/challenge/kernels"
-PLANT_SOURCES = ["diffusion.c", "hysteresis.c", "joints.c", "oscillator.c"]
+PLANT_SOURCES = [
+    "diffusion.c",
+    "hysteresis.c",
+    "joints.c",
+    "machine.c",
+    "oscillator.c",
+]
 
 setup(
     ext_modules=[

@@ -15,7 +15,7 @@ from hystbench.challenge.plant.actuator import Actuator, Mode
 from hystbench.challenge.plant.effects import APART, KINDS, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
 from hystbench.challenge.plant.kind import Range, draw
-from hystbench.challenge.spec import FAMILIES, CaseSpec, draw_spec
+from hystbench.challenge.spec import ACTUATORS, CaseSpec, draw_spec
 from hystbench.challenge.where import held, shortest
 from hystbench.errors import InputError
 
@@ -73,12 +73,12 @@ def test_noise_reaches_the_ratio(creep):
     clear = fit(make_case(replace(CREEP, ratio_db=60.0)))
     plain = make_case(CaseSpec(3, "none", (), "gpi", 20.0))
     # the effect's own size, from records: the difference's power less the noise's
-    both = rms(clear - fit(plain)) ** 2 - plain.truth["noise_rms_um"] ** 2
+    both = rms(clear - fit(plain)) ** 2 - plain.truth["noise_rms"] ** 2
     effect = np.sqrt(both)
     noise = rms(fit(creep) - clear)
     assert 20 * np.log10(effect / noise) == pytest.approx(20.0, abs=0.2)
-    assert creep.truth["noise_rms_um"] == pytest.approx(noise, rel=0.03)
-    assert creep.truth["effects"][0]["rms_um"] == pytest.approx(effect, rel=0.03)
+    assert creep.truth["noise_rms"] == pytest.approx(noise, rel=0.03)
+    assert creep.truth["effects"][0]["rms"] == pytest.approx(effect, rel=0.03)
 
 
 def test_the_noise_is_white(creep):
@@ -103,16 +103,16 @@ def test_the_base_of_plays_is_the_plant_but_for_noise(seed):
     case = make_case(CaseSpec(seed, "none", (), "gpi", 20.0))
     slow = case.records[0]
     left = slow.y - case.model.simulate(slow.u, slow.dt)
-    assert rms(left) == pytest.approx(case.truth["noise_rms_um"], rel=0.05)
+    assert rms(left) == pytest.approx(case.truth["noise_rms"], rel=0.05)
     assert case.truth["effects"] == []
     # and everywhere the model's own error of sampling is a small part of the output
-    assert case.truth["base_error_fit_rms_um"] < 0.01 * case.truth["output_rms_um"]
+    assert case.truth["base_error_fit_rms"] < 0.01 * case.truth["output_rms"]
 
 
 @pytest.mark.parametrize("family", ["preisach", "jiles-atherton"])
 def test_the_base_of_another_family_is_near_and_wrong(family):
     truth = make_case(CaseSpec(0, "none", (), family, 20.0)).truth
-    share = truth["base_error_fit_rms_um"] / truth["output_rms_um"]
+    share = truth["base_error_fit_rms"] / truth["output_rms"]
     assert 1e-3 < share < 0.04
 
 
@@ -210,7 +210,7 @@ def excitations():
 
 
 @pytest.mark.parametrize(
-    ("family", "spread"), [*((family, 1.0) for family in FAMILIES), ("gpi", 3.0)]
+    ("family", "spread"), [*((family, 1.0) for family in ACTUATORS), ("gpi", 3.0)]
 )
 @pytest.mark.parametrize("name", KINDS)
 def test_every_effect_shows_on_every_family(family, name, spread, excitations):
@@ -247,7 +247,7 @@ def test_a_biased_loop_is_read_from_its_own_middle(excitations):
     # Over the largest loop a bias then tilts and bends, and shifts nothing.
     item = excitations["slow-loop"]
     effect = draw(KINDS["asymmetry"], np.random.default_rng(2), 1.0, ("field-bias",))
-    for family in FAMILIES:
+    for family in ACTUATORS:
         loop = draw_loop(family, np.random.default_rng(3))
         y, plain = (
             Actuator(loop, None, effects, 0).read(item, item.dt, item.samples, 0)
@@ -309,7 +309,7 @@ def test_spread_multiplies_what_shifts_within_physics():
 
 @given(st.integers(0, 10**6), st.sampled_from(["pair", "triple", "single"]))
 def test_drawn_effects_may_meet(seed, kind):
-    for family in FAMILIES:
+    for family in ACTUATORS:
         spec = draw_spec(seed, kind, family, 20.0)
         assert len(set(spec.effects)) == {"single": 1, "pair": 2, "triple": 3}[kind]
         assert not any(pair <= set(spec.effects) for pair in APART)

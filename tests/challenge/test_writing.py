@@ -14,7 +14,7 @@ from click.testing import CliRunner
 from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import KINDS
 from hystbench.challenge.spec import CaseSpec
-from hystbench.challenge.table import markdown_table
+from hystbench.challenge.table import markdown_table, markdown_table_of_machines
 from hystbench.challenge.writing import write_case
 from hystbench.commands.hide import hide
 from hystbench.dataset import load_dataset
@@ -200,6 +200,8 @@ def test_the_page_holds_the_table_of_ranges():
     # print(markdown_table(), end="")' and paste it between the two comments.
     page = (ROOT / "docs" / "challenge.md").read_text(encoding="utf-8")
     assert f"<!-- ranges -->\n\n{markdown_table()}\n<!-- end of ranges -->" in page
+    machines = markdown_table_of_machines()
+    assert f"<!-- machines -->\n\n{machines}\n<!-- end of machines -->" in page
 
 
 def test_the_table_tells_a_limit_on_one_side_and_on_both():

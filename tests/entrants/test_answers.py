@@ -48,6 +48,12 @@ def test_an_answer(script, case):
     assert told["seconds"] > 0
 
 
+def test_without_a_model_file_the_solver_is_told_linear(script, case):
+    (case / "model.yaml").unlink()
+    lines = "assert str(model) == 'linear', model\n" + GOOD
+    assert answer(script(lines), case)["status"] == "answered"
+
+
 @pytest.mark.parametrize(
     ("lines", "status"),
     [

@@ -236,13 +236,13 @@ def test_a_plain_fit_finds_what_is_hidden(effect):
     records = [r for r in case.records if r.use == "fit"]
     found = fit(Task(case.model, records), effect)
     # the noise, and at most a tenth of the effect's power
-    gap = case.truth["effects"][0]["rms_um"] ** 2
-    assert found.mean_square <= case.truth["noise_rms_um"] ** 2 + 0.1 * gap
+    gap = case.truth["effects"][0]["rms"] ** 2
+    assert found.mean_square <= case.truth["noise_rms"] ** 2 + 0.1 * gap
 
 
 def test_a_set_of_the_judge_holds_what_mimics_and_not_what_does_not(case):
     records = [r for r in case.records if r.use == "fit"]
-    noise = case.truth["noise_rms_um"]
+    noise = case.truth["noise_rms"]
     names = ("thermal-drift", "backlash", "no-effect-at-all")
     given = (case.model, records, names, "thermal-drift", noise**2, noise)
     assert within_noise(*given) == ("thermal-drift",)

@@ -109,8 +109,7 @@ rule blind_summary:
     params:
         settings=settings_text(
             {
-                "set": CONTEST["set"],
-                "scale": CONTEST["scale"],
+                "plan": blind_cases(CONTEST["set"]),
                 "transfer_scale": CONTEST["transfer_scale"],
                 "solver": CONTEST["solver"],
                 "skipped": SKIPPED,

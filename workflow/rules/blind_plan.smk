@@ -3,13 +3,15 @@
 # the judge, who has the answers as input, makes it anew from the seeds.
 import math
 
-from hystbench.challenge.contest.plan import numbers, sizes
+from hystbench.challenge.contest.plan import numbers, plan
 from hystbench.commands.rival import RIVALS
 from hystbench.entrants.environment import begun_by, not_entered
 from hystbench.errors import nearest
 
-BLIND = "results/blind"
 CONTEST = config["blind"]
+# Machines have a score of their own, beside that of actuators.
+OF_MACHINES = CONTEST["set"].startswith("mechanisms")
+BLIND = "results/blind-mechanisms" if OF_MACHINES else "results/blind"
 PLANT_KERNELS = sorted(map(str, PACKAGE.glob("challenge/kernels/*.so")))
 # Solvers that need a package that is not there, and those that enter.
 SKIPPED = {
@@ -24,6 +26,11 @@ if CONTEST["transfer_scale"]:
     BLIND_SOLVERS["transfer"] = list(
         dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
     )
+if OF_MACHINES and CONTEST["transfer_scale"]:
+    refuse(
+        f"{PLACE}: blind: transfer_scale: {CONTEST['transfer_scale']:g} with the set "
+        f"{CONTEST['set']!r}; expected 0, as machines have no transfer set"
+    )
 if CONTEST["solver"] not in CONTEST["solvers"]:
     refuse(
         f"{PLACE}: blind: solver: {CONTEST['solver']!r}; "
@@ -31,14 +38,19 @@ if CONTEST["solver"] not in CONTEST["solvers"]:
     )
 
 
-def blind_scale(name):
-    """How large a set is held."""
-    return CONTEST["transfer_scale" if name == "transfer" else "scale"]
+def blind_cases(name):
+    """Which cases of a set are held: how many, and of which kinds."""
+    return {
+        "name": name,
+        "scale": CONTEST["transfer_scale" if name == "transfer" else "scale"],
+        "without": CONTEST["without"],
+        "only": CONTEST["only"],
+    }
 
 
 def blind_chunks(name):
     """Numbers of the chunks of a set."""
-    return numbers(sum(sizes(name, blind_scale(name))), CONTEST["chunk"])
+    return numbers(len(plan(**blind_cases(name))), CONTEST["chunk"])
 
 
 def blind_entrants(wildcards):
@@ -57,8 +69,7 @@ def blind_case_settings(wildcards):
     """Which cases a chunk holds."""
     return settings_text(
         {
-            "set": wildcards.set,
-            "scale": blind_scale(wildcards.set),
+            "plan": blind_cases(wildcards.set),
             "size": CONTEST["chunk"],
             "chunk": wildcards.chunk,
         }

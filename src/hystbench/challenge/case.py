@@ -44,15 +44,15 @@ class Case:
     records : tuple of Record
     period_samples : mapping of str to int
         Of the periodic records, by name.
-    model : Model
-        The base model.
+    model : Model or None
+        The base model; None where the solver is to identify a linear one.
     truth : mapping
         As docs/challenge.md tells.
     """
 
     records: tuple[Record, ...]
     period_samples: dict[str, int]
-    model: Model
+    model: Model | None
     truth: dict[str, Any] = field(repr=False)
 
 
@@ -119,7 +119,7 @@ def make_case(spec: CaseSpec) -> Case:
             _effect_told(effect)
             | {
                 "resized": resized[k],
-                "rms_um": sizes[k],
+                "rms": sizes[k],
                 "ratio_db": _decibel(sizes[k], noise),
                 "ratio_retuned_db": _decibel(
                     _retuned(difference, without[k].of(fit)), noise
@@ -135,7 +135,7 @@ def make_case(spec: CaseSpec) -> Case:
     held_out = tuple(item for item in excitations if item.use == "hold-out")
     truth["hold_out"] = _hold_out(full, bare, held_out, model)
     base_error = _minus(bare.of(fit), _simulated(model, fit))
-    truth["base_error_fit_rms_um"] = _rms(base_error)
+    truth["base_error_fit_rms"] = _rms(base_error)
     periods = {
         item.name: item.period_samples
         for item in excitations
@@ -279,10 +279,11 @@ def _told(spec: CaseSpec, plant: Plant, noise: float, size: float) -> dict[str, 
         "family": spec.family,
         "spread": spec.spread,
         "campaign": spec.campaign,
-        "noise_rms_um": float(np.hypot(noise, RESOLUTION / np.sqrt(12.0))),
+        "unit": OUTPUT.unit,
+        "noise_rms": float(np.hypot(noise, RESOLUTION / np.sqrt(12.0))),
         "noise_set_by": "the effect that shows least" if spec.effects else "drawn",
         "ratio_db": spec.ratio_db if spec.effects else None,
-        "output_rms_um": size,
+        "output_rms": size,
         "mode": None if plant.mode is None else plant.mode.parameters(),
         "effects": [],
     }
@@ -307,9 +308,9 @@ def _hold_out(
     """Gap on the hold-out records: all of it, and what the effects explain."""
     base = _simulated(model, chosen)
     return {
-        "gap_rms_um": _rms(_minus(full.of(chosen), base)),
-        "explainable_rms_um": _rms(full.minus(bare, chosen)),
-        "base_error_rms_um": _rms(_minus(bare.of(chosen), base)),
+        "gap_rms": _rms(_minus(full.of(chosen), base)),
+        "explainable_rms": _rms(full.minus(bare, chosen)),
+        "base_error_rms": _rms(_minus(bare.of(chosen), base)),
     }
 
 

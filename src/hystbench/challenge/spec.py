@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from hystbench.challenge.excitation import CAMPAIGNS
+from hystbench.challenge.plant import inside
 from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY, may_meet
 from hystbench.challenge.plant.hysteresis import DRAWS
 from hystbench.errors import InputError, nearest
@@ -15,7 +16,8 @@ from hystbench.errors import InputError, nearest
 CaseKind = Literal["single", "pair", "triple", "none", "unlisted"]
 CASE_KINDS: tuple[str, ...] = get_args(CaseKind)
 COUNTS = {"single": 1, "pair": 2, "triple": 3, "none": 0, "unlisted": 1}
-FAMILIES = tuple(DRAWS)
+ACTUATORS = tuple(DRAWS)
+FAMILIES = (*ACTUATORS, *inside.MACHINES)
 #: Known to the plant of plays alone: beside another family the base's loop is wrong
 #: in any case.
 GPI_ONLY = ("hysteresis-shape",)
@@ -33,12 +35,14 @@ class CaseSpec:
     kind : {"single", "pair", "triple", "none", "unlisted"}
     effects : tuple of str
         Names, in no order.
-    family : {"gpi", "preisach", "jiles-atherton"}
-        Hysteresis of the plant.
+    family : str
+        Hysteresis of the plant: ``gpi``, ``preisach`` or ``jiles-atherton``; or a
+        machine: ``mass-spring``, ``free-mass``, ``pendulum``, ``impedance``, ``tank``.
     ratio_db : float
         20 log10 of rms(output with the effect minus without) over the noise's rms on
         the fit records; of several effects, for the one that shows least. With
-        nothing hidden it is not used.
+        nothing hidden it is not used. Of a machine's effect it is what no linear
+        machine explains that is held against the noise.
     spread : float
         Multiplies the ranges of time constants, frequencies and sizes.
     campaign : {"standard", "other"}
@@ -70,26 +74,34 @@ class CaseSpec:
             raise InputError(
                 f"campaign: {self.campaign!r}; {nearest(self.campaign, CAMPAIGNS)}"
             )
-        known = UNLISTED if self.kind == "unlisted" else VOCABULARY
+        if self.family in inside.MACHINES and self.campaign != "standard":
+            raise InputError(
+                f"campaign: {self.campaign!r} of the family {self.family!r}; expected "
+                "'standard', as machines have one set of records"
+            )
+        for name in self.effects:
+            if name in GPI_ONLY and self.family in ACTUATORS and self.family != "gpi":
+                raise InputError(
+                    f"effect: {name!r} beside the family {self.family!r}; expected "
+                    "the family 'gpi', as the base's loop is wrong beside any other"
+                )
+        known = _known(self.kind, self.family)
         for name in self.effects:
             if name not in known:
-                raise InputError(f"effect: {name!r} unknown; {nearest(name, known)}")
+                raise InputError(
+                    f"effect: {name!r} unknown in the family {self.family!r}; "
+                    f"{nearest(name, known)}"
+                )
         if len(self.effects) != COUNTS[self.kind]:
             raise InputError(
                 f"effect: {len(self.effects)} given, expected {COUNTS[self.kind]} for "
                 f"the kind {self.kind!r}"
             )
-        if not may_meet(self.effects):
+        if not _may_meet(self.effects, self.family):
             raise InputError(
                 f"effect: {' and '.join(self.effects)} cannot be hidden together; "
                 "expected effects that differ and can be told apart"
             )
-        for name in self.effects:
-            if name in GPI_ONLY and self.family != "gpi":
-                raise InputError(
-                    f"effect: {name!r} beside the family {self.family!r}; expected "
-                    "the family 'gpi', as the base's loop is wrong beside any other"
-                )
         low, high = RATIO_LIMITS
         if not low <= self.ratio_db <= high:
             raise InputError(
@@ -103,6 +115,39 @@ class CaseSpec:
     def random(self, stream: int) -> np.random.Generator:
         """Source of random numbers for one purpose; purposes do not disturb others."""
         return np.random.default_rng([self.seed, stream])
+
+
+def effects_of(
+    kind: str, family: str, unlisted: Literal["development", "transfer"] | None = None
+) -> list[str]:
+    """Give the names of what a case of a kind may hide in a family.
+
+    Parameters
+    ----------
+    kind, family : str
+    unlisted : {"development", "transfer"}, optional
+        Half of the sorts outside the vocabulary; by default all.
+    """
+    names = _known(kind, family)
+    if kind == "unlisted":
+        names = [name for name in names if unlisted in (None, KINDS[name].use)]
+    return names
+
+
+def _known(kind: str, family: str) -> list[str]:
+    if family in inside.MACHINES:
+        return [] if kind == "unlisted" else list(inside.hidden_in(family))
+    if kind == "unlisted":
+        return list(UNLISTED)
+    return [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
+
+
+def _may_meet(names: tuple[str, ...], family: str) -> bool:
+    if family not in inside.MACHINES:
+        return may_meet(names)
+    chosen = set(names)
+    apart = any(pair <= chosen for pair in inside.APART)
+    return len(chosen) == len(names) and not apart
 
 
 def kind_of(effects: tuple[str, ...]) -> str:
@@ -141,14 +186,16 @@ def draw_spec(
     """
     if kind not in CASE_KINDS:
         raise InputError(f"kind: {kind!r}; {nearest(kind, CASE_KINDS)}")
-    if kind == "unlisted":
-        names = [name for name in UNLISTED if unlisted in (None, KINDS[name].use)]
-    else:
-        names = [name for name in VOCABULARY if name not in GPI_ONLY or family == "gpi"]
+    names = effects_of(kind, family, unlisted)
+    if len(names) < COUNTS[kind]:
+        raise InputError(
+            f"kind: {kind!r} of the family {family!r}; expected a kind of at most "
+            f"{len(names)} effects"
+        )
     random = np.random.default_rng([seed, 0])
     while True:
         chosen = random.choice(len(names), size=COUNTS[kind], replace=False)
         effects = tuple(names[int(place)] for place in chosen)
-        if may_meet(effects):
+        if _may_meet(effects, family):
             break
     return CaseSpec(seed, kind, effects, family, ratio_db, spread, campaign)

@@ -6,11 +6,17 @@ import math
 
 from hystbench import files
 from hystbench.challenge.plant.effects import KINDS
+from hystbench.challenge.plant.inside import EFFECTS
 from hystbench.challenge.plant.kind import Range
 
 COLUMNS = (
     *("effect", "place", "form", "parameter"),
     *("range", "unit", "limits", "right views"),
+)
+
+COLUMNS_OF_MACHINES = (
+    *("effect", "place", "families", "form"),
+    *("parameter", "share", "at most"),
 )
 
 
@@ -41,6 +47,21 @@ def markdown_table() -> str:
                 rows.append(cells)
                 first, second, views = ["", ""], "", ""
     return files.markdown_table(COLUMNS, rows) + "\n"
+
+
+def markdown_table_of_machines() -> str:
+    """Write every effect of machines, its families, forms and shares as a table."""
+    rows = []
+    for kind in EFFECTS.values():
+        first = [f"`{kind.name}`", kind.place, ", ".join(kind.families)]
+        for form, law in kind.laws.items():
+            second = form
+            for name, item in law.ranges.items():
+                sign = "±" if item.sign else ""
+                span = f"{sign}{item.low:g} to {item.high:g} {item.unit}"
+                rows.append([*first, second, f"`{name}`", span, f"{item.most:g}"])
+                first, second = ["", "", ""], ""
+    return files.markdown_table(COLUMNS_OF_MACHINES, rows) + "\n"
 
 
 def _bounds(item: Range) -> str:

@@ -7,17 +7,20 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.challenge.base import OUTPUT
 from hystbench.challenge.case import Case
 from hystbench.errors import InputError
 from hystbench.files import whole_folder, write_json, write_text
-from hystbench.record import Record
+from hystbench.record import Channel, Record, column_name
 
-HEADER = "time_s,current_A,displacement_um\n"
-ROW = "%.6f,%.8f,%.3f\n"
+#: Of an actuator; a machine's numbers have digits enough for its converter's steps.
+ROW, ROW_OF_MACHINE = "%.6f,%.8f,%.3f\n", "%.6f,%.8g,%.7g\n"
 
 
 def write_case(case: Case, folder: str | Path, truth_file: str | Path) -> None:
     """Write ``dataset/`` and ``model.yaml`` into a folder, and the truth elsewhere.
+
+    Without a base there is no ``model.yaml``: the solver is to identify a linear one.
 
     Parameters
     ----------
@@ -51,8 +54,16 @@ def write_folder(case: Case, folder: Path) -> None:
     """
     for record in case.records:
         write_text(folder / "dataset" / f"{record.name}.csv", _csv(record))
-    write_text(folder / "model.yaml", case.model.to_yaml())
+    if case.model is not None:
+        write_text(folder / "model.yaml", case.model.to_yaml())
     write_text(folder / "dataset" / "dataset.yaml", _dataset(case))
+
+
+def _output(measured: Channel) -> dict[str, str]:
+    """Say what the output is; a level has the unit of a length and says so itself."""
+    column = column_name(measured.name, measured.unit)
+    about = {"column": column, "unit": measured.unit}
+    return about | ({"quantity": "level"} if measured.name == "level" else {})
 
 
 def check_places(folder: Path, truth_file: Path) -> None:
@@ -74,7 +85,10 @@ def check_places(folder: Path, truth_file: Path) -> None:
 
 def _csv(record: Record) -> str:
     table = np.stack([record.time, record.u, record.y], axis=1)
-    return HEADER + (ROW * len(table)) % tuple(table.ravel().tolist())
+    row = ROW if record.output == OUTPUT else ROW_OF_MACHINE
+    names = (column_name(c.name, c.unit) for c in (record.input, record.output))
+    header = ",".join(["time_s", *names]) + "\n"
+    return header + (row * len(table)) % tuple(table.ravel().tolist())
 
 
 def _dataset(case: Case) -> str:
@@ -86,12 +100,17 @@ def _dataset(case: Case) -> str:
         if record.name in case.period_samples:
             entry["period_samples"] = case.period_samples[record.name]
         entries.append(entry)
+    given, measured = case.records[0].input, case.records[0].output
     content = {
         "name": "blind-case",
         "description": "Made by hystbench hide: a simulation, no measurement.",
         "time": {"column": "time_s", "unit": "s"},
-        "input": {"column": "current_A", "unit": "A", "hold": "band-limited"},
-        "output": {"column": "displacement_um", "unit": "um"},
+        "input": {
+            "column": column_name(given.name, given.unit),
+            "unit": given.unit,
+            "hold": "band-limited",
+        },
+        "output": _output(measured),
         "records": entries,
     }
     text: str = yaml.safe_dump(content, sort_keys=False, default_flow_style=None)

@@ -27,6 +27,7 @@ MAKERS = (
     ("results/benchmarks/slurm", "make test-slurm"),
     ("results/benchmarks/", "make bench"),
     ("results/blind/", "snakemake blind"),
+    ("results/blind-mechanisms/", "snakemake blind with the set mechanisms"),
     ("results/gap/", "snakemake gap"),
     ("results/devices/", "snakemake devices"),
     ("results/export/", "snakemake export_errors"),

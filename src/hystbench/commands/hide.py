@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.challenge.case import make_case
+from hystbench.challenge.make import make
 from hystbench.challenge.spec import CaseSpec, draw_spec, kind_of
 from hystbench.challenge.writing import check_places, write_case
 from hystbench.errors import InputError
@@ -21,7 +21,11 @@ from hystbench.errors import InputError
     "--kind",
     help="single, pair, triple, none or unlisted: draw the effects, or say none.",
 )
-@click.option("--family", default="gpi", help="gpi, preisach or jiles-atherton.")
+@click.option(
+    "--family",
+    default="gpi",
+    help="gpi, preisach, jiles-atherton, mass-spring, free-mass, ...",
+)
 @click.option("--ratio-db", type=float, default=20.0, help="Gap over noise, in dB.")
 @click.option("--seed", type=int, required=True)
 @click.option("--spread", type=float, default=1.0, help="Factor on the ranges.")
@@ -52,4 +56,4 @@ def hide(
     else:
         spec = draw_spec(seed, kind, family, ratio_db, spread=spread, campaign=campaign)
     check_places(out, truth)
-    write_case(make_case(spec), out, truth)
+    write_case(make(spec), out, truth)

@@ -27,6 +27,8 @@ from hystbench.written import ENTRIES, remove_below
 PLACES = ("{dataset}", "{model}", "{out}")
 #: Bytes of a gap.json that are read; more is no answer.
 LARGEST_ANSWER = 20_000_000
+#: What stands for the model where none is handed over: a linear one, to be identified.
+LINEAR = "linear"
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,8 @@ def answer_all(
     ----------
     solver : Solver
     folder : Path
-        Holds a folder a case, with ``dataset/`` and ``model.yaml``.
+        Holds a folder a case, with ``dataset/`` and ``model.yaml``; without the latter
+        the solver is told ``linear`` in its place.
     out : Path
         JSON: ``solver``, ``command``, and ``cases`` by name with ``status``
         (``answered`` or why there is no answer), ``seconds``, ``cpu_seconds``,
@@ -115,9 +118,10 @@ def answer(
         given, out, here = (Path(place, name) for name in ("case", "out", "work"))
         shutil.copytree(case, given, ignore=shutil.ignore_patterns(ENTRIES))
         here.mkdir()
+        model = given / "model.yaml"
         paths = {
             "{dataset}": str(given / "dataset"),
-            "{model}": str(given / "model.yaml"),
+            "{model}": str(model) if model.is_file() else LINEAR,
             "{out}": str(out),
         }
         command = [_filled(word, paths) for word in solver.command]

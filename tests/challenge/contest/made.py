@@ -62,12 +62,12 @@ def truth(*effects, kind="single", family="gpi", **more):
         "kind": kind,
         "family": family,
         "ratio_db": 20.0 if effects else None,
-        "noise_rms_um": 3.0,
+        "noise_rms": 3.0,
         "effects": list(effects),
         "hold_out": {
-            "gap_rms_um": 13.0,
-            "explainable_rms_um": 12.0,
-            "base_error_rms_um": 4.0,
+            "gap_rms": 13.0,
+            "explainable_rms": 12.0,
+            "base_error_rms": 4.0,
         },
     } | more
 

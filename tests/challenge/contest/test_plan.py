@@ -15,8 +15,12 @@ from hystbench.challenge.contest.plan import (
     sizes,
 )
 from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY
+from hystbench.challenge.plant.inside import MACHINES, hidden_in
 from hystbench.errors import InputError
 from tests.conftest import ROOT
+
+#: Sets whose seeds serve a score alone.
+PUBLISHED = ("published", "transfer", "mechanisms")
 
 
 def seeds(name, scale=1.0):
@@ -30,7 +34,7 @@ def test_no_seed_is_used_twice_in_a_contest_or_in_another(scale):
 
 
 def test_published_and_transfer_seeds_are_above_all_that_was_mended_on():
-    for name in ("development", "small"):
+    for name in ("development", "small", "mechanisms-development"):
         assert set(seeds(name)) <= set(DEVELOPMENT_SEEDS)
     assert min(seeds("published", 4.0)) >= RETIRED_SEEDS.stop
     assert RETIRED_SEEDS.start > DEVELOPMENT_SEEDS.stop
@@ -39,7 +43,7 @@ def test_published_and_transfer_seeds_are_above_all_that_was_mended_on():
 
 def test_no_test_uses_a_seed_of_the_published_score():
     """Whatever a solver was mended on, it was not the cases that it is judged on."""
-    kept = set(seeds("published")) | set(seeds("transfer"))
+    kept = {seed for name in PUBLISHED for seed in seeds(name)}
     for file in (ROOT / "tests").rglob("*.py"):
         numbers = re.findall(r"\b\d{1,3}_?\d{3}_?\d{3}\b", file.read_text())
         used = {int(text.replace("_", "")) for text in numbers}
@@ -141,3 +145,33 @@ def test_jobs_are_counted_without_drawing_their_cases(scale):
         cut = chunks(cases, 7)
         assert list(cut) == numbers(len(cases), 7)
         assert tuple(itertools.chain.from_iterable(cut.values())) == cases
+
+
+def test_kinds_that_are_left_out_and_the_rest_make_the_whole_set():
+    left_out = ["gravity", "tank"]
+    every = {entry.name for entry in plan("mechanisms")}
+    without = {entry.name for entry in plan("mechanisms", without=left_out)}
+    only = {entry.name for entry in plan("mechanisms", only=left_out)}
+    assert without | only == every
+    assert not without & only
+    specs = [entry.spec for entry in plan("mechanisms", without=left_out)]
+    assert not any({spec.family, *spec.effects} & set(left_out) for spec in specs)
+
+
+def test_a_kind_that_is_left_out_must_be_known_and_leave_some():
+    with pytest.raises(InputError, match=r"without: 'fricton'.*friction"):
+        plan("mechanisms", without=["fricton"])
+    with pytest.raises(InputError, match="no case of the set 'small' is left"):
+        plan("small", only=["tank"])
+
+
+@pytest.mark.parametrize("family", MACHINES)
+def test_effects_of_machines_are_balanced(family):
+    chosen = [
+        entry.spec.effects[0]
+        for entry in plan("mechanisms")
+        if (entry.spec.kind, entry.spec.family) == ("single", family)
+    ]
+    counts = Counter(chosen)
+    assert set(counts) == set(hidden_in(family))
+    assert max(counts.values()) - min(counts.values()) <= 1

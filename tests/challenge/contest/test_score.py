@@ -47,6 +47,28 @@ def test_a_right_answer():
     assert (row.ratio_db, row.ratio_retuned_db) == (20.0, 18.0)
 
 
+@pytest.mark.parametrize(
+    ("name", "place", "right"),
+    [
+        ("friction", "inside", True),
+        ("friction", "beside", True),
+        ("friction", "mechanics", False),
+        # another name in the right place
+        ("hysteretic-force", "inside", True),
+    ],
+)
+def test_the_place_in_a_machine(name, place, right):
+    hidden = effect("friction", "coulomb", where=[]) | {"place": "inside"}
+    told = named(name) | {"place": place}
+    row = judged(truth(hidden, family="impedance"), gap(told))
+    assert row.place_right is right
+    assert row.top1 is (name == "friction")
+    assert row.where_hit is None
+    unnamed = judged(truth(hidden, family="impedance"), gap(verdict="unnamed"))
+    assert unnamed.place_right is False
+    assert judged(truth(effect()), RIGHT).place_right is None
+
+
 def test_half_a_gap_closed():
     # 169 - 97 = 72 of 144
     row = judged(truth(effect()), gap(named("resonance"), after=97**0.5))

@@ -12,9 +12,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from hystbench.challenge.case import Case, make_case
+from hystbench.challenge.case import Case
 from hystbench.challenge.contest.plan import Entry
 from hystbench.challenge.contest.score import Row, judge
+from hystbench.challenge.make import make
+from hystbench.challenge.plant.inside import MACHINES
 from hystbench.challenge.writing import write_folder
 from hystbench.errors import InputError
 from hystbench.files import digest
@@ -27,7 +29,7 @@ WRITTEN = ("*/model.yaml", "*/dataset/*")
 def make_chunk(entries: Iterable[Entry], folder: Path) -> None:
     """Write what solvers get of some cases, a folder each."""
     for entry in entries:
-        write_folder(make_case(entry.spec), folder / entry.name)
+        write_folder(make(entry.spec), folder / entry.name)
 
 
 def judge_chunk(
@@ -52,7 +54,7 @@ def judge_chunk(
     """
     answers = list(answers)
     for entry in entries:
-        case = make_case(entry.spec)
+        case = make(entry.spec)
         handed = _digest(case)
         for about in answers:
             answer = about["cases"].get(entry.name)
@@ -74,9 +76,15 @@ def _digest(case: Case) -> str:
 
 
 def _confirmed(case: Case, names: tuple[str, ...]) -> tuple[str, ...]:
-    """Members of a set that the judge's own fits find within the noise."""
+    """Members of a set that the judge's own fits find within the noise.
+
+    All of them where there is no base to fit beside: effects inside a machine have no
+    fits of the judge's own.
+    """
+    if case.model is None or case.truth["family"] in MACHINES:
+        return names
     records = [record for record in case.records if record.use == "fit"]
     hidden = case.truth["effects"][0]["name"]
-    noise = float(case.truth["noise_rms_um"])
-    floor = noise**2 + float(case.truth["base_error_fit_rms_um"]) ** 2
+    noise = float(case.truth["noise_rms"])
+    floor = noise**2 + float(case.truth["base_error_fit_rms"]) ** 2
     return within_noise(case.model, records, names, hidden, floor, noise)

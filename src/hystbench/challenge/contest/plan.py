@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY
-from hystbench.challenge.spec import GPI_ONLY, CaseSpec, draw_spec
+from hystbench.challenge.plant.effects import KINDS
+from hystbench.challenge.plant.inside import EFFECTS
+from hystbench.challenge.spec import (
+    CASE_KINDS,
+    FAMILIES,
+    CaseSpec,
+    draw_spec,
+    effects_of,
+)
 from hystbench.errors import InputError, nearest
 
 #: The development set, the small one of the pipeline's test and the cases of all other
@@ -19,15 +27,19 @@ RETIRED_SEEDS = range(1_000_000, 15_000_000)
 FIRST_SEED = {
     "development": 100_000,
     "small": 195_000,
+    "mechanisms-development": 196_000,
     "published": 15_000_000,
     "transfer": 16_000_000,
+    "mechanisms": 17_000_000,
 }
 #: Seeds set aside for a stratum, so that a larger contest holds the smaller one.
 PER_STRATUM = {
     "development": 5_000,
     "small": 100,
+    "mechanisms-development": 400,
     "published": 5_000,
     "transfer": 5_000,
+    "mechanisms": 5_000,
 }
 
 
@@ -65,6 +77,22 @@ def _mixed(kind: str, gpi: int, other: int) -> tuple[Stratum, ...]:
 def _singles(ratio_db: float, gpi: int, other: int) -> tuple[Stratum, ...]:
     sizes = {"gpi": gpi, "preisach": other, "jiles-atherton": other}
     return tuple(Stratum("single", family, ratio_db, n) for family, n in sizes.items())
+
+
+def _machines(size: int) -> tuple[Stratum, ...]:
+    """Strata of 20 dB on machines: each effect of a family so many times."""
+    return (
+        Stratum("single", "mass-spring", 20.0, 9 * size),
+        Stratum("single", "impedance", 20.0, 6 * size),
+        Stratum("single", "free-mass", 20.0, 2 * size),
+        Stratum("single", "pendulum", 20.0, 3 * size),
+        Stratum("single", "tank", 20.0, 2 * size),
+        Stratum("none", "mass-spring", 20.0, 3 * size),
+        Stratum("none", "impedance", 20.0, 2 * size),
+        Stratum("none", "tank", 20.0, size),
+        Stratum("pair", "mass-spring", 20.0, 2 * size),
+        Stratum("pair", "impedance", 20.0, 2 * size),
+    )
 
 
 STRATA: dict[str, tuple[Stratum, ...]] = {
@@ -107,11 +135,20 @@ STRATA: dict[str, tuple[Stratum, ...]] = {
         *_mixed("triple", 12, 6),
         *_mixed("unlisted", 26, 12),
     ),
+    "mechanisms-development": _machines(2),
+    "mechanisms": _machines(6),
 }
 SETS = tuple(STRATA)
+#: By which cases are left out: effects, families of plants, kinds of cases.
+WORDS = tuple(dict.fromkeys([*CASE_KINDS, *FAMILIES, *KINDS, *EFFECTS]))
 
 
-def plan(name: str, scale: float = 1.0) -> tuple[Entry, ...]:
+def plan(
+    name: str,
+    scale: float = 1.0,
+    without: Sequence[str] = (),
+    only: Sequence[str] = (),
+) -> tuple[Entry, ...]:
     """List the cases of a set.
 
     Singles, and effects outside the vocabulary, are balanced over the effects: each is
@@ -119,11 +156,16 @@ def plan(name: str, scale: float = 1.0) -> tuple[Entry, ...]:
 
     Parameters
     ----------
-    name : {"small", "development", "published", "transfer"}
-        The set ``transfer`` has ranges shifted by 3, other records and those unlisted
-        effects that no other set holds.
+    name : str
+        One of :data:`SETS`. The set ``transfer`` has ranges shifted by 3, other records
+        and those unlisted effects that no other set holds.
     scale : float
         Factor on the number of cases of each stratum; at least one is left.
+    without : sequence of str
+        Effects, families and kinds of cases that are left out. The others keep their
+        seeds, so that a contest of what was left out has no case of this one.
+    only : sequence of str
+        Effects, families and kinds of which a case holds at least one; all by default.
 
     Returns
     -------
@@ -133,16 +175,33 @@ def plan(name: str, scale: float = 1.0) -> tuple[Entry, ...]:
     Raises
     ------
     InputError
-        If there is no such set, or the scale asks for more seeds than there are.
+        If there is no such set or kind, nothing is left, or the scale asks for more
+        seeds than there are.
     """
+    for key, words in (("without", without), ("only", only)):
+        for word in words:
+            if word not in WORDS:
+                raise InputError(f"blind: {key}: {word!r}; {nearest(word, WORDS)}")
     counts = sizes(name, scale)
     entries = []
     for number, (stratum, cases) in enumerate(zip(STRATA[name], counts, strict=True)):
         first = FIRST_SEED[name] + number * PER_STRATUM[name]
         for k in range(cases):
             spec = _spec(name, stratum, first + k, number + k)
-            entries.append(Entry(_hash(name, spec.seed), spec))
+            if _wanted(spec, without, only):
+                entries.append(Entry(_hash(name, spec.seed), spec))
+    if not entries:
+        raise InputError(
+            f"blind: without, only: no case of the set {name!r} is left; expected "
+            "kinds that leave some"
+        )
     return tuple(sorted(entries, key=lambda entry: entry.name))
+
+
+def _wanted(spec: CaseSpec, without: Sequence[str], only: Sequence[str]) -> bool:
+    """Tell whether a case stays where kinds are left out."""
+    words = {spec.kind, spec.family, *spec.effects}
+    return words.isdisjoint(without) and (not only or not words.isdisjoint(only))
 
 
 def sizes(name: str, scale: float = 1.0) -> list[int]:
@@ -177,17 +236,9 @@ def _spec(name: str, stratum: Stratum, seed: int, place: int) -> CaseSpec:
     transfer = name == "transfer"
     spread, campaign = (3.0, "other") if transfer else (1.0, "standard")
     use: Literal["transfer", "development"] = "transfer" if transfer else "development"
-    known: list[str] = []
-    if stratum.kind == "single":
-        known = [
-            effect
-            for effect in VOCABULARY
-            if stratum.family == "gpi" or effect not in GPI_ONLY
-        ]
-    if stratum.kind == "unlisted":
-        known = [effect for effect in UNLISTED if KINDS[effect].use == use]
     shared: dict[str, Any] = {"spread": spread, "campaign": campaign}
-    if known:
+    if stratum.kind in ("single", "unlisted"):
+        known = effects_of(stratum.kind, stratum.family, use)
         # a stride that shares no factor with the count: few cases are mixed too
         effect = known[_STRIDE * place % len(known)]
         return CaseSpec(

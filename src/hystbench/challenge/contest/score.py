@@ -10,7 +10,7 @@ from typing import Any
 
 from hystbench.challenge.contest.parameters import recovered
 from hystbench.challenge.contest.place import where_hit
-from hystbench.challenge.plant.effects import VOCABULARY
+from hystbench.challenge.plant.inside import MACHINES
 from hystbench.errors import InputError
 from hystbench.schema import check_against_schema
 
@@ -66,6 +66,10 @@ class Row:
     unnamed : bool or None
         Outside the vocabulary: the verdict is unnamed, and no finding accounts for it.
     where_hit : bool or None
+        None in a machine, whose truth tells no view.
+    place_right : bool or None
+        Of single effects in a machine: what is named first is put where it acts: before
+        the dynamics, inside them or behind.
     shrink : float or None
         Share of the power above the noise and the base's own error that is gone from
         the hold-out records.
@@ -104,6 +108,7 @@ class Row:
     false_alarm_strict: bool | None
     unnamed: bool | None
     where_hit: bool | None
+    place_right: bool | None
     shrink: float | None
     parameters: int
     intervals: int
@@ -141,7 +146,8 @@ def judge(
     """
     lost = _why_lost(answer, schema)
     gap: Mapping[str, Any] = _NOTHING if lost else answer["gap"]
-    kind, foreign = truth["kind"], truth["family"] != "gpi"
+    kind, machine = truth["kind"], truth["family"] in MACHINES
+    foreign = truth["family"] != "gpi" and not machine
     hidden = [effect["name"] for effect in truth["effects"]]
     strict = [effect["name"] for effect in gap["effects"]]
     tolerated = foreign and SHAPE not in hidden
@@ -194,13 +200,16 @@ def judge(
         exact=right,
         exact_strict=right_strict,
         all_named=names and set(hidden) <= set(named)
-        if set(hidden) <= set(VOCABULARY) and hidden
+        if hidden and kind != "unlisted"
         else None,
         false_alarm=not right if kind == "none" else None,
         false_alarm_strict=not right_strict if kind == "none" else None,
         unnamed=word == "unnamed" if kind == "unlisted" else None,
         where_hit=where_hit(views[0] if views else None, truth["effects"])
-        if hidden
+        if hidden and not machine
+        else None,
+        place_right=names and one is not None and _placed(one, truth["effects"][0])
+        if single and machine
         else None,
         shrink=_shrink(truth, gap["gap"]) if hidden else None,
         parameters=found.compared,
@@ -280,6 +289,19 @@ def _right(
     ) == sorted(hidden)
 
 
+#: Words of gap.json for each place; a force beside an impedance is one inside it.
+PLACES = {
+    "before": ("before", "drive"),
+    "inside": ("inside", "beside", "around"),
+    "behind": ("behind", "sensor"),
+}
+
+
+def _placed(answer: Mapping[str, Any], effect: Mapping[str, Any]) -> bool:
+    """Tell whether an effect is put where it acts."""
+    return answer["place"] in PLACES[effect["place"]]
+
+
 def _known(effect: Mapping[str, Any]) -> bool:
     return effect["ratio_retuned_db"] is not None
 
@@ -294,9 +316,9 @@ def _shrink(truth: Mapping[str, Any], gap: Mapping[str, Any] | None) -> float | 
     if gap is None:
         return 0.0
     hold_out = truth["hold_out"]
-    below = truth["noise_rms_um"] ** 2 + hold_out["base_error_rms_um"] ** 2
+    below = truth["noise_rms"] ** 2 + hold_out["base_error_rms"] ** 2
     explainable = gap["before"] ** 2 - below
-    if explainable <= 0.1 * hold_out["explainable_rms_um"] ** 2:
+    if explainable <= 0.1 * hold_out["explainable_rms"] ** 2:
         return None
     if gap["after"] is None:  # the model runs away on a record: nothing is closed
         return 0.0

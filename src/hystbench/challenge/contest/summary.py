@@ -19,12 +19,14 @@ from hystbench.challenge.contest.tables import (
     shares,
 )
 from hystbench.challenge.contest.wilson import Share
+from hystbench.challenge.plant.inside import MACHINES
 
 FAMILIES = {
     "gpi": ("gpi",),
     "foreign": ("preisach", "jiles-atherton"),
     "preisach": ("preisach",),
     "jiles-atherton": ("jiles-atherton",),
+    "machines": MACHINES,
 }
 HIDDEN = ("single", "pair", "triple")
 SEVERAL = ("pair", "triple")
@@ -80,6 +82,8 @@ ASKED = (
     Figure("unlisted_unnamed", "unnamed", "unlisted", "all", None, ">=", 0.90),
     Figure("unlisted_confident", "confident", "unlisted", "all", None, "<=", 0.03),
     Figure("where_hit 20 dB", "where_hit", "single", "all", 20.0, ">=", 0.90),
+    Figure("top1 machines", "top1", "single", "machines", 20.0, ">=", 0.90),
+    Figure("place machines", "place_right", "single", "machines", 20.0, ">=", 0.9),
 )
 FURTHER = (
     Figure("in_set gpi 20 dB", "in_set", "single", "gpi", 20.0),

@@ -29,6 +29,9 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hc_generalized_plays": (None, "iiaaaaaaa"),
     "hc_everett": (_SIZE, "iiifaaaa"),
     "hc_jiles_atherton": (None, "ifffffaaa"),
+    "hc_mass": (None, "ifffffaaaaaa"),
+    "hc_impedance": (None, "ifaaa"),
+    "hc_tanks": (None, "iifaaaa"),
 }
 
 

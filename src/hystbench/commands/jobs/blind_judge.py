@@ -21,6 +21,6 @@ from hystbench.gap.schema import SCHEMA
 @options.out
 def blind_judge(answers: tuple[Path, ...], settings: dict[str, Any], out: Path) -> None:
     """Judge the ANSWERS of all solvers to a chunk, a row a case and solver."""
-    entries = chunks(plan(settings["set"], settings["scale"]), settings["size"])
+    entries = chunks(plan(**settings["plan"]), settings["size"])
     given = [read_json(path) for path in answers]
     write_rows(out, list(judge_chunk(entries[settings["chunk"]], given, SCHEMA)))

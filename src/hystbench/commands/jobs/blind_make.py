@@ -18,6 +18,6 @@ from hystbench.files import whole_folder
 @options.out_folder
 def blind_make(settings: dict[str, Any], out: Path) -> None:
     """Write a folder a case; no truth is written anywhere."""
-    entries = chunks(plan(settings["set"], settings["scale"]), settings["size"])
+    entries = chunks(plan(**settings["plan"]), settings["size"])
     with whole_folder(out, WRITTEN) as fresh:
         make_chunk(entries[settings["chunk"]], fresh)

@@ -26,10 +26,13 @@ def blind_summary(
     out: Path,
 ) -> None:
     """Sum up the JUDGED chunks of a set."""
-    seeds = [entry.spec.seed for entry in plan(settings["set"], settings["scale"])]
+    held = settings["plan"]
+    seeds = [entry.spec.seed for entry in plan(**held)]
     about = {
-        "set": settings["set"],
-        "scale": settings["scale"],
+        "set": held["name"],
+        "scale": held["scale"],
+        "without": held["without"],
+        "only": held["only"],
         "transfer_scale": settings["transfer_scale"],
         "seeds": [min(seeds), max(seeds)],
         "seeds_used_while_mending": {

@@ -1,0 +1,213 @@
+"""A case of a machine: its records, the base that is handed over, and the truth."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hystbench.challenge.case import Case
+from hystbench.challenge.machine import (
+    Machine,
+    Signals,
+    draw_machine,
+    linear_parts,
+    reach_of,
+)
+from hystbench.challenge.plant.hidden import Hidden, Reach, draw
+from hystbench.challenge.plant.inside import EFFECTS
+from hystbench.challenge.spec import CaseSpec
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+
+#: An effect is to be within these shares of the output's rms on the fit records;
+#: outside, its size is changed.
+SMALLEST, LARGEST = 0.04, 0.4
+RESIZINGS = 6
+#: Where nothing is hidden the noise is drawn from this interval of shares.
+PLAIN_NOISE = (0.002, 0.02)
+#: Steps of the converter over both signs of the largest output, and a half more.
+STEPS = 65536
+#: Of masses on a spring under a force so many are handed over as a model file.
+AS_MODEL = 0.25
+PLANT, EFFECT, NOISE, BASE = 1, 2, 4, 5
+
+
+def make_machine_case(spec: CaseSpec) -> Case:
+    """Make a case of a machine; the same spec gives the same numbers."""
+    outer = any(EFFECTS[name].place != "inside" for name in spec.effects)
+    machine = draw_machine(spec.family, spec.random(PLANT), False if outer else None)
+    reach = reach_of(machine)
+    random = spec.random(EFFECT)
+    hidden = tuple(draw(EFFECTS[name], random, spec.spread) for name in spec.effects)
+    hidden = tuple(_resized(machine, item, reach) for item in hidden)
+    signals = machine.read(hidden, reach)
+    fit = _fit(machine, signals)
+    output = _rms([y - y.mean() for _, y in fit])
+    sizes = []
+    for k in range(len(hidden)):
+        others = (*hidden[:k], *hidden[k + 1 :])
+        sizes.append(_size(machine, fit, others, reach))
+    random = spec.random(NOISE)
+    noise = output * float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
+    if hidden:
+        noise = min(sizes) / 10.0 ** (spec.ratio_db / 20.0)
+    step = 3.0 * max(float(np.max(np.abs(y))) for _, y in signals) / STEPS
+    given, measured = machine.channels
+    records = []
+    for item, (u, y) in zip(machine.records, signals, strict=True):
+        noisy = y + noise * random.standard_normal(len(y))
+        records.append(
+            Record(
+                item.name,
+                1.0 / machine.rate_hz,
+                np.array([float(f"{value:.8g}") for value in u]),
+                np.round(noisy / step) * step,
+                given,
+                measured,
+                "twin",
+                item.use,
+            )
+        )
+    model = _model(machine, spec)
+    held_out = _left(machine, _held_out(machine, signals))
+    noise_rms = float(np.hypot(noise, step / np.sqrt(12.0)))
+    truth: dict[str, Any] = {
+        "seed": spec.seed,
+        "kind": spec.kind,
+        "family": spec.family,
+        "spread": spec.spread,
+        "campaign": spec.campaign,
+        "unit": measured.unit,
+        "closed_loop": machine.gains[0] > 0.0,
+        "base": "linear" if model is None else "model-file",
+        "noise_rms": noise_rms,
+        "noise_set_by": "the effect that shows least" if hidden else "drawn",
+        "ratio_db": spec.ratio_db if hidden else None,
+        "output_rms": output,
+        "linear": _linear(machine),
+        "effects": [
+            _told(item, size, noise_rms, reach)
+            for item, size in zip(hidden, sizes, strict=True)
+        ],
+        "hold_out": {
+            "gap_rms": held_out,
+            "explainable_rms": held_out if hidden else 0.0,
+            "base_error_rms": 0.0,
+        },
+        "base_error_fit_rms": 0.0,
+    }
+    periods = {
+        item.name: item.period_samples
+        for item in machine.records
+        if item.period_samples is not None
+    }
+    return Case(tuple(records), periods, model, truth)
+
+
+def _resized(machine: Machine, effect: Hidden, reach: Reach) -> Hidden:
+    """Change the size of an effect that a linear machine hides, or that is all."""
+    for _ in range(RESIZINGS):
+        signals = _fit(machine, machine.read((effect,), reach))
+        output = _rms([y - y.mean() for _, y in signals])
+        share = _size(machine, signals, (), reach) / output
+        if SMALLEST <= share <= LARGEST:
+            break
+        wanted = float(np.clip(share, 1.2 * SMALLEST, 0.8 * LARGEST))
+        factor = float(np.clip(wanted / max(share, 1e-12), 1.0 / 8.0, 8.0))
+        other = effect.scaled(factor)
+        if dict(other.parameters) == dict(effect.parameters):
+            break
+        effect = other
+    return effect
+
+
+def _size(
+    machine: Machine, full: Signals, others: tuple[Hidden, ...], reach: Reach
+) -> float:
+    """Measure how much an effect changes the output of the fit records.
+
+    A single effect: what it leaves that no linear machine explains. Of several, and of
+    a mass without a spring: what the output without it differs by. The others leave
+    more, and a free mass adds up every small force, whatever a model has it do.
+    """
+    if not others and machine.family != "free-mass":
+        return _left(machine, full)
+    without = _fit(machine, machine.read(others, reach))
+    pairs = zip(full, without, strict=True)
+    return _rms([y - other for (_, y), (_, other) in pairs])
+
+
+def _left(machine: Machine, signals: Signals) -> float:
+    return _rms([y - fitted for y, fitted in linear_parts(machine, signals)])
+
+
+def _fit(machine: Machine, signals: Signals) -> Signals:
+    return _used(machine, signals, "fit")
+
+
+def _held_out(machine: Machine, signals: Signals) -> Signals:
+    return _used(machine, signals, "hold-out")
+
+
+def _used(machine: Machine, signals: Signals, use: str) -> Signals:
+    pairs = zip(machine.records, signals, strict=True)
+    return [signal for item, signal in pairs if item.use == use]
+
+
+def _model(machine: Machine, spec: CaseSpec) -> Model | None:
+    """The machine without its effects as a model file, of a quarter of the masses."""
+    asked = spec.random(BASE).uniform() < AS_MODEL
+    part = machine.part
+    if not asked or part is None or machine.family != "mass-spring":
+        return None
+    from hystbench.blocks.mechanism import Mechanism  # late: one of four wants it
+
+    block = Mechanism(
+        mass=part.mass,
+        damping=part.damping,
+        stiffness=part.stiffness,
+        output=machine.output,
+        hold="band-limited",
+    )
+    return Model("base", *machine.channels, (block,))
+
+
+def _linear(machine: Machine) -> dict[str, Any]:
+    if machine.part is None:
+        tank = machine.tanks[0]
+        return {
+            "tanks": len(machine.tanks),
+            "area": tank.area,
+            "coefficient": tank.coefficient,
+        }
+    part = machine.part
+    return {
+        "mass": part.mass,
+        "damping": part.damping,
+        "stiffness": part.stiffness,
+        "output": machine.output,
+    }
+
+
+def _told(effect: Hidden, size: float, noise: float, reach: Reach) -> dict[str, Any]:
+    law = effect.law
+    ratio = float(20.0 * np.log10(max(size, 1e-12 * noise) / noise))
+    return {
+        "name": effect.kind.name,
+        "form": effect.form,
+        "place": effect.kind.place,
+        "use": "vocabulary",
+        "parameters": dict(effect.parameters),
+        "units": {name: item.unit for name, item in law.ranges.items()},
+        "physical": law.numbers(effect.parameters, reach) if law.numbers else {},
+        "views": [],
+        "rms": size,
+        "ratio_db": ratio,
+        "ratio_retuned_db": ratio,
+        "where": [],
+    }
+
+
+def _rms(parts: list[FloatArray]) -> float:
+    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))

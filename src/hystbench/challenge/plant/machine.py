@@ -1,0 +1,175 @@
+"""Machines: one moving part with forces inside, and tanks in a row.
+
+Their physics and numerics are their own: velocity Verlet with set-valued friction for a
+part, the classical Runge-Kutta method for tanks, on a grid much finer than the
+record's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass
+
+import numpy as np
+
+from hystbench.challenge import kernels
+from hystbench.record import FloatArray
+
+#: Steps of the fine grid a sample.
+FINE = 32
+
+
+@dataclass(frozen=True)
+class Part:
+    """A moving part: ``m q'' + c q' + k q + forces = u``.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : float
+        The linear part.
+    quadratic, cubic : float
+        Of the spring's force, times q^2 and q^3.
+    sinh_force, sinh_reach : float
+        Adds ``sinh_force (sinh(q / sinh_reach) - q / sinh_reach)``.
+    pendulum, angle : float
+        Adds ``pendulum`` times what ``sin(q + angle)`` differs from its tangent at 0.
+    wall_right, wall_left, wall_stiffness : float
+        Springs that are touched beyond a clearance to either side.
+    coulomb, surplus, stribeck_speed : float
+        Dry friction ``coulomb + surplus exp(-(v / stribeck_speed)^2)``.
+    presliding : float
+        Distance over which dry friction builds up; 0 for a rigid contact.
+    drag : float
+        Adds ``drag v |v|``.
+    remembered, yield_distance, sharpness, unloading : float
+        Bouc-Wen's force: at most ``remembered``, and its slope on the way back.
+    slider_stiffness, slip, clearance : float
+        A spring that slips beyond ``slip`` and carries nothing within ``clearance``.
+    """
+
+    mass: float = 1.0
+    damping: float = 0.0
+    stiffness: float = 0.0
+    quadratic: float = 0.0
+    cubic: float = 0.0
+    sinh_force: float = 0.0
+    sinh_reach: float = 1.0
+    pendulum: float = 0.0
+    angle: float = 0.0
+    wall_right: float = np.inf
+    wall_left: float = np.inf
+    wall_stiffness: float = 0.0
+    coulomb: float = 0.0
+    surplus: float = 0.0
+    stribeck_speed: float = 1.0
+    presliding: float = 0.0
+    drag: float = 0.0
+    remembered: float = 0.0
+    yield_distance: float = 1.0
+    sharpness: float = 1.0
+    unloading: float = 1.0
+    slider_stiffness: float = 0.0
+    slip: float = 0.0
+    clearance: float = 0.0
+
+    @property
+    def numbers(self) -> FloatArray:
+        """All of them in the order that the kernel has them in."""
+        return np.array(astuple(self), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What a part did, on the fine grid: a force and the motion under it."""
+
+    force: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+
+
+def move(
+    part: Part,
+    drive: FloatArray,
+    dt: float,
+    begun: tuple[float, float] = (0.0, 0.0),
+    gains: tuple[float, float] = (0.0, 0.0),
+) -> Motion:
+    """Move a part by a force, or along a reference.
+
+    Parameters
+    ----------
+    part : Part
+    drive : ndarray, shape (n,)
+        The force; with gains the position that is wanted.
+    dt : float
+        Step in seconds.
+    begun : tuple of float
+        Position and velocity at the first sample.
+    gains : tuple of float
+        Force for each unit of the error of position and of velocity; zeros for none.
+    """
+    drive = np.ascontiguousarray(drive, dtype=np.float64)
+    n = len(drive)
+    out = [np.empty(n) for _ in range(4)]
+    kernels.call("hc_mass", n, dt, *begun, *gains, part.numbers, drive, *out)
+    return Motion(*out)
+
+
+def resist(part: Part, position: FloatArray, dt: float) -> FloatArray:
+    """Compute the force that a prescribed motion of a part takes."""
+    return kernels.run("hc_impedance", dt, part.numbers, over=position)
+
+
+@dataclass(frozen=True)
+class Tank:
+    """A tank: ``area h' = inflow - coefficient h^exponent``, with a rim.
+
+    Parameters
+    ----------
+    area, coefficient, exponent : float
+    rim : float
+        Level above which it runs over.
+    caught : float
+        Share of what runs over that falls into the next tank.
+    """
+
+    area: float
+    coefficient: float
+    exponent: float = 1.0
+    rim: float = np.inf
+    caught: float = 0.0
+
+
+def fill(
+    tanks: tuple[Tank, ...], inflow: FloatArray, dt: float, begun: tuple[float, ...]
+) -> FloatArray:
+    """Compute the level of the last of one or two tanks.
+
+    Parameters
+    ----------
+    tanks : tuple of Tank
+        The first gets the inflow, the next what leaves it.
+    inflow : ndarray, shape (n,)
+    dt : float
+        Step in seconds.
+    begun : tuple of float
+        Level of each at the first sample.
+    """
+    numbers = np.array([astuple(tank) for tank in tanks], dtype=np.float64).ravel()
+    inflow = np.ascontiguousarray(inflow, dtype=np.float64)
+    level = np.empty_like(inflow)
+    levels = np.array(begun, dtype=np.float64)
+    kernels.call(
+        "hc_tanks", len(inflow), len(tanks), dt, numbers, levels, inflow, level
+    )
+    return level
+
+
+def decimated(fine: FloatArray, steps: int = FINE) -> FloatArray:
+    """Take the record's samples off a grid of so many steps a sample.
+
+    A low-pass without delay stands before.
+    """
+    from scipy.signal import resample_poly  # late: not needed for actuators
+
+    return np.asarray(resample_poly(fine, 1, steps), dtype=np.float64)
