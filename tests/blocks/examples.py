@@ -20,6 +20,7 @@ EXAMPLES = {
         "numerator": [3.0, 50.0],
         "denominator": [1.0, 4.0, 900.0],
         "hold": "linear",
+    },
     "logarithmic-creep": {
         "magnitude": 0.1,
         "first_time_s": 0.01,
