@@ -301,4 +301,4 @@ def test_a_strangers_table_among_hold_out_results_is_refused(whole, tmp_path):
     assert mine.read_text() == "mine"
     assert (mine.parent / "unseen.csv").is_file()
     mine.unlink()
-    assert workflow.run("--forcerun", "gap_show", "--", PAGE)["gap_show"] == 1
+    assert workflow.run("--forcerun", "gap_show", "--", GAP)["gap_show"] == 1
