@@ -22,9 +22,7 @@ from tests.figures.inputs import (
 
 def draw(name, **given):
     with style.in_style():
-        figure = drawer(name)(**given)
-        FigureCanvasAgg(figure).draw()
-    return figure
+        return drawer(name)(**given)
 
 
 def words(figure):
