@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
