@@ -34,7 +34,8 @@ $(READY): requirements.txt pyproject.toml setup.py $(SOURCES)
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "hystbench needs Python's venv module (on Debian: the package python3.11-venv)" >&2; exit 1; }
 	@command -v $(firstword $(CC)) >/dev/null || { echo "hystbench needs a C compiler ('$(CC)' was not found; name another with CC=...)" >&2; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(INSTALL) --require-hashes -r requirements.txt
+# Without bytecode: Python writes that of the modules that it imports, a fraction.
+	$(INSTALL) --no-compile --require-hashes -r requirements.txt
 	CC="$(CC)" $(INSTALL) --no-deps --no-build-isolation -e .
 	touch $@
 

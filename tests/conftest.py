@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import os
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
-from hystbench import kernels
+from hystbench import cli, kernels
 from tests.browser.chromium import EXECUTABLE, Chromium
 
 ROOT = Path(__file__).parents[1]
@@ -120,6 +122,23 @@ def loop_csv():
 
 
 def run_hystbench(*arguments, cwd: Path | None = None):
+    """Run the command line in this process: its start would be most of the time."""
+    out, err = io.StringIO(), io.StringIO()
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        redirect_stdout(out),
+        redirect_stderr(err),
+    ):
+        patch.setattr("sys.argv", ["hystbench", *map(str, arguments)])
+        patch.chdir(cwd or Path.cwd())
+        status = cli.run()
+    return subprocess.CompletedProcess(
+        arguments, status, out.getvalue(), err.getvalue()
+    )
+
+
+def start_hystbench(*arguments, cwd: Path | None = None):
+    """Run the command line as a program of its own."""
     return subprocess.run(
         [sys.executable, "-m", "hystbench", *map(str, arguments)],
         capture_output=True,

@@ -7,7 +7,7 @@ from hystbench import group as group_module
 from hystbench.cli import COMMANDS, run
 from hystbench.group import group, job_lines
 from hystbench.options import SettingsType
-from tests.conftest import run_hystbench
+from tests.conftest import start_hystbench
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -27,20 +27,20 @@ def test_every_job_is_there_and_has_help(name):
 
 
 def test_help_lists_the_commands_and_imports_none_of_them():
-    result = run_hystbench("--help")
+    result = start_hystbench("--help")
     assert result.returncode == 0
     for name in COMMANDS:
         assert name in result.stdout
     # jobs are the workflow's: listed where one asks for them, and only there
     assert "blind-make" not in result.stdout
-    assert "blind-make" in run_hystbench("job", "-h").stdout
+    assert "blind-make" in start_hystbench("job", "-h").stdout
 
 
 @pytest.mark.parametrize("arguments", [(), ("gap",), ("job",), ("job", "filter")])
 def test_h_is_help_everywhere(arguments):
-    short = run_hystbench(*arguments, "-h")
+    short = start_hystbench(*arguments, "-h")
     assert short.returncode == 0
-    assert short.stdout == run_hystbench(*arguments, "--help").stdout
+    assert short.stdout == start_hystbench(*arguments, "--help").stdout
     assert short.stdout.startswith("Usage: hystbench")
 
 
@@ -54,7 +54,7 @@ def test_the_shell_completes_a_command(monkeypatch, words, wanted):
     monkeypatch.setenv("_HYSTBENCH_COMPLETE", "bash_complete")
     monkeypatch.setenv("COMP_WORDS", words)
     monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
-    found = [line.partition(",")[2] for line in run_hystbench().stdout.splitlines()]
+    found = [line.partition(",")[2] for line in start_hystbench().stdout.splitlines()]
     assert found == wanted
 
 
@@ -82,7 +82,7 @@ def test_help_needs_no_numpy(root):
     ],
 )
 def test_a_users_mistake_is_one_line_and_status_2(tmp_path, arguments, expected):
-    result = run_hystbench(*arguments, cwd=tmp_path)
+    result = start_hystbench(*arguments, cwd=tmp_path)
     assert result.returncode == 2
     assert expected in result.stderr
     assert result.stderr.count("\n") == 1

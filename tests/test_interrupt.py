@@ -13,7 +13,7 @@ import pytest
 
 from hystbench.files import write_text
 from hystbench.written import ENTRIES, is_ours
-from tests.conftest import run_hystbench
+from tests.conftest import start_hystbench
 from tests.test_layouts import Layout, content, lay
 
 #: Longer than any step here takes, on a machine that has much else to do.
@@ -151,7 +151,7 @@ def bench(tmp_path_factory):
     """A dataset, and a record of it that an earlier command wrote."""
     root = tmp_path_factory.mktemp("bench")
     lay(root, Layout(model="model.yaml"))
-    assert run_hystbench("load", "data", "a", "--out", "a.npz", cwd=root).stderr == ""
+    assert start_hystbench("load", "data", "a", "--out", "a.npz", cwd=root).stderr == ""
     return root
 
 
@@ -169,7 +169,7 @@ def test_ctrl_c_is_one_line_at_whatever_moment(bench, start, at, moment):
     assert files(bench) == before
     assert is_ours(bench / "a.npz")
     if "writ" in moment:
-        again = run_hystbench("load", "data", "a", "--out", "a.npz", cwd=bench)
+        again = start_hystbench("load", "data", "a", "--out", "a.npz", cwd=bench)
         assert again.returncode == 0, again.stderr
 
 

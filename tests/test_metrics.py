@@ -4,7 +4,6 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.metrics import (
     mean_square_error,
-    normalized_root_mean_square_error,
     relative_error,
     smoothed_squared_error,
 )
@@ -23,16 +22,6 @@ def test_mean_square_error_is_relative_error_times_power():
     e, d = np.array([0.1, -0.2, 0.4]), np.array([1.0, 2.0, -4.0])
     power = (1 + 4 + 16) / 3
     assert mean_square_error(e) == pytest.approx(relative_error(e, d) ** 2 * power)
-
-
-def test_normalized_root_mean_square_error_by_hand():
-    # d - mean(d) is -1, 1: sum of squares 2; errors give 8
-    assert normalized_root_mean_square_error([2, 2], [4, 6]) == pytest.approx(2.0)
-
-
-def test_a_model_that_gives_the_mean_has_normalized_error_one():
-    d = np.array([1.0, 5.0, 2.0, 9.0])
-    assert normalized_root_mean_square_error(d - d.mean(), d) == pytest.approx(1.0)
 
 
 def test_smoothed_squared_error_by_hand():
@@ -60,7 +49,6 @@ def test_smoothed_squared_error_over_all_is_the_mean_square_error():
         (lambda: mean_square_error([]), "e: "),
         (lambda: relative_error([1, 2], [1]), "d: 1 samples given, e has 2"),
         (lambda: relative_error([1], [0]), "zero throughout"),
-        (lambda: normalized_root_mean_square_error([1, 2], [3, 3]), "constant"),
         (lambda: smoothed_squared_error([1, 2], 3), "window: 3 given, 1 to 2"),
         (lambda: smoothed_squared_error([1, 2], 0), "window: 0 given, 1 to 2"),
     ],

@@ -46,33 +46,13 @@ def relative_error(e: ArrayLike, d: ArrayLike) -> float:
     InputError
         If lengths differ or d is zero throughout.
     """
-    error, reference = _both(e, d)
-    return _ratio(error, reference, "zero throughout")
-
-
-def normalized_root_mean_square_error(e: ArrayLike, d: ArrayLike) -> float:
-    """Root mean square error over the standard deviation of the plant output.
-
-    Unlike the relative error it does not reward an offset of d; a model that gives
-    the mean of d has 1.
-
-    Parameters
-    ----------
-    e, d : array_like, shape (n,)
-        Error and plant output at each sample.
-
-    Returns
-    -------
-    float
-        ``sqrt(sum(e^2) / sum((d - mean(d))^2))``, without unit.
-
-    Raises
-    ------
-    InputError
-        If lengths differ or d is constant.
-    """
-    error, reference = _both(e, d)
-    return _ratio(error, reference - reference.mean(), "constant")
+    error, reference = _some("e", e), _some("d", d)
+    if len(error) != len(reference):
+        raise InputError(f"d: {len(reference)} samples given, e has {len(error)}")
+    power = float(np.sum(reference**2))
+    if power == 0:
+        raise InputError("d: zero throughout, so there is no error relative to it")
+    return float(np.sqrt(np.sum(error**2) / power))
 
 
 def smoothed_squared_error(e: ArrayLike, window: int) -> FloatArray:
@@ -114,17 +94,3 @@ def _some(name: str, values: ArrayLike) -> FloatArray:
     if array.ndim != 1 or len(array) == 0:
         raise InputError(f"{name}: {array.shape} given, at least one sample expected")
     return array
-
-
-def _both(e: ArrayLike, d: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    error, reference = _some("e", e), _some("d", d)
-    if len(error) != len(reference):
-        raise InputError(f"d: {len(reference)} samples given, e has {len(error)}")
-    return error, reference
-
-
-def _ratio(error: FloatArray, reference: FloatArray, empty: str) -> float:
-    power = float(np.sum(reference**2))
-    if power == 0:
-        raise InputError(f"d: {empty}, so there is no error relative to it")
-    return float(np.sqrt(np.sum(error**2) / power))

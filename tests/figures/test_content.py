@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
@@ -22,9 +21,7 @@ from tests.figures.inputs import (
 
 def draw(name, **given):
     with style.in_style():
-        figure = drawer(name)(**given)
-        FigureCanvasAgg(figure).draw()
-    return figure
+        return drawer(name)(**given)
 
 
 def words(figure):

@@ -33,6 +33,7 @@ def drawn(name, inputs):
     """A figure, laid out."""
     with style.in_style():
         figure = drawer(name)(**inputs.of(name))
+        style.plain_ticks(figure)
         FigureCanvasAgg(figure).draw()
     return figure
 

@@ -10,7 +10,7 @@ import numpy as np
 
 DT = 1 / 128
 PERIOD = 2048
-STEPS = 6
+STEPS = 3
 HERTZ = 8.0
 DAMPING = 0.02
 SPEED = 2 * np.pi * HERTZ

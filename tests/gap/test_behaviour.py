@@ -11,14 +11,15 @@ import pytest
 from hystbench.device_kinds import KINDS
 from hystbench.gap.behaviour import in_words
 from hystbench.gap.effects import effects
+from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import decide_in, show_in
-from hystbench.gap.report import write_report
 from hystbench.gap.run import close_gap
 from hystbench.gap.schema import SCHEMA
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.interface.gap import find_gap
-from hystbench.model import Model
+from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
+from tests.gap.conftest import without_rendering
 from tests.gap.tiny import write_tiny
 
 DT = 1e-3
@@ -69,7 +70,8 @@ def ceramic(tmp_path_factory):
     data, base = write_ceramic(folder, "device: {kind: piezoelectric}\n")
     said = []
     gap = find_gap(data, base, cache=False, say=said.append)
-    gap.save(folder / "out")
+    with without_rendering():
+        gap.save(folder / "out")
     return gap, folder / "out", said
 
 
@@ -110,10 +112,13 @@ def test_without_a_kind_the_usual_causes_are_listed(tmp_path):
 
 @pytest.fixture(scope="module")
 def circuit(tmp_path_factory):
-    """A tiny dataset of a device that can have neither friction nor backlash."""
+    """A device that can have neither friction nor backlash, and its gap."""
     folder = tmp_path_factory.mktemp("circuit")
-    device = "device: {kind: electronic}\n"
-    return write_tiny(folder, more=device)
+    data, base = write_tiny(folder, more="device: {kind: electronic}\n")
+    evidence, model = load_evidence(data), load_model(base)
+    with without_rendering():
+        close_gap(evidence, model, folder / "out")
+    return evidence, model, folder / "out"
 
 
 def tried(content):
@@ -125,30 +130,25 @@ FORCES = {name for name, item in effects().items() if item.place == "inside"}
 
 
 def test_what_a_device_cannot_have_is_not_tried_and_told(circuit):
-    content = find_gap(*circuit, cache=False).content
+    *_, out = circuit
+    content = json.loads((out / "gap.json").read_text())
     assert not {"friction", "backlash"} & tried(content)
     assert set(content["asked"]["impossible"]) == {"friction", "backlash", *FORCES}
     assert content["asked"]["without"] == []
     assert "the device is electronic" in content["reason"]
+    page = (out / "report.html").read_text(encoding="utf-8")
+    assert "Not in a device that is electronic:" in page
 
 
 def test_as_two_jobs_it_is_the_same(circuit, tmp_path):
-    from hystbench.gap.evidence import load_evidence
-    from hystbench.model import load_model
-
-    data, base = circuit
-    evidence, model = load_evidence(data), load_model(base)
-    close_gap(evidence, model, tmp_path / "one")
-    decide_in(tmp_path / "two", evidence, model)
-    show_in(tmp_path / "two", evidence, model)
+    evidence, model, out = circuit
+    decide_in(tmp_path, evidence, model)
+    show_in(tmp_path, evidence, model)
     one, two = (
-        json.loads((tmp_path / name / "gap.json").read_text())
-        for name in ("one", "two")
+        json.loads((folder / "gap.json").read_text()) for folder in (out, tmp_path)
     )
     for key in ("asked", "device", "effects", "reason"):
         assert one[key] == two[key]
-    page = write_report(tmp_path / "two").read_text(encoding="utf-8")
-    assert "Not in a device that is electronic:" in page
 
 
 def test_what_a_user_puts_in_stays_whatever_the_device():

@@ -22,6 +22,7 @@ from hystbench.gap.shown import show
 from hystbench.gap.start import start_state
 from hystbench.gap.summary import write_summary
 from hystbench.model import Model, load_model
+from tests.gap.conftest import without_rendering
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block, measured
 
@@ -82,7 +83,8 @@ def evidence(loud=6.0):
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     out = tmp_path_factory.mktemp("springs") / "out"
-    close_gap(evidence(), base(), out)
+    with without_rendering():
+        close_gap(evidence(), base(), out)
     return out, json.loads((out / "gap.json").read_text())
 
 

@@ -13,6 +13,7 @@ from hystbench.gap.evidence import Evidence
 from hystbench.gap.foretell import calls_of_a_round, foretell
 from hystbench.gap.run import close_gap
 from hystbench.gap.start import start_state
+from tests.gap.conftest import without_rendering
 from tests.gap.made import CURRENT, record
 
 RATE = 1000.0
@@ -69,7 +70,7 @@ def bounded(tmp_path_factory):
     MADE.clear()
     said: list[str] = []
     given = evidence()
-    with counted(Calls(bound=BOUND)):
+    with counted(Calls(bound=BOUND)), without_rendering():
         base, _ = load_base(NAME, given)
         close_gap(given, base, folder, place=NAME, say=said.append)
     return folder, len(MADE), said

@@ -108,6 +108,7 @@ def test_views_of_samples_do_not_see_them(both):
     np.testing.assert_array_equal(*seen)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_gap_is_found_beside_records_with_holes(tmp_path):
     """Every view and stage takes records of which different samples are missing."""
     data, base = write_tiny(tmp_path)

@@ -450,6 +450,7 @@ SIMULATOR = {
 }
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_what_to_do_next_closes_the_page(tmp_path):
     gap = {**GAP, "simulator": SIMULATOR}
     said = read(write_report(write_folder(tmp_path, gap, False, False))).said
@@ -461,6 +462,7 @@ def test_what_to_do_next_closes_the_page(tmp_path):
     assert "takes coil current in A and gives displacement in µm" in closing
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_stored_column_is_not_said_to_run_on_other_inputs(tmp_path):
     gap = {**GAP, "simulator": {**SIMULATOR, "runs_again": False}}
     said = read(write_report(write_folder(tmp_path, gap, False, False))).said
@@ -468,12 +470,14 @@ def test_a_stored_column_is_not_said_to_run_on_other_inputs(tmp_path):
     assert "load_model" not in said
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_function_must_be_importable_where_the_model_runs(tmp_path):
     gap = {**GAP, "simulator": {**SIMULATOR, "functions": ["rig.sim:move"]}}
     said = read(write_report(write_folder(tmp_path, gap, False, False))).said
     assert "where Python can import rig.sim:move" in said
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_search_that_calls_ended_is_said_to_be_none_to_the_end(tmp_path):
     gap = {**GAP, "calls_used_up": {"bound": 50, "sentence": "it ended at 50 calls"}}
     check_against_schema(gap, SCHEMA, "example")
@@ -518,6 +522,7 @@ def test_second_looks_are_told_in_words(page):
     assert "The picture shows the first round alone" in page.said
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_an_effect_that_gave_way_is_told_with_what_took_its_place(tmp_path):
     rows = [
         looked(1, "stiffness-hardening", score=-917.5, gain=308.0, taken=True),
@@ -561,6 +566,7 @@ def small(**change):
     return content | {"verdict": "no-gap"} | change
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_what_is_not_there_is_said(tmp_path):
     power = GAP["gap"] | {"explained": None, "floor_method": "upper-bound"}
     folder = write_folder(
@@ -590,6 +596,7 @@ DRAWN = (
 )
 
 
+@pytest.mark.usefixtures("unrendered")
 @pytest.mark.parametrize("key", ["spectrum", "records", "over_rate", *DRAWN[4:9]])
 def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
     folder = write_folder(tmp_path, small(), with_tables=False)
@@ -601,6 +608,7 @@ def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
         assert (f"Not drawn: curves.json: no {name}." in page.said) == (name != key)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_what_the_records_cannot_show_is_said_with_its_reason(tmp_path):
     folder = write_folder(tmp_path, small(), with_tables=False)
     none = dict.fromkeys(("distortion", "loops", "coherence", "over_plane"))
@@ -612,6 +620,7 @@ def test_what_the_records_cannot_show_is_said_with_its_reason(tmp_path):
     assert "Not drawn: coherence, as records are too short" in said
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_reader_is_told_of_a_promise_that_was_not_kept(tmp_path):
     told = "On the fit records 90 % of the gap's power is gone, here 50 %."
     short = {"fit": 0.9, "hold_out": 0.5, "sentence": told}
@@ -625,6 +634,7 @@ def test_a_reader_is_told_of_a_promise_that_was_not_kept(tmp_path):
     assert "Less than promised" not in read(tmp_path / "report.html").said
 
 
+@pytest.mark.usefixtures("unrendered")
 @pytest.mark.parametrize("why", ["", "no input brings it out"])
 def test_an_experiment_that_was_not_computed_is_not_called_needless(tmp_path, why):
     """The example's creep cannot be told from two others."""
@@ -635,6 +645,7 @@ def test_an_experiment_that_was_not_computed_is_not_called_needless(tmp_path, wh
     assert (f"None was computed: {why}." if why else "None was computed.") in said
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_model_that_runs_away_is_said_to_and_drawn_without_it(tmp_path):
     """Its record has no rms after and no curve; the others keep theirs."""
     told = "rig with creep runs away on held-2 from 0.3 s on."
@@ -665,6 +676,7 @@ def test_a_model_that_runs_away_is_said_to_and_drawn_without_it(tmp_path):
         write_report(tmp_path)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_range_is_printed_as_one(tmp_path):
     gap = small(gap=GAP["gap"] | {"explained": [0.61, 0.97]})
     page = read(write_report(write_folder(tmp_path, gap, False, False)))
@@ -695,6 +707,7 @@ def test_a_wrong_gap_json_is_one_line_and_no_page(tmp_path, change, message):
     assert not (tmp_path / "report.html").exists()
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_missing_or_broken_files_are_one_line(tmp_path):
     with pytest.raises(InputError, match=r"gap\.json: No such file"):
         write_report(tmp_path)
@@ -707,6 +720,7 @@ def test_missing_or_broken_files_are_one_line(tmp_path):
         write_report(tmp_path)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_text_from_outside_is_text(tmp_path):
     gap = small(reason="<script>alert(1)</script>")
     page = read(write_report(write_folder(tmp_path, gap, False, False)))

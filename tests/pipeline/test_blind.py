@@ -56,11 +56,12 @@ def text(file):
         return ""  # another job's, which took its place meanwhile
 
 telling = {{"truth", "ratio_db", "seed"}} | set(names)
+held = [(str(file), text(file)) for file in files]
 found = [
     f"{{file}}: {{name}}"
-    for file in files
+    for file, content in held
     for name in telling
-    if name in str(file) or name in text(file)
+    if name in file or name in content
 ]
 reason = json.dumps([len(files), found, sys.argv[1:], str(Path.cwd())])
 """

@@ -118,21 +118,15 @@ def test_effects_that_a_dataset_leaves_out_and_puts_in_reach_its_search(
     assert "--without sensor-lag --without input-delay --with asymmetry" in told
 
 
-@pytest.mark.parametrize(
-    ("asked", "said"),
-    [
-        ({"without": ["fricton"]}, "no effect 'fricton'; did you mean 'friction'?"),
-        ({"with": ["creep"], "without": ["creep"]}, "'creep' in both"),
-    ],
-)
-def test_an_effect_that_is_none_is_one_line(workflow, config, asked, said):
+def test_an_effect_that_is_none_is_one_line(workflow, config):
     write_tiny(workflow.folder / "tiny")
     rig = {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
-    config["gap"] |= {"datasets": [rig | asked]}
+    config["gap"] |= {"datasets": [rig | {"without": ["fricton"]}]}
     workflow.configure(config)
     refused = workflow.snakemake(GAP)
     assert refused.returncode != 0
-    assert said in refused.stdout + refused.stderr
+    told = "no effect 'fricton'; did you mean 'friction'?"
+    assert told in refused.stdout + refused.stderr
     assert "Traceback" not in refused.stderr
 
 
@@ -301,4 +295,4 @@ def test_a_strangers_table_among_hold_out_results_is_refused(whole, tmp_path):
     assert mine.read_text() == "mine"
     assert (mine.parent / "unseen.csv").is_file()
     mine.unlink()
-    assert workflow.run("--forcerun", "gap_show", "--", PAGE)["gap_show"] == 1
+    assert workflow.run("--forcerun", "gap_show", "--", GAP)["gap_show"] == 1

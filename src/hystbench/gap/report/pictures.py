@@ -21,6 +21,7 @@ from hystbench.figures.style import (
     VERMILION,
     in_style,
     legend_above,
+    plain_ticks,
     unit_text,
 )
 from hystbench.gap.report.read import HoldOut
@@ -64,6 +65,7 @@ def draw(
         figure = Figure(figsize=(width, height))
         axes = figure.subplots(*panels, squeeze=False)
         paint(axes if panels[0] > 1 else axes[0], *content)
+        plain_ticks(figure)
         buffer = io.BytesIO()
         about = {"Date": None, "Creator": None}
         figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
