@@ -18,7 +18,7 @@ from hystbench.gap.effects import among
 from hystbench.gap.experiment import Experiment
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
-from hystbench.gap.inside.name import named_inside
+from hystbench.gap.inside.name import beats, named_inside
 from hystbench.gap.limits import Limits
 from hystbench.gap.locate import curves, locate
 from hystbench.gap.lone import lone_share
@@ -142,16 +142,23 @@ def find(
         # A path of its own in every window is what an integrator makes of any error.
         offered = tuple(effect for effect in among(offered) if effect != "drift")
     start, floor = start_state(records, base, hold, declared, offered)
-    named = name(start, floor.rms, say)
-    start, named, own = named_apart(start, floor.rms, named, say)
-    instead = ""
+    inside = None
     if quantities is not None:
-        inside = named_inside(base, start, floor.rms, named, quantities, say)
-        if inside is not None:
-            base, start, named = inside.base, inside.start, inside.named
-            instead = f"; {inside.sentence}"
+        inside = named_inside(base, start, floor.rms, quantities, say)
+    if inside is not None and inside.named.state.power(floor.rms**2) < floor.rms**2:
+        say("inside: less than the noise is left, so no chain of effects is tried")
+        named, own = inside.named, NONE
+    else:
+        named = name(start, floor.rms, say)
+        start, named, own = named_apart(start, floor.rms, named, say)
+        if inside is not None and not beats(inside, named, floor.rms, say):
+            inside = None
+    if inside is not None:
+        base, start, named = inside.base, inside.start, inside.named
     found = decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
-    reason = found.content["reason"] + instead
+    if inside is None:
+        return found
+    reason = f"{found.content['reason']}; {inside.sentence}"
     return replace(found, content={**found.content, "reason": reason})
 
 

@@ -9,6 +9,10 @@ from hystbench.blocks.smooth_friction import SmoothFriction
 from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
 from hystbench.gap.scene import Scene
 
+HOLDS = 1e-7
+"""Share of the reach by which dry friction gives way where it holds: no record shows
+so little."""
+
 
 class Friction(Effect):
     """Smooth Coulomb friction of what moves."""
@@ -33,7 +37,12 @@ class Friction(Effect):
         )
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer dry friction that gives way before it slides, weak and strong."""
+        """Offer dry friction that holds, or gives way before it slides."""
+        for share in (0.03, 0.3):
+            dry = FrictionForce(
+                coulomb=share * moved.force, presliding_distance=HOLDS * moved.reach
+            )
+            yield Law("dry", dry, ("coulomb",))
         for share, way in ((0.03, 1e-3), (0.3, 1e-3), (0.1, 3e-2)):
             own = {
                 "coulomb": share * moved.force,

@@ -15,7 +15,7 @@ from hystbench.gap.rounds import Candidate, Round
 from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
-from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.gap.thresholds import FURTHER, PAYS, TIE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -44,16 +44,13 @@ def named_inside(
     base: Model,
     start: State,
     floor_rms: float,
-    named: Named,
     quantities: Quantities,
     say: Say = silent,
 ) -> Inside | None:
-    """Find effects inside the dynamics; None where the chain explains as much.
+    """Find effects inside the dynamics; None where no force pays.
 
     In place of the base stands a linear model of one coordinate, or the base itself
-    with one of its modes as a mechanism (:func:`hosts`). Forces are put inside, and
-    the result must lower the score of records held back against what was named in the
-    chain, by as much as any effect has to pay.
+    with one of its modes as a mechanism (:func:`hosts`), and forces are put inside.
 
     Parameters
     ----------
@@ -61,8 +58,6 @@ def named_inside(
     start : State
         The same on the fit records.
     floor_rms : float
-    named : Named
-        What was named in the chain.
     quantities : Quantities
         What the device takes and gives: they tell which hosts there are.
     say : callable
@@ -83,11 +78,6 @@ def named_inside(
         say("inside: no force pays")
         return None
     state = replace(best.fitted.state, offered=start.offered).settled()
-    gain = gain_held_back(named.state, state, score)
-    names = " + ".join(best.effects)
-    say(f"inside: {names}: gain {gain:.1f} on records held back")
-    if gain < PAYS:
-        return None
     alone = replace(host.alone, offered=start.offered).settled()
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
@@ -104,6 +94,20 @@ def named_inside(
     )
 
 
+def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
+    """Tell whether effects inside do better than those in a chain.
+
+    They have to lower the score of records held back by as much as any effect.
+    """
+    state = inside.named.state
+    nothing = np.zeros((len(state.sample), 0))
+    gain = gain_held_back(
+        named.state, state, Score(state.sample, nothing, floor_rms**2)
+    )
+    say(f"inside: gain {gain:.1f} on records held back")
+    return gain >= PAYS
+
+
 def charged(item: Hypothesis) -> float:
     """Give the score: a first effect has to pay, and each further one more."""
     count = len(item.effects)
@@ -111,8 +115,13 @@ def charged(item: Hypothesis) -> float:
 
 
 def chosen(found: Sequence[Hypothesis]) -> Hypothesis:
-    """Take the least score with what effects have to pay."""
-    return min(found, key=charged)
+    """Take the least score with what effects have to pay; of a tie the fewest numbers.
+
+    Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
+    """
+    least = charged(min(found, key=charged))
+    tied = [item for item in found if charged(item) < least + TIE]
+    return min(tied, key=lambda item: (item.fitted.state.freedom, item.score))
 
 
 def _rounds(

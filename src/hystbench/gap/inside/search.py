@@ -19,7 +19,7 @@ from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import Added, Free, State
-from hystbench.gap.thresholds import PAYS
+from hystbench.gap.thresholds import FURTHER, PAYS
 from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
@@ -110,7 +110,8 @@ def search(
 
 def may_gain(item: Hypothesis, score: Score) -> bool:
     """Tell whether a further force could gain what it has to pay."""
-    return item.score - score.least(item.fitted.state.freedom) > PAYS
+    pays = FURTHER if item.effects else PAYS
+    return item.score - score.least(item.fitted.state.freedom) > pays
 
 
 def starts(
