@@ -43,7 +43,7 @@ class Friction(Effect):
                 coulomb=share * moved.force, presliding_distance=HOLDS * moved.reach
             )
             yield Law("dry", dry, ("coulomb",))
-        for share, way in ((0.03, 1e-3), (0.3, 1e-3), (0.1, 3e-2)):
+        for share, way in ((0.03, 1e-3), (0.1, 3e-2), (0.1, 0.3)):
             own = {
                 "coulomb": share * moved.force,
                 "presliding_distance": way * moved.reach,

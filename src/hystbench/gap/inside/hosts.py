@@ -85,6 +85,8 @@ def hosts(
         if same is not None:
             words = "a model of one coordinate, which simulates the same, stands for it"
             yield Host(same, fitted(same, score), words)
+    if quantities.causality not in ("force to motion", "unknown"):
+        return
     known = quantities.output in MOTIONS
     split = modes(start, quantities.output if known else "position")
     for mode in itertools.islice(split, TRIED):

@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.inside.hosts import hosts
-from hystbench.gap.inside.search import Hypothesis, search
+from hystbench.gap.inside.search import Hypothesis, laws_for, singles, together
 from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, Round
 from hystbench.gap.say import Say, silent
@@ -65,14 +65,16 @@ def named_inside(
     """
     nothing = np.zeros((len(start.sample), 0))
     score = Score(start.sample, nothing, floor_rms**2)
-    turns = start.records[0].output.unit == "rad"
-    tried = [
-        (host, search(host.fitted, score, turns, start.offered, say))
-        for host in hosts(start, quantities, bool(base.free), score)
-    ]
+    turns = start.records[0].output.unit.startswith("rad")
+    tried = []
+    for host in hosts(start, quantities, bool(base.free), score):
+        laws = laws_for(host.fitted, turns, start.offered)
+        tried.append((host, laws, singles(host.fitted, laws, score, say)))
     if not tried:
         return None
-    host, found = min(tried, key=lambda item: charged(chosen(item[1])))
+    # Together forces are tried in the host that does best with one.
+    host, laws, found = min(tried, key=lambda item: charged(chosen(item[2])))
+    found = together(found, laws, score, say)
     best = chosen(found)
     if not best.effects:
         say("inside: no force pays")

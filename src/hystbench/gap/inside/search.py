@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -25,9 +25,7 @@ from hystbench.record import FloatArray
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
 alone may gain much together."""
-TRIED = 2
-"""Times as many are fitted to the end as are carried on."""
-STARTS = 3
+STARTS = 2
 """Laws and starts of one effect that are fitted roughly."""
 
 
@@ -52,6 +50,10 @@ class Hypothesis:
     def score(self) -> float:
         """Score with all numbers charged."""
         return self.fitted.score
+
+
+Laws = Mapping[str, Sequence[Law]]
+"""What may be put into a host, by effect."""
 
 
 def search(
@@ -80,32 +82,63 @@ def search(
     list of Hypothesis
         The host alone first; every other with the score that was reached.
     """
+    laws = laws_for(host, turns, offered)
+    return together(singles(host, laws, score, say), laws, score, say)
+
+
+def laws_for(
+    host: Fitted, turns: bool = False, offered: Iterable[str] | None = None
+) -> Laws:
+    """Give what may be put into a host; arguments are those of :func:`search`."""
     moved = how_it_moves(host.state, turns)
-    laws = {
+    every = {
         name: tuple(effect.inside(moved)) for name, effect in among(offered).items()
     }
-    laws = {name: own for name, own in laws.items() if own}
+    return {name: own for name, own in every.items() if own}
+
+
+def singles(
+    host: Fitted, laws: Laws, score: Score, say: Say = silent
+) -> list[Hypothesis]:
+    """Try each force alone: the host without one first, then the least score."""
     alone = Hypothesis((), (), host)
-    found = [alone]
-    carried = [alone]
-    for keep in (SINGLES, PAIRS, 1):
-        carried = [item for item in carried if may_gain(item, score)]
-        begun = [
-            further
-            for before in carried
-            for name, own in laws.items()
-            if name not in before.effects
-            for further in starts(before, name, own, score)
-        ]
-        best_first = fitted_likely(begun, score, TRIED * keep if keep > 1 else TRIED)
-        for item in best_first[:3]:
-            say(
-                f"inside: {' + '.join(item.effects)}: "
-                f"gain {host.score - item.score:.1f}"
-            )
-        found += best_first
-        carried = [item for item in best_first[:keep] if item.score < host.score]
-    return found
+    return [alone, *_one_more([alone], laws, score, SINGLES, host.score, say)]
+
+
+def together(
+    found: Sequence[Hypothesis], laws: Laws, score: Score, say: Say = silent
+) -> list[Hypothesis]:
+    """Go on from singles to pairs and threes."""
+    every, alone = list(found), found[0].score
+    carried = [item for item in found[1:] if item.score < alone]
+    for keep in (PAIRS, 1):
+        further = _one_more(carried, laws, score, keep, alone, say)
+        every += further
+        carried = [item for item in further if item.score < alone]
+    return every
+
+
+def _one_more(
+    carried: Sequence[Hypothesis],
+    laws: Laws,
+    score: Score,
+    keep: int,
+    alone: float,
+    say: Say,
+) -> list[Hypothesis]:
+    """Put one more force into each hypothesis; give the best, the least score first."""
+    begun = [
+        further
+        for before in carried
+        if may_gain(before, score)
+        for name, own in laws.items()
+        if name not in before.effects
+        for further in starts(before, name, own, score)
+    ]
+    best_first = fitted_likely(begun, score, keep)
+    for item in best_first[:3]:
+        say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
+    return best_first
 
 
 def may_gain(item: Hypothesis, score: Score) -> bool:
@@ -160,7 +193,7 @@ def fitted_likely(
     score : Score
     count : int
         How many, each by its best law and start, are fitted to the end; twice as many
-        roughly, by up to two starts.
+        are fitted roughly.
 
     Returns
     -------
