@@ -27,6 +27,14 @@ _MOVING: Sequence[Kind] = (*_MAGNETIC, "piezoelectric", "hydraulic", "mechanical
 
 #: By effect, then by cause: the kinds of devices that it acts in.
 CAUSES: Mapping[str, Mapping[str, Sequence[Kind]]] = {
+    "outflow": {
+        "a free outlet, whose flow goes with the root of the level": ("hydraulic",),
+        "radiation, or heat that is carried off by its own draught": ("thermal",),
+    },
+    "overflow": {
+        "a full tank": ("hydraulic",),
+        "a safety valve, or a change of phase": ("hydraulic", "thermal"),
+    },
     "input-delay": {
         "sampling and computing of a controller": KINDS,
         "transport of the medium": ("hydraulic", "thermal"),

@@ -20,6 +20,7 @@ from hystbench.blocks.linear import (
     respond,
 )
 from hystbench.blocks.logarithmic_creep import LogarithmicCreep
+from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.sensor_lag import SensorLag
 from hystbench.blocks.transfer_function import TransferFunction
@@ -41,6 +42,11 @@ CASES = {
         Creep(magnitudes=[0.1, 0.05], time_constants_s=[0.5, 0.02]),
         [0.01, 0.547, 1.15],
         [0.01, 0.52, 1.0],
+    ),
+    "other-modes": (
+        OtherModes(numerator=[1.0, 3.0], denominator=[1.0, 40.0, 9.0e4]),
+        [1.0, 3.0],
+        [1.0, 40.0, 9.0e4],
     ),
     "transfer-function": (
         TransferFunction(

@@ -144,6 +144,8 @@ def blocks(x):
     )
     machine = Mechanism(mass=1e-4, damping=5e-3, stiffness=10.0)
     yield "mechanism", (machine.driven(x, DT, forces),)
+    held = Mechanism(mass=1e-4, damping=5e-3, stiffness=10.0, start="settled")
+    yield "settled mechanism", (held.driven(x + 1.0, DT, forces),)
     back = Impedance(mass=1e-4, damping=5e-3, stiffness=10.0)
     yield "impedance", (back.driven(x, DT, forces),)
     tank = Store(gain=4.0, rate=2.0, bias=1.0, height=1.0)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
-KEPT = 16
-"""Responses that are kept, at most."""
+KEPT = 64
+"""Responses that are kept, at most: those to each record, quick and exact."""
 _KEPT: OrderedDict[tuple[int, float, OtherModes], tuple[FloatArray, FloatArray]]
 _KEPT = OrderedDict()
 
@@ -55,11 +57,14 @@ class OtherModes(TransferFunction, AttachedBlock):
             _KEPT[key] = z, y  # with z kept, no other array has its identity
         return _KEPT[key][1]
 
+    def step(self, sampling: Sampling) -> Step:
+        """Move the state in step with the mechanism, which knows no sample to come."""
+        return replace(super().step(replace(sampling, ahead=0)), forward=False)
+
     def attach(self, before: Any) -> Superposed:
         """Add the response to the output of the mechanism before."""
-        if not isinstance(before, Driven | Superposed) and (
-            getattr(before, "name", "") != "mechanism"
-        ):
+        host = before.host if isinstance(before, Driven) else before
+        if not isinstance(host, Mechanism | Superposed):
             raise InputError(
                 f"expected {self.hosts} just before it, got "
                 f"{getattr(before, 'name', 'none')}"

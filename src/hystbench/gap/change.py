@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.wrapping import WrappingBlock
+from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Values, Variant
 from hystbench.gap.state import Added, Free, State
 
@@ -76,6 +77,8 @@ def without_effect(state: State, number: int) -> State:
     """Take an added effect out again."""
     gone = state.added[number]
     rest = tuple(item for k, item in enumerate(state.added) if k != number)
+    if effects()[gone.effect].numbers:
+        return _with_old_numbers(state, gone, rest)
     if not gone.blocks:  # beside the chain, or its block was replaced by another's
         beside = tuple(item for item in state.beside if item[0].effect != gone.effect)
         return replace(state, added=rest, beside=beside)
@@ -93,6 +96,20 @@ def without_effect(state: State, number: int) -> State:
         free=tuple(_moved(state.free, moved)),
         added=tuple(_placed(item, moved) for item in rest),
     )
+
+
+def _with_old_numbers(state: State, gone: Added, rest: tuple[Added, ...]) -> State:
+    """Give blocks the numbers back that an effect changed; they are fixed then."""
+    chain, free = list(state.chain), state.free
+    for key, value in gone.values.items():
+        place, _, parameter = key.partition(".")
+        k, own = int(place), {parameter: value}
+        chain[k] = replace(chain[k], **own)
+        if parameter in effects()[gone.effect].numbers:
+            free = tuple(
+                item for item in free if (item.block, item.parameter) != (k, parameter)
+            )
+    return replace(state, chain=tuple(chain), free=free, added=rest)
 
 
 def last_to(state: State, number: int) -> State:

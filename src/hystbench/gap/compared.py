@@ -25,8 +25,14 @@ class Compared:
 
     @property
     def residual(self) -> FloatArray:
-        """Measured minus simulated, shape (n,)."""
-        return self.record.y - self.simulated
+        """Measured minus simulated, shape (n,).
+
+        Without what an unknown velocity at the first sample does.
+        """
+        rest = self.record.y - self.simulated
+        column = self.record.of_start
+        square = float(np.sum(column**2))
+        return rest - column @ (column.T @ rest) / square if square > 0 else rest
 
 
 def rms(values: FloatArray) -> float:

@@ -54,6 +54,9 @@ from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
+LINEAR = "linear"
+"""Name of the base that is identified as a linear model."""
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -144,17 +147,20 @@ def find(
     start, floor = start_state(records, base, hold, declared, offered)
     inside = None
     if quantities is not None:
-        inside = named_inside(base, start, floor.rms, quantities, say)
+        identified = base.name == LINEAR and bool(base.free)
+        inside = named_inside(base, start, floor.rms, quantities, identified, say)
     if inside is not None and inside.named.state.power(floor.rms**2) < floor.rms**2:
-        say("inside: less than the noise is left, so no chain of effects is tried")
-        named, own = inside.named, NONE
+        say(
+            "inside: less than the noise's own power is left above it, so no chain of "
+            "effects is tried"
+        )
     else:
         named = name(start, floor.rms, say)
         start, named, own = named_apart(start, floor.rms, named, say)
         if inside is not None and not beats(inside, named, floor.rms, say):
             inside = None
     if inside is not None:
-        base, start, named = inside.base, inside.start, inside.named
+        base, start, named, own = inside.base, inside.start, inside.named, NONE
     found = decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
     if inside is None:
         return found

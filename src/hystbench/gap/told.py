@@ -53,7 +53,9 @@ def places_of_base(state: State) -> list[int | None]:
     # An effect without a block lost it to a later one, which then stands for no block
     # of the base.
     lost = any(not item.blocks and item.effect not in beside for item in state.added)
-    own = {k for item in state.added for k in item.blocks}
+    # Of a store an effect has some numbers, and the base the others.
+    inserted = [item for item in state.added if not effects()[item.effect].numbers]
+    own = {k for item in inserted for k in item.blocks}
     instead = {item.blocks[0] for item in state.added if item.replaced and item.blocks}
     return [
         None if k in own else k
@@ -166,13 +168,14 @@ def parameters_of(
                 "unit": _unit(unit, place, state),
             }
         return found
+    numbers = effects()[item.effect].numbers
     for place in item.blocks:
         block = state.chain[place]
         if block.name not in (item.effect, *effects()[item.effect].laws):
             continue  # what the effect left of a block that it was taken out of
         for key, about in block.parameters().items():
             value = getattr(block, key)
-            if key in SETTINGS or value == ():
+            if key in SETTINGS or value == () or (numbers and key not in numbers):
                 continue
             error = _errors_of(place, key, value, state, errors)
             label = key if key not in found else f"{key}#2"

@@ -24,7 +24,7 @@ def effects() -> dict[str, Effect]:
             if (
                 inspect.isclass(item)
                 and issubclass(item, Effect)
-                and not inspect.isabstract(item)
+                and hasattr(item, "name")  # else it is a kind of effects
                 and item.__module__ == module.__name__
             ):
                 found[item.name] = item()

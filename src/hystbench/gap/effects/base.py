@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.scene import Scene
 from hystbench.record import FloatArray
@@ -177,6 +178,23 @@ class Law:
     place: Literal["inside", "before", "behind"] = "inside"
 
 
+class Filled(NamedTuple):
+    """How high stores are filled: place, block and highest level of each."""
+
+    tops: tuple[tuple[int, Store, float], ...]
+
+
+class Changed(NamedTuple):
+    """Other numbers of stores, where their fit starts.
+
+    Of them those that are free, by place and parameter.
+    """
+
+    form: str
+    values: dict[int, dict[str, float]]
+    free: tuple[tuple[int, str], ...]
+
+
 class Effect(ABC):
     """One physical effect of the vocabulary."""
 
@@ -185,6 +203,8 @@ class Effect(ABC):
     offsets: ClassVar[Mapping[str, tuple[tuple[str, str], ...]]] = {}
     """By form, where its blocks are plain gains: the name and the unit that the offset
     of each has as a number of the effect."""
+    numbers: ClassVar[tuple[str, ...]] = ()
+    """Of its blocks, the parameters that are numbers of the effect; by default all."""
     laws: ClassVar[tuple[str, ...]] = ()
     """Blocks of other laws of the effect, beside the one that has its name."""
 
@@ -284,6 +304,15 @@ class Effect(ABC):
         """
         yield from ()
 
+    def stored(self, filled: Filled) -> Iterator[Changed]:
+        """Offer other numbers of stores in series.
+
+        Parameters
+        ----------
+        filled : Filled
+        """
+        yield from ()
+
     def beside_mechanism(
         self, moved: Moved, name: str, place: Literal["before", "behind"], **given: str
     ) -> Law:
@@ -370,8 +399,8 @@ def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:
     return np.geomspace(low, high, count)
 
 
-class ForceEffect(Effect):
-    """An effect that acts inside a mechanism and nowhere else."""
+class InsideEffect(Effect):
+    """An effect that acts inside the dynamics and nowhere else."""
 
     place = "inside"
 
@@ -383,7 +412,21 @@ class ForceEffect(Effect):
         Declined
             Always.
         """
-        raise Declined("it acts inside a mechanism, where it is tried apart")
+        raise Declined("it acts inside the dynamics, where it is tried apart")
+
+
+class StoreEffect(InsideEffect):
+    """An effect of stores: their own numbers are other ones."""
+
+    laws = ("store",)
+
+    @abstractmethod
+    def stored(self, filled: Filled) -> Iterator[Changed]:
+        """Give the numbers, as every effect may."""
+
+
+class ForceEffect(InsideEffect):
+    """An effect that acts inside a mechanism."""
 
     @abstractmethod
     def inside(self, moved: Moved) -> Iterator[Law]:

@@ -21,6 +21,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.compared import rms
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.inside.modes import modes
+from hystbench.gap.inside.stores import stores
 from hystbench.gap.sample import Sample
 from hystbench.gap.scene import Scene
 from hystbench.gap.score import Score
@@ -74,6 +75,10 @@ def hosts(
         Whether the base was identified from the records.
     score : Score
     """
+    if identified and quantities.causality in ("storage", "unknown"):
+        best = best_host(list(stores(start.records, start.hold)), score)
+        if best is not None:
+            yield Host(best.state, best, "stores in series stand in place of the base")
     if identified:
         begun = one_coordinate(start.records, quantities, start.hold)
         best = best_host(list(begun), score)
@@ -83,7 +88,9 @@ def hosts(
     else:
         same = same_as(start, quantities)
         if same is not None:
-            words = "a model of one coordinate, which simulates the same, stands for it"
+            words = (
+                "a model of one coordinate that simulates the same stands for the base"
+            )
             yield Host(same, fitted(same, score), words)
     if quantities.causality not in ("force to motion", "unknown"):
         return
@@ -93,7 +100,7 @@ def hosts(
         best, block = fitted(mode, score), mode.chain[0]
         assert isinstance(block, Mechanism)  # noqa: S101  (for the type checker)
         frequency = np.sqrt(block.stiffness / block.mass) / (2 * np.pi)
-        words = f"its mode at {frequency:.3g} Hz stands beside the others"
+        words = f"the base's mode at {frequency:.3g} Hz is a mechanism of its own"
         yield Host(best.state if identified else mode, best, words)
 
 

@@ -11,14 +11,17 @@ from hystbench.gap.score import Score
 from hystbench.gap.state import Free, State
 from hystbench.record import FloatArray
 
-EVALUATIONS = 40
-"""Steps in one fit, at most; each takes as many simulations as there are numbers, and
-one."""
-QUICK = 8
+EVALUATIONS = 100
+"""Of the residual in one fit, at most, without those of the derivatives."""
+QUICK = 15
 """The same where starts are compared."""
 STEP = 1e-3
 """Share of its size by which a number moves for a derivative: more than what a force
 that is not smooth makes of rounding."""
+REACH = 1.0
+"""How far the first step may go: numbers change by a factor of e, or by their size."""
+FACTOR = 100.0
+"""How many times the scale of the numbers MINPACK's first step may go."""
 SMALL = 1e-4
 """Share by which a step must lower the squares, or move the numbers, for another to
 follow: the score changes by less than a tenth of what a number costs."""
@@ -64,14 +67,12 @@ def fitted(
     sizes = _sizes(state)
     logs = np.array([_positive(state, free) for free in state.free], dtype=bool)
     values = np.array([state.value(free) for free in state.free])
-    start = np.where(logs, np.log(np.where(logs, np.maximum(values, 1e-300), 1.0)), 0.0)
     weights = _weights(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
     def moved(point: FloatArray) -> State:
-        found = np.where(
-            logs, np.exp(np.clip(point, -600, 600)), values + point * sizes
-        )
+        times = np.exp(np.clip(point, -100, 100))
+        found = np.where(logs, values * times, values + point * sizes)
         return at_values(state, found)
 
     def residual(point: FloatArray) -> FloatArray:
@@ -81,13 +82,18 @@ def fitted(
             return most  # out of what the blocks accept
         return np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
 
+    def slopes(point: FloatArray) -> FloatArray:
+        now = residual(point)
+        steps = STEP * np.eye(len(point))
+        return np.column_stack([(residual(point + s) - now) / STEP for s in steps])
+
     found = least_squares(
         residual,
-        start,
+        np.zeros(len(values)),
+        slopes,
         method="lm",  # a trust region would take a singular value decomposition a step
-        x_scale=np.ones(len(start)),
-        diff_step=STEP,
-        max_nfev=evaluations * (len(start) + 1),
+        x_scale=np.full(len(values), REACH / FACTOR),
+        max_nfev=evaluations,
         xtol=SMALL,
         ftol=SMALL,
     )

@@ -18,6 +18,8 @@ from hystbench.record import FloatArray
 
 NUMBERS = ("mass", "damping", "stiffness", "blend")
 """Of a mode."""
+NONE = 1e-3
+"""Share of a mode in the output that is none of the motion that is asked for."""
 APART = 1e-6
 """Share of its size by which a pole must be away from all others."""
 
@@ -86,7 +88,8 @@ def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block
     direct = float(up[0] / down[0]) if len(up) == len(down) else 0.0
     slopes = np.polyval(np.polyder(down), poles)
     residues = np.polyval(up, poles) / slopes
-    return [_split(block, poles, residues, direct, k, output) for k in pairs]
+    split = [_split(block, poles, residues, direct, k, output) for k in pairs]
+    return [both for both in split if both is not None]
 
 
 def _split(
@@ -96,18 +99,27 @@ def _split(
     direct: float,
     k: int,
     output: str,
-) -> tuple[Block, Block]:
+) -> tuple[Block, Block] | None:
     pole, residue = poles[k], residues[k]
     damping, stiffness = -2 * pole.real, abs(pole) ** 2
     rate = 2 * residue.real
     constant = -2 * (residue.real * pole.real + residue.imag * pole.imag)
+    # What the mode is in the output at its own frequency; of a motion that is nothing
+    # beside it there is no mass.
+    whole = abs(rate) * abs(pole) + abs(constant)
     if output == "position":
+        if abs(constant) <= NONE * whole:
+            return None
         size, blend, through = constant, rate / constant, 0.0
     elif output == "velocity":
         size = rate - damping * constant / stiffness
+        if abs(size) * abs(pole) <= NONE * whole:
+            return None
         blend = -constant / (stiffness * size)
         through = size * blend
     else:
+        if abs(constant) <= NONE * whole:
+            return None
         size = -constant / stiffness
         blend = rate / size + damping
         through = size
@@ -150,9 +162,11 @@ def _explained_by_levels(state: State) -> float:
     shares = []
     for part in state.sample.slices:
         rest, columns = state.residual[part], _unit(state.tangents[part])
-        basis = np.linalg.qr(columns)[0]
-        shares.append(float(np.sum((basis.T @ rest) ** 2) / np.sum(rest**2)))
-    return float(np.mean(shares))
+        power = float(np.sum(rest**2))
+        if power > 0:
+            basis = np.linalg.qr(columns)[0]
+            shares.append(float(np.sum((basis.T @ rest) ** 2)) / power)
+    return float(np.mean(shares)) if shares else 0.0
 
 
 def _unit(columns: FloatArray) -> FloatArray:

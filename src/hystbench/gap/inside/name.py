@@ -45,6 +45,7 @@ def named_inside(
     start: State,
     floor_rms: float,
     quantities: Quantities,
+    identified: bool,
     say: Say = silent,
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
@@ -60,6 +61,8 @@ def named_inside(
     floor_rms : float
     quantities : Quantities
         What the device takes and gives: they tell which hosts there are.
+    identified : bool
+        Whether the base is the linear model that was identified from the records.
     say : callable
         Told a line of progress at a time.
     """
@@ -67,7 +70,7 @@ def named_inside(
     score = Score(start.sample, nothing, floor_rms**2)
     turns = start.records[0].output.unit.startswith("rad")
     tried = []
-    for host in hosts(start, quantities, bool(base.free), score):
+    for host in hosts(start, quantities, identified, score):
         laws = laws_for(host.fitted, turns, start.offered)
         tried.append((host, laws, singles(host.fitted, laws, score, say)))
     if not tried:
@@ -76,6 +79,7 @@ def named_inside(
     host, laws, found = min(tried, key=lambda item: charged(chosen(item[2])))
     found = together(found, laws, score, say)
     best = chosen(found)
+    fitted = found[0].fitted.state
     if not best.effects:
         say("inside: no force pays")
         return None
@@ -84,10 +88,11 @@ def named_inside(
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
     sentence = (
-        f"{host.words}: forces act inside it (rms of the fit records above the floor: "
+        f"{host.words}, with effects inside (rms of the fit records above the floor: "
         f"{before} of the base, {after} of what stands for it)"
     )
-    rounds = _rounds(alone, score, best, found)
+    # The first rung is the host re-tuned, so that no effect has the credit of that.
+    rounds = _rounds(replace(fitted, offered=start.offered).settled(), best, found)
     model = Model(base.name, base.input, base.output, alone.chain)
     labels = [label for label, _ in model.labelled()]
     free = tuple(f"{labels[item.block]}.{item.parameter}" for item in alone.free)
@@ -121,14 +126,17 @@ def chosen(found: Sequence[Hypothesis]) -> Hypothesis:
 
     Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
     """
-    least = charged(min(found, key=charged))
-    tied = [item for item in found if charged(item) < least + TIE]
+    best = min(found, key=charged)
+    tied = [
+        item
+        for item in found
+        if charged(item) < charged(best) + TIE
+        and len(item.effects) == len(best.effects)
+    ]
     return min(tied, key=lambda item: (item.fitted.state.freedom, item.score))
 
 
-def _rounds(
-    start: State, score: Score, best: Hypothesis, found: Sequence[Hypothesis]
-) -> list[Round]:
+def _rounds(start: State, best: Hypothesis, found: Sequence[Hypothesis]) -> list[Round]:
     """Write how the effects were found as rounds: each beside those before it."""
     rounds, before = [], start
     now = found[0].score

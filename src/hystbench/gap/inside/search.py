@@ -12,10 +12,12 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
+from hystbench.blocks.store import Store
 from hystbench.gap.compared import rms
 from hystbench.gap.effects import among
-from hystbench.gap.effects.base import Law, Moved
+from hystbench.gap.effects.base import Changed, Law, Moved
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import Added, Free, State
@@ -52,7 +54,7 @@ class Hypothesis:
         return self.fitted.score
 
 
-Laws = Mapping[str, Sequence[Law]]
+Laws = Mapping[str, Sequence[Law | Changed]]
 """What may be put into a host, by effect."""
 
 
@@ -90,10 +92,13 @@ def laws_for(
     host: Fitted, turns: bool = False, offered: Iterable[str] | None = None
 ) -> Laws:
     """Give what may be put into a host; arguments are those of :func:`search`."""
-    moved = how_it_moves(host.state, turns)
-    every = {
-        name: tuple(effect.inside(moved)) for name, effect in among(offered).items()
-    }
+    every: dict[str, tuple[Law | Changed, ...]]
+    if any(isinstance(block, Store) for block in host.state.chain):
+        filled = how_it_fills(host.state)
+        every = {name: tuple(x.stored(filled)) for name, x in among(offered).items()}
+    else:
+        moved = how_it_moves(host.state, turns)
+        every = {name: tuple(x.inside(moved)) for name, x in among(offered).items()}
     return {name: own for name, own in every.items() if own}
 
 
@@ -148,7 +153,7 @@ def may_gain(item: Hypothesis, score: Score) -> bool:
 
 
 def starts(
-    before: Hypothesis, effect: str, laws: Sequence[Law], score: Score
+    before: Hypothesis, effect: str, laws: Sequence[Law | Changed], score: Score
 ) -> Iterator[Hypothesis]:
     """Put a further force inside, by each law and start, with the score to be expected.
 
@@ -158,7 +163,11 @@ def starts(
     state = before.fitted.state
     tangents = state.tangents
     for law in laws:
-        begun = with_law(state, effect, law)
+        begun = (
+            with_changed(state, effect, law)
+            if isinstance(law, Changed)
+            else with_law(state, effect, law)
+        )
         if not np.all(np.isfinite(begun.residual)):
             continue
         columns = np.column_stack([tangents, state.residual - begun.residual])

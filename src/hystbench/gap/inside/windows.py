@@ -20,6 +20,8 @@ from hystbench.record import FloatArray, Record
 
 SPRING = 0.1
 """Share of the input's rms below which a spring's force is none."""
+LEFT = 0.5
+"""Share of the input's power that a law of motion may leave."""
 LASTS = 1e6
 """Time constant, in seconds, of a mass that nothing brakes."""
 LEAST = 100
@@ -73,16 +75,16 @@ def decay_of_free_mass(
     stacked, u = np.vstack(columns), np.concatenate(wanted)
     sizes = np.maximum(np.sqrt(np.mean(stacked**2, axis=0)), 1e-300)
     found = np.linalg.lstsq(stacked / sizes, u, rcond=1e-10)[0]
-    explained = float(np.mean((u - (stacked / sizes) @ found) ** 2))
+    left = float(np.mean((u - (stacked / sizes) @ found) ** 2))
     total = float(np.var(u))
-    if explained > 0.5 * total or abs(found[2]) > SPRING * np.sqrt(total):
+    if left >= LEFT * total or abs(found[2]) > SPRING * np.sqrt(total):
         return None
     mass, damping = found[:2] / sizes[:2]
     return float(mass / damping) if mass > 0 and damping > 0 else LASTS
 
 
 def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
-    """Cut a record where its motion turns; each window starts at zero, at rest.
+    """Cut a record where its motion turns; each window starts at zero.
 
     Parameters
     ----------
@@ -93,11 +95,9 @@ def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
     Returns
     -------
     tuple of Record
-        The record itself where it does not turn.
+        One, of the whole record, where it does not turn.
     """
     starts = _starts(record)
-    if len(starts) < 2:
-        return (record,)
     ends, mask = [*starts[1:], len(record)], record.interpolated
     return tuple(
         replace(
@@ -111,7 +111,7 @@ def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
             decay_s=decay_s,
         )
         for k, (a, b) in enumerate(zip(starts, ends, strict=True))
-        if b - a >= LEAST
+        if b - a >= LEAST or len(starts) == 1
     )
 
 

@@ -1,0 +1,41 @@
+"""``overflow``: what would rise above the height of a store is spilt."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from hystbench.gap.effects.base import Changed, Filled, StoreEffect
+
+SHARES = (0.95, 0.75)
+"""Of the highest level without it: where overflow begins."""
+CAUGHT = 0.3
+"""Share of what is spilt that the next store catches, where a fit begins."""
+
+
+class Overflow(StoreEffect):
+    """Overflow of the last store, of the others, and of all."""
+
+    name = "overflow"
+    numbers = ("height", "caught")
+
+    def stored(self, filled: Filled) -> Iterator[Changed]:
+        """Offer heights met late and early; the next store catches a part."""
+        last = filled.tops[-1][0]
+        every = [place for place, *_ in filled.tops]
+        groups = {"last": [last], "all": every, "upper": every[:-1]}
+        for form, places in groups.items():
+            if not places or (form == "all" and len(every) == 1):
+                continue
+            for share in SHARES:
+                values, free = {}, []
+                for place, _, top in filled.tops:
+                    if place not in places:
+                        continue
+                    # The last level is measured: it is seen where it stays.
+                    height = top if place == last else share * top
+                    values[place] = {"height": height}
+                    free.append((place, "height"))
+                    if place != last:
+                        values[place]["caught"] = CAUGHT
+                        free.append((place, "caught"))
+                yield Changed(form, values, tuple(free))

@@ -1,0 +1,127 @@
+"""Stores in series as hosts: a tank, or one above another, whose outflow is linear."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.blocks.held import Hold
+from hystbench.blocks.store import Store
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.effects.base import Changed, Filled
+from hystbench.gap.sample import Sample
+from hystbench.gap.state import Added, Free, State
+from hystbench.record import Record
+
+RATES = 6
+"""Rates of outflow at which stores are begun, from slow to fast."""
+BEGUN = 3
+"""Starts that are fitted, the best ones of the grid."""
+
+
+def stores(records: tuple[Record, ...], hold: Hold) -> Iterator[State]:
+    """Give one store and two in series, with all their numbers free, begun.
+
+    At each pair of rates the gain and a constant inflow are solved for. Nothing is
+    given where the output is negative somewhere: no level is.
+
+    Parameters
+    ----------
+    records : tuple of Record
+    hold : {"zero-order", "linear", "band-limited"}
+    """
+    if min(float(record.y.min()) for record in records) < 0:
+        return
+    sample = Sample.of(records)
+    wanted = sample.take([record.y for record in records])
+    span = max(record.dt * len(record) for record in records)
+    fastest = 0.3 / min(record.dt for record in records)
+    grid = np.geomspace(3 / span, fastest, RATES).tolist()
+    found: list[tuple[float, tuple[Store, ...]]] = []
+    for rates in (
+        *((rate,) for rate in grid),
+        *itertools.combinations_with_replacement(grid, 2),
+    ):
+        down = np.poly([-rate for rate in rates])
+        unit = TransferFunction(
+            numerator=(float(down[-1]),),
+            denominator=tuple(down.tolist()),
+            start="settled",
+            hold=hold,
+        )
+        through = sample.take([unit.simulate(r.u, r.u, r.dt) for r in records])
+        columns = np.column_stack([through, np.ones(len(through))])
+        (gain, offset), *_ = np.linalg.lstsq(columns, wanted, rcond=None)
+        if gain > 0:
+            rest = float(np.mean((wanted - columns @ [gain, offset]) ** 2))
+            inflow = float(records[0].u[0] + offset / gain)
+            chain = _chain(rates, float(gain), float(offset / gain), inflow, hold)
+            last = replace(chain[-1], start_level=float(records[0].y[0]))
+            found.append((rest, (*chain[:-1], last)))
+    for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]:
+        free = [Free(0, "bias")]
+        for k in range(len(chain)):
+            free += [Free(k, "rate"), Free(k, "start_level")]
+        free.append(Free(len(chain) - 1, "gain"))
+        yield State(chain, records, sample, free=tuple(free), hold=hold)
+
+
+def _chain(
+    rates: tuple[float, ...], gain: float, bias: float, inflow: float, hold: Hold
+) -> tuple[Store, ...]:
+    """Write stores in series; all but the last have a gain of one."""
+    start = max(inflow, 0.0)
+    if len(rates) == 1:
+        return (
+            Store(gain=gain * rates[0], rate=rates[0], bias=gain * bias, hold=hold),
+        )
+    upper = Store(
+        gain=1.0,
+        rate=rates[0],
+        exponent=1.0,
+        bias=bias,
+        start_level=start / rates[0],
+        output="outflow",
+        hold=hold,
+    )
+    # What flows out of a store is smooth, whatever flows into it.
+    between: Hold = "linear" if hold == "zero-order" else hold
+    size = gain * rates[1]
+    return (upper, Store(gain=size, rate=rates[1], exponent=1.0, hold=between))
+
+
+def how_it_fills(state: State) -> Filled:
+    """Look how high the stores of a chain are filled on its records."""
+    tops = []
+    for k, block in enumerate(state.chain):
+        if isinstance(block, Store):
+            level = replace(block, output="level")
+            signals = state.scene.tail(k, [level])
+            tops.append((k, block, max(float(z.max()) for z in signals)))
+    return Filled(tuple(tops))
+
+
+def with_changed(state: State, effect: str, changed: Changed) -> State:
+    """Give stores with other numbers, some of them free as well."""
+    chain = list(state.chain)
+    old = {
+        f"{place}.{name}": float(getattr(chain[place], name))
+        for place, values in changed.values.items()
+        for name in values
+    }
+    for place, values in changed.values.items():
+        chain[place] = replace(chain[place], **values)
+    places = tuple(changed.values)
+    charge = max(float(len(changed.free)), 1.0)
+    item = Added(effect, "inside", changed.form, places, old, charge)
+    already = set(state.free)
+    more = tuple(x for x in (Free(*own) for own in changed.free) if x not in already)
+    return replace(
+        state,
+        chain=tuple(chain),
+        free=(*state.free, *more),
+        added=(*state.added, item),
+    )
