@@ -27,8 +27,8 @@ from hystbench.record import FloatArray
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
 alone may gain much together."""
-STARTS = 2
-"""Laws and starts of one effect that are fitted roughly."""
+FORMS = 3
+"""Laws of one effect that are fitted roughly, each from its likeliest start."""
 
 
 @dataclass(frozen=True)
@@ -214,9 +214,10 @@ def fitted_likely(
         likely.setdefault(frozenset(item.effects), []).append(item)
     rough = []
     for own in list(likely.values())[: 2 * count]:
+        likeliest = {item.forms: item for item in reversed(own)}
         tried = [
             replace(item, fitted=fitted(item.fitted.state, score, QUICK))
-            for item in own[:STARTS]
+            for item in sorted(likeliest.values(), key=lambda x: x.score)[:FORMS]
         ]
         rough.append(min(tried, key=lambda item: item.score))
     rough.sort(key=lambda item: item.score)
