@@ -135,7 +135,10 @@ def test_every_effect_has_its_causes():
 
 def test_what_nothing_causes_cannot_be_there():
     forces = {"drag", "gravity", "hysteretic-force", "slider-with-gap", "stop"}
-    assert set(impossible_in("electronic")) == {"friction", "backlash"} | forces
+    stores = {"outflow", "overflow"}
+    assert (
+        set(impossible_in("electronic")) == {"friction", "backlash"} | forces | stores
+    )
     assert {"friction", "resonance"} < set(impossible_in("thermal"))
     assert impossible_in(None) == ()
 
