@@ -54,9 +54,19 @@ class _Listener(logging.Handler):
 @contextmanager
 def _heard(notes: list[str]) -> Iterator[None]:
     """Note what the library would print, such as that a file ends too early."""
-    logger = logging.getLogger("nptdms")
-    before, logger.handlers = logger.handlers, [_Listener(notes)]
+    parent = logging.getLogger("nptdms")
+    # Each of its modules has a logger and a handler of its own.
+    own = [
+        logging.getLogger(name)
+        for name in list(logging.root.manager.loggerDict)
+        if name.startswith("nptdms.")
+    ]
+    before = [(logger, logger.handlers) for logger in (parent, *own)]
+    for logger in own:
+        logger.handlers = []
+    parent.handlers = [_Listener(notes)]
     try:
         yield
     finally:
-        logger.handlers = before
+        for logger, handlers in before:
+            logger.handlers = handlers
