@@ -30,11 +30,6 @@ class SliderWithGap(Force):
     slip_force: float = number("U", "force at which it slides", 0.0, HUGE)
     gap: float = number("Q", "half of the clearance", 0.0, HUGE)
 
-    @property
-    def stiffest(self) -> float:
-        """That of the contact."""
-        return self.contact_stiffness
-
     def law(self) -> tuple[str, tuple[float, ...]]:
         """Give the stiffness, the reach of the way and the gap."""
         reach = self.gap + self.slip_force / self.contact_stiffness
