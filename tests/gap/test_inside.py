@@ -8,13 +8,14 @@ import pytest
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Moved
 from hystbench.gap.inside.hosts import best_host, one_coordinate
-from hystbench.gap.inside.search import search
 from hystbench.gap.inside.windows import decay_of_free_mass, windows
 from hystbench.gap.nuisance import left_over
 from hystbench.gap.sample import Sample
 from hystbench.gap.score import Score
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+
+from .inside_host import search
 
 DT = 0.005
 NOISE = 0.02

@@ -6,10 +6,11 @@ import pytest
 from hystbench.gap.change import without_effect
 from hystbench.gap.inside.hosts import best_host
 from hystbench.gap.inside.name import chosen
-from hystbench.gap.inside.search import search
 from hystbench.gap.inside.stores import stores
 from hystbench.gap.score import Score
 from hystbench.record import Channel, Record
+
+from .inside_host import search
 
 DT, COUNT, FINE = 4.0, 800, 80
 NOISE = 0.02

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hystbench.gap.sample import without
 from hystbench.record import FloatArray, Record
 
 
@@ -29,10 +30,7 @@ class Compared:
 
         Without what an unknown velocity at the first sample does.
         """
-        rest = self.record.y - self.simulated
-        column = self.record.of_start
-        square = float(np.sum(column**2))
-        return rest - column @ (column.T @ rest) / square if square > 0 else rest
+        return without(self.record.y - self.simulated, self.record.of_start)
 
 
 def rms(values: FloatArray) -> float:

@@ -8,13 +8,20 @@ from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.built_in import BuiltIn, put_in
-from hystbench.gap.evidence import Evidence, inside_of
-from hystbench.gap.finding import Finding, black_box, find
+from hystbench.gap.built_in import BuiltIn
+from hystbench.gap.evidence import Evidence
+from hystbench.gap.finding import Finding, black_box
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.own_values import OwnValues
-from hystbench.gap.run import DECISIVE, SHOWN, as_asked, outcome, write_shown
+from hystbench.gap.run import (
+    DECISIVE,
+    SHOWN,
+    as_asked,
+    found_on_fit,
+    outcome,
+    write_shown,
+)
 from hystbench.gap.rungs import Rung
 from hystbench.gap.say import Say, silent
 from hystbench.gap.start import start_state
@@ -59,18 +66,8 @@ def decide_in(
     writes(*(folder / name for name in DECIDED))
     say = say_in_words(say)
     vocabulary = vocabulary.in_device(evidence.device_kind)
-    base, built_in = put_in(base, evidence, vocabulary.fixed, say)
-    finding = find(
-        evidence.name,
-        evidence.fit,
-        base,
-        evidence.hold,
-        evidence.noise_rms,
-        limits,
-        say,
-        unnamed_share,
-        vocabulary.offered,
-        inside_of(base, evidence),
+    finding, built_in = found_on_fit(
+        evidence, base, limits, say, unnamed_share, vocabulary
     )
     content = with_device(finding.content, evidence.device_kind, evidence.quantities)
     finding = replace(finding, content=content)

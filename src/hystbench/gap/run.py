@@ -137,18 +137,8 @@ def closed_gap(
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
-    base, built_in = put_in(base, evidence, vocabulary.fixed, say)
-    finding = find(
-        evidence.name,
-        evidence.fit,
-        base,
-        evidence.hold,
-        evidence.noise_rms,
-        limits,
-        say,
-        unnamed_share,
-        vocabulary.offered,
-        inside_of(base, evidence),
+    finding, built_in = found_on_fit(
+        evidence, base, limits, say, unnamed_share, vocabulary
     )
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.
@@ -169,6 +159,35 @@ def closed_gap(
     content = with_device(shown.content, evidence.device_kind, evidence.quantities)
     shown = replace(shown, content=content)
     return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
+
+
+def found_on_fit(
+    evidence: Evidence,
+    base: Model,
+    limits: Mapping[str, float] | None,
+    say: Say,
+    unnamed_share: float,
+    vocabulary: Vocabulary,
+) -> tuple[Finding, BuiltIn | None]:
+    """Put in what is asked for, and find what the fit records say is missing.
+
+    Parameters are those of :func:`closed_gap`, and of the vocabulary what the device
+    can have.
+    """
+    base, built_in = put_in(base, evidence, vocabulary.fixed, say)
+    finding = find(
+        evidence.name,
+        evidence.fit,
+        base,
+        evidence.hold,
+        evidence.noise_rms,
+        limits,
+        say,
+        unnamed_share,
+        vocabulary.offered,
+        inside_of(base, evidence),
+    )
+    return finding, built_in
 
 
 def close_gap(

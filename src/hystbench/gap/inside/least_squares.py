@@ -67,7 +67,7 @@ def fitted(
     sizes = _sizes(state)
     logs = np.array([_positive(state, free) for free in state.free], dtype=bool)
     values = np.array([state.value(free) for free in state.free])
-    weights = _weights(state)
+    weights = by_record(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
     def moved(point: FloatArray) -> State:
@@ -133,8 +133,8 @@ def _positive(state: State, free: Free) -> bool:
     return about.low >= 0.0 and state.value(free) > 0.0
 
 
-def _weights(state: State) -> FloatArray:
-    """One over the rms of what the start leaves of each record."""
+def by_record(state: State) -> FloatArray:
+    """Give one over the rms of the residual of each record, for all its samples."""
     weights = np.empty(len(state.measured))
     residual = np.where(np.isfinite(state.residual), state.residual, state.measured)
     for part in state.sample.slices:

@@ -13,16 +13,14 @@ from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
-from hystbench.gap.compared import rms
 from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Changed, Law, Moved
-from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
+from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import Added, Free, State
 from hystbench.gap.thresholds import FURTHER, PAYS
-from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
@@ -58,40 +56,20 @@ Laws = Mapping[str, Sequence[Law | Changed]]
 """What may be put into a host, by effect."""
 
 
-def search(
-    host: Fitted,
-    score: Score,
-    turns: bool = False,
-    offered: Iterable[str] | None = None,
-    say: Say = silent,
-) -> list[Hypothesis]:
-    """Try forces inside a host, alone and together.
+def laws_for(
+    host: Fitted, turns: bool = False, offered: Iterable[str] | None = None
+) -> Laws:
+    """Give what may be put into a host.
 
     Parameters
     ----------
     host : Fitted
         Linear, without a force.
-    score : Score
     turns : bool
         Whether its coordinate is an angle.
     offered : iterable of str, optional
         Effects that may be named; all by default.
-    say : callable
-        Told a line of progress at a time.
-
-    Returns
-    -------
-    list of Hypothesis
-        The host alone first; every other with the score that was reached.
     """
-    laws = laws_for(host, turns, offered)
-    return together(singles(host, laws, score, say), laws, score, say)
-
-
-def laws_for(
-    host: Fitted, turns: bool = False, offered: Iterable[str] | None = None
-) -> Laws:
-    """Give what may be put into a host; arguments are those of :func:`search`."""
     every: dict[str, tuple[Law | Changed, ...]]
     if any(isinstance(block, Store) for block in host.state.chain):
         filled = how_it_fills(host.state)
@@ -161,7 +139,7 @@ def starts(
     by what changes of all numbers do, by least squares.
     """
     state = before.fitted.state
-    tangents = state.tangents
+    tangents, weights = state.tangents, by_record(state)
     for law in laws:
         begun = (
             with_changed(state, effect, law)
@@ -172,22 +150,14 @@ def starts(
             continue
         columns = np.column_stack([tangents, state.residual - begun.residual])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-        weights = _by_record(state)[:, None]
-        found = np.linalg.lstsq(
-            columns / sizes * weights, state.residual * weights[:, 0], rcond=1e-8
-        )[0]
-        rest = state.residual - columns / sizes @ found
+        scaled = columns / sizes
+        found, *_ = np.linalg.lstsq(
+            scaled * weights[:, None], state.residual * weights, rcond=1e-8
+        )
+        rest = state.residual - scaled @ found
         expected = score.of(rest, begun.freedom)
         effects, forms = (*before.effects, effect), (*before.forms, law.form)
         yield Hypothesis(effects, forms, Fitted(begun, expected))
-
-
-def _by_record(state: State) -> FloatArray:
-    """Give one over the rms of the residual of each record, for all its samples."""
-    weights = np.empty(len(state.residual))
-    for part in state.sample.slices:
-        weights[part] = 1.0 / max(float(rms(state.residual[part])), 1e-300)
-    return weights
 
 
 def fitted_likely(
