@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.errors import InputError
 from hystbench.gap.bases import identified_gpi, identified_linear, load_base
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
 from hystbench.gap.evidence import Evidence
@@ -52,6 +53,13 @@ SYSTEMS = {
 
 
 class TestLinear:
+    def test_an_output_that_no_input_moves_is_told_instead_of_fitted(self):
+        noise = np.random.default_rng(4)
+        made = noise.normal(size=(3, 2, 2000))
+        records = [record(u, y) for u, y in made]
+        with pytest.raises(InputError, match=r"made: linear: .* a constant .*--model"):
+            identified_linear(evidence(*records))
+
     @pytest.mark.parametrize("name", SYSTEMS)
     def test_it_finds_a_system_out_of_the_middle_of_its_motion(self, name):
         # The records hold the steady state, which no start from rest has.

@@ -10,7 +10,7 @@ from hystbench.gap.change import with_effect
 from hystbench.gap.effects.base import Variant
 from hystbench.gap.rank import make_score, rank
 from hystbench.gap.told import effect_mapping
-from hystbench.gap.units import unit_behind
+from hystbench.gap.units import unit_at, unit_behind
 from hystbench.gap.verdict import Left
 from tests.gap.small import ENVELOPE, GPI, block, hysteresis, measured, state_of
 
@@ -137,3 +137,59 @@ def test_what_stands_for_the_whole_base_has_the_outputs_unit():
     )
     state = with_effect(start, variant, {"coefficient": 0.1})
     assert unit_behind(1, state) == "um"
+
+
+MASS = {"mass": 1.0, "damping": 1.0, "stiffness": 1.0}
+DRY = ("friction-force", {"coulomb": 1.0, "presliding_distance": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("host", "channels", "number", "unit"),
+    [
+        (("mechanism", MASS), ("N", "mm"), "coulomb", "N"),
+        (("mechanism", MASS), ("N", "mm"), "presliding_distance", "mm"),
+        (("mechanism", MASS), ("N", "mm"), "stribeck_velocity", "mm/s"),
+        (
+            ("mechanism", MASS | {"output": "acceleration"}),
+            ("N", "m/s^2"),
+            "stribeck_velocity",
+            "m/s",
+        ),
+        (
+            ("mechanism", MASS | {"output": "acceleration"}),
+            ("N", "m/s^2"),
+            "presliding_distance",
+            "m",
+        ),
+        (
+            ("mechanism", MASS | {"output": "velocity"}),
+            ("V", "V"),
+            "presliding_distance",
+            "V s",
+        ),
+        (("impedance", MASS), ("mm", "N"), "coulomb", "N"),
+        (("impedance", MASS), ("mm", "N"), "presliding_distance", "mm"),
+        (
+            ("impedance", MASS | {"input": "velocity"}),
+            ("m/s", "kN"),
+            "presliding_distance",
+            "m",
+        ),
+    ],
+)
+def test_a_force_inside_has_units_of_force_and_of_its_coordinate(
+    host, channels, number, unit
+):
+    (name, given), (law, own) = host, DRY
+    chain = (block(name, **given), block(law, **own))
+    about = chain[1].parameters()[number]
+    assert unit_at(about.unit, chain, 1, *channels) == unit
+
+
+def test_numbers_of_a_host_are_in_units_of_its_coordinate():
+    velocity = block("mechanism", **MASS, output="velocity")
+    stiffness = velocity.parameters()["stiffness"].unit
+    assert unit_at(stiffness, (velocity,), 0, "V", "V") == "V/(V s)"
+    impedance = block("impedance", **MASS)
+    stiffness = impedance.parameters()["stiffness"].unit
+    assert unit_at(stiffness, (impedance,), 0, "mm", "N") == "N/mm"

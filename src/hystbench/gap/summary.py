@@ -8,7 +8,7 @@ from typing import Any
 
 from hystbench.blocks.parameter import SETTINGS
 from hystbench.files import write_csv
-from hystbench.gap.units import written
+from hystbench.gap.units import unit_at
 from hystbench.model import Model
 
 Content = Mapping[str, Any]
@@ -86,9 +86,9 @@ def write_adds(model: Model, path: Path) -> None:
             label,
             name,
             _any(about.plain(getattr(block, name))),
-            written(about.unit, model.input.unit, model.output.unit),
+            unit_at(about.unit, model.chain, k, model.input.unit, model.output.unit),
         ]
-        for label, block in model.labelled()
+        for k, (label, block) in enumerate(model.labelled())
         if not block.hysteretic
         for name, about in block.parameters().items()
         if name not in SETTINGS

@@ -18,7 +18,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, near
 from hystbench.gap.state import Added, State, beside_count
-from hystbench.gap.units import unit_behind, written
+from hystbench.gap.units import unit_at, unit_behind, written
 from hystbench.gap.verdict import Left, confidence, error_of
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -188,7 +188,8 @@ def parameters_of(
 
 
 def _unit(unit: str, place: int, state: State) -> str:
-    return written(unit, state.records[0].input.unit, unit_behind(place, state))
+    of_input, behind = state.records[0].input.unit, unit_behind(place, state)
+    return unit_at(unit, state.chain, place, of_input, behind)
 
 
 def _errors_of(

@@ -1,18 +1,86 @@
-"""Units of an effect's numbers: those of the signal at its place in the chain."""
+"""Units of a block's numbers: those of the signals at its place in the chain."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.force import Force
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.store import Store
 from hystbench.gap.state import State
+
+ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
+"""Derivatives of the coordinate."""
 
 
 def written(unit: str, of_input: str, of_output: str) -> str:
     """Write the units of a model's input and of a block's output for U and Y."""
+    return _put(unit, {"U": of_input, "Y": of_output})
+
+
+def unit_at(
+    unit: str, chain: Sequence[Block], place: int, of_input: str, of_output: str
+) -> str:
+    """Write the unit of a number of a block in a chain.
+
+    A force inside a mechanism is measured in the unit of what drives it; inside an
+    impedance, in that of the output. Q is the unit of the coordinate.
+
+    Parameters
+    ----------
+    unit : str
+        As the block tells it, in U, Y and Q.
+    chain : sequence of Block
+    place : int
+        Of the block.
+    of_input, of_output : str
+        Units of the model's input and of the signal behind the block.
+    """
+    inside = isinstance(chain[place], Force)
+    while place > 0 and isinstance(chain[place], Force):
+        place -= 1
+    host = chain[place]
     units = {"U": of_input, "Y": of_output}
-    words = re.findall(r"[A-Za-z]+|[^A-Za-z]+", unit)
-    return "".join(units.get(word, word) for word in words)
+    if isinstance(host, Impedance):
+        order, way = ORDERS[host.input], of_input
+        units["U"] = of_output if inside else of_input
+    elif isinstance(host, Mechanism) and host.output in ORDERS:
+        order, way = ORDERS[host.output], of_output
+    elif isinstance(host, Store):
+        order, way = (0, of_output) if host.output == "level" else (1, of_input)
+    else:
+        return _put(unit, units)
+    for derivative, word in ((2, r"Q/s\^2"), (1, r"Q/s(?!\^)"), (0, r"Q(?!\d)")):
+        unit = re.sub(word, f"Q{derivative}", unit)
+    return _put(unit, units | {f"Q{k}": _derived(way, k - order) for k in range(3)})
+
+
+def _put(unit: str, units: dict[str, str]) -> str:
+    words = re.findall(r"Q\d|[A-Za-z]+|[^A-Za-z]+?(?=[A-Za-z]|$)", unit)
+    found = [units.get(word, word) for word in words]
+    if len(words) > 1:
+        found = [
+            f"({x})" if x != word and re.search("[ /]", x) else x
+            for x, word in zip(found, words, strict=True)
+        ]
+    return "".join(found)
+
+
+def _derived(unit: str, times: int) -> str:
+    """Write the unit of a derivative, or of what this is a derivative of."""
+    if times == 0:
+        return unit
+    per = {1: "/s", 2: "/s^2"}
+    if times > 0:
+        return unit + per[times]
+    for order in (2, 1):
+        root = unit.removesuffix(per[order])
+        if root != unit and order >= -times:
+            return _derived(root, order + times)
+    return f"{unit} s" if times == -1 else f"{unit} s^2"
 
 
 def unit_behind(place: int, state: State) -> str:

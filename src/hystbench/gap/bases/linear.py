@@ -9,6 +9,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import STARTS
+from hystbench.errors import InputError
 from hystbench.gap.bases.halves import HalvesError
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
@@ -79,7 +80,8 @@ def identified_linear(evidence: Evidence) -> Linear:
     Raises
     ------
     InputError
-        If a record is too short for folds.
+        If a record is too short for folds, or no linear model predicts the folds
+        better than a constant.
     """
     records = evidence.fit
     whole = tuple(
@@ -90,6 +92,7 @@ def identified_linear(evidence: Evidence) -> Linear:
         for fold in make_folds(records)
     )
     static_fit, static_folds, gain = _static(evidence, whole, folds)
+    _, constant, _ = _static(evidence, whole, folds, 0.0)
     spectra = Spectra.of([Stretch(r.u, r.y, r.dt) for r in records], evidence.hold)
 
     def dynamic(order: int, zeros: int) -> _Found:
@@ -121,6 +124,12 @@ def identified_linear(evidence: Evidence) -> Linear:
         zeros = len(chosen.ratio.b) - 1
         what = f"order {order}, {zeros} zero{'s' * (zeros != 1)}, from {block.start}"
     unit = evidence.output.unit
+    if fold > (1 - MATTERS) * constant:
+        raise InputError(
+            f"{evidence.name}: linear: on folds of the fit records the best linear "
+            f"model is {fold:.4g} {unit} off, a constant {constant:.4g}; expected an "
+            "output that follows the input, or a model file in --model"
+        )
     note = (
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
@@ -175,10 +184,16 @@ def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]
 
 
 def _static(
-    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
+    evidence: Evidence,
+    whole: tuple[Mask, ...],
+    folds: tuple[Fold, ...],
+    of_input: float = 1.0,
 ) -> tuple[float, float, Gain]:
-    """Fit a gain and an offset: error on all records, on the folds, and the block."""
-    u = [record.u for record in evidence.fit]
+    """Fit a gain and an offset: error on all records, on the folds, and the block.
+
+    With none of the input it is a constant.
+    """
+    u = [of_input * record.u for record in evidence.fit]
     y = [record.y for record in evidence.fit]
 
     def line(masks: tuple[Mask, ...]) -> FloatArray:

@@ -137,30 +137,39 @@ def chosen(found: Sequence[Hypothesis]) -> Hypothesis:
 
 
 def _rounds(start: State, best: Hypothesis, found: Sequence[Hypothesis]) -> list[Round]:
-    """Write how the effects were found as rounds: each beside those before it."""
-    rounds, before = [], start
-    now = found[0].score
-    for count, effect in enumerate(best.effects, start=1):
-        already = best.effects[: count - 1]
-        own = [
+    """Write how the effects were found as rounds: each beside those before it.
+
+    The one that is missed least comes last, and so on.
+    """
+    way = [best]
+    while len(way[0].effects) > 1:
+        fewer = [
             item
             for item in found
-            if len(item.effects) == count and item.effects[: count - 1] == already
+            if {*item.effects} < {*way[0].effects}
+            and len(item.effects) == len(way[0].effects) - 1
         ]
-        ranking = sorted(
-            (_candidate(item, now) for item in own),
-            key=lambda item: (item.effect != effect, item.score),
-        )
+        way.insert(0, min(fewer, key=lambda item: item.score))
+    rounds: list[Round] = []
+    before, now, already = start, found[0].score, frozenset[str]()
+    for taken in way if best.effects else ():
+        candidates = [
+            _candidate(item, already, now)
+            for item in found
+            if already < {*item.effects} and len(item.effects) == len(already) + 1
+        ]
+        (effect,) = {*taken.effects} - already
+        ranking = sorted(candidates, key=lambda x: (x.effect != effect, x.score))
         rounds.append(Round(before, now, tuple(ranking), True))
-        first = ranking[0]
-        assert first.state is not None  # noqa: S101  (for the type checker)
-        before, now = first.state, first.score
+        before, now = taken.fitted.state, taken.score
+        already = frozenset(taken.effects)
     return rounds
 
 
-def _candidate(item: Hypothesis, now: float) -> Candidate:
+def _candidate(item: Hypothesis, already: frozenset[str], now: float) -> Candidate:
+    """Give the effect that a hypothesis has beyond those of the rounds before."""
     state = item.fitted.state
-    last = state.added[-1]
+    last = next(x for x in state.added if x.effect not in already)
     return Candidate(
         last.effect, last.place, last.form, item.score, now - item.score, state
     )

@@ -1,0 +1,47 @@
+"""In which order effects inside are told, and against what each is held."""
+
+from types import SimpleNamespace
+
+from hystbench.gap.inside.least_squares import Fitted
+from hystbench.gap.inside.name import _rounds
+from hystbench.gap.inside.search import Hypothesis
+
+
+def tried(score, *effects):
+    added = [SimpleNamespace(effect=x, place="inside", form="") for x in effects]
+    state = SimpleNamespace(added=added)
+    return Hypothesis(effects, ("",) * len(effects), Fitted(state, score))
+
+
+def test_an_effect_that_does_little_alone_comes_behind_the_one_that_it_needs():
+    best = tried(-500.0, "outflow", "overflow")
+    found = [
+        tried(0.0),
+        tried(-200.0, "overflow"),
+        tried(-10.0, "outflow"),
+        best,
+        tried(-250.0, "overflow", "stop"),
+        tried(-30.0, "outflow", "stop"),
+    ]
+    first, second = _rounds(found[0].fitted.state, best, found)
+    assert [x.effect for x in first.ranking] == ["overflow", "outflow"]
+    assert [x.effect for x in second.ranking] == ["outflow", "stop"]
+    assert [x.gain for x in second.ranking] == [300.0, 50.0]
+
+
+def test_where_one_order_of_three_was_tried_it_is_the_one_that_is_told():
+    best = tried(-900.0, "drag", "stop", "friction")
+    found = [
+        tried(0.0),
+        tried(-100.0, "friction"),
+        tried(-50.0, "drag"),
+        tried(-300.0, "drag", "stop"),
+        best,
+    ]
+    told = _rounds(found[0].fitted.state, best, found)
+    assert [one.ranking[0].effect for one in told] == ["drag", "stop", "friction"]
+
+
+def test_without_an_effect_there_is_no_round():
+    alone = tried(0.0)
+    assert _rounds(alone.fitted.state, alone, [alone]) == []
