@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.inside.hosts import hosts
-from hystbench.gap.inside.search import Hypothesis, laws_for, singles, together
+from hystbench.gap.inside.search import (
+    Hypothesis,
+    laws_for,
+    may_gain,
+    singles,
+    together,
+)
 from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, Round
 from hystbench.gap.say import Say, silent
@@ -70,10 +77,13 @@ def named_inside(
     nothing = np.zeros((len(start.sample), 0))
     score = Score(start.sample, nothing, floor_rms**2)
     turns = start.records[0].output.unit.startswith("rad")
+    offer = partial(laws_for, turns=turns, offered=start.offered)
     tried = []
     for host in hosts(start, quantities, identified, score):
-        laws = laws_for(host.fitted, turns, start.offered)
-        tried.append((host, laws, singles(host.fitted, laws, score, say)))
+        found = singles(host.fitted, offer, score, say)
+        tried.append((host, found))
+        if not may_gain(chosen(found, score.floor), score):
+            break  # no other host could do better
     if not tried:
         return None
 
@@ -81,8 +91,8 @@ def named_inside(
     def least(found: Sequence[Hypothesis]) -> float:
         return charged(chosen(found, score.floor), found, score.floor)
 
-    host, laws, found = min(tried, key=lambda item: least(item[2]))
-    found = together(found, laws, score, say)
+    host, found = min(tried, key=lambda item: least(item[1]))
+    found = together(found, offer, score, say)
     best = chosen(found, score.floor)
     fitted = found[0].fitted.state
     if not best.effects:
