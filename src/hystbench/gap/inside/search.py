@@ -102,6 +102,8 @@ def together(
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
     for keep in (PAIRS, 1):
+        if not may_gain(min(every, key=lambda item: item.score), score):
+            break
         if not of_stores(found[0]):
             carried = [item for item in carried if item.score < alone]
         carried = _one_more(carried, offer, score, keep, alone, say)
