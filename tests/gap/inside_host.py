@@ -5,7 +5,7 @@ from functools import partial
 from hystbench.gap.inside.search import laws_for, singles, together
 
 
-def search(host, score, offered=None):
+def search(host, score, offered=None, turns=False):
     """Give the host alone first; then every other with the score that was reached."""
-    offer = partial(laws_for, offered=offered)
+    offer = partial(laws_for, offered=offered, turns=turns)
     return together(singles(host, offer, score), offer, score)

@@ -148,6 +148,8 @@ class Moved:
     anywhere : bool
         Whether where it is does not matter, as of a mass without a spring: a force
         that depends on the place has no meaning then.
+    stiffness : float
+        Of its linear spring; zero without one.
     """
 
     reach: float
@@ -156,6 +158,7 @@ class Moved:
     step: float
     turns: bool = False
     anywhere: bool = False
+    stiffness: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -170,12 +173,15 @@ class Law:
     free : tuple of str
         Parameters that are fitted.
     place : {"inside", "before", "behind"}
+    stands_for : float
+        Share of the linear spring that the force stands for: it goes out of the spring.
     """
 
     form: str
     block: Block
     free: tuple[str, ...]
     place: Literal["inside", "before", "behind"] = "inside"
+    stands_for: float = 0.0
 
 
 class Filled(NamedTuple):

@@ -249,11 +249,16 @@ def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
 def with_law(state: State, effect: str, law: Law) -> State:
     """Put a law into a chain, with its numbers free.
 
-    A force goes behind the host, a filter before all or behind all.
+    A force goes behind the host, a filter before all or behind all. What a force stands
+    for goes out of the host's spring.
     """
     host = next(k for k, block in enumerate(state.chain) if is_host(block))
     place = {"before": 0, "inside": host + 1, "behind": len(state.chain)}[law.place]
-    chain = (*state.chain[:place], law.block, *state.chain[place:])
+    base: list[Any] = list(state.chain)
+    if law.stands_for:
+        spring = (1.0 - law.stands_for) * base[host].stiffness
+        base[host] = replace(base[host], stiffness=spring)
+    chain = (*base[:place], law.block, *base[place:])
 
     def moved(block: int) -> int:
         return block + 1 if block >= place else block
@@ -297,5 +302,11 @@ def how_it_moves(state: State, turns: bool) -> Moved:
     step = min(record.dt for record in state.records)
     anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
     return Moved(
-        max(reach, tiny), max(speed, tiny), max(force, tiny), step, turns, anywhere
+        max(reach, tiny),
+        max(speed, tiny),
+        max(force, tiny),
+        step,
+        turns,
+        anywhere,
+        host.stiffness,
     )
