@@ -175,6 +175,8 @@ class Law:
     place : {"inside", "before", "behind"}
     stands_for : float
         Share of the linear spring that the force stands for: it goes out of the spring.
+    least : float
+        Of its numbers, where that is more than their blocks' own bound.
     """
 
     form: str
@@ -182,6 +184,7 @@ class Law:
     free: tuple[str, ...]
     place: Literal["inside", "before", "behind"] = "inside"
     stands_for: float = 0.0
+    least: float = -np.inf
 
 
 class Filled(NamedTuple):
@@ -324,7 +327,8 @@ class Effect(ABC):
     ) -> Law:
         """Give the effect's filter before or behind a mechanism.
 
-        It starts short against the records' rates: at two sampling intervals.
+        It starts short against the records' rates: at two sampling intervals. Less than
+        one is no effect but how input and output were sampled.
 
         Parameters
         ----------
@@ -336,7 +340,7 @@ class Effect(ABC):
             Other parameters.
         """
         block = registry()[self.name].from_mapping({name: 2 * moved.step, **given})
-        return Law("", block, (name,), place)
+        return Law("", block, (name,), place, least=moved.step)
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""

@@ -270,7 +270,7 @@ def with_law(state: State, effect: str, law: Law) -> State:
         chain=chain,
         free=(
             *(free._replace(block=moved(free.block)) for free in state.free),
-            *(Free(place, name) for name in law.free),
+            *(Free(place, name, low=law.least) for name in law.free),
         ),
         added=(
             *(
