@@ -150,6 +150,8 @@ class Moved:
         that depends on the place has no meaning then.
     stiffness : float
         Of its linear spring; zero without one.
+    given, shown : float
+        The model's input, and its output.
     """
 
     reach: float
@@ -159,6 +161,8 @@ class Moved:
     turns: bool = False
     anywhere: bool = False
     stiffness: float = 0.0
+    given: float = 1.0
+    shown: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -341,6 +345,27 @@ class Effect(ABC):
         """
         block = registry()[self.name].from_mapping({name: 2 * moved.step, **given})
         return Law("", block, (name,), place, least=moved.step)
+
+    def curve(
+        self,
+        place: Literal["before", "behind"],
+        form: str = "",
+        also: Mapping[str, float] | None = None,
+        **start: float,
+    ) -> Law:
+        """Give the effect's curve or play before or behind a mechanism.
+
+        Parameters
+        ----------
+        place : {"before", "behind"}
+        form : str
+        also : mapping of str to float, optional
+            Numbers that are not fitted.
+        **start : float
+            Those that are, where their fit starts.
+        """
+        block = registry()[self.name].from_mapping({**(also or {}), **start})
+        return Law(form, block, tuple(start), place)
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""

@@ -300,6 +300,8 @@ def how_it_moves(state: State, turns: bool) -> Moved:
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
     step = min(record.dt for record in state.records)
+    given = [record.u for record in state.records]
+    shown = state.scene.output
     anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
     return Moved(
         max(reach, tiny),
@@ -309,4 +311,5 @@ def how_it_moves(state: State, turns: bool) -> Moved:
         turns,
         anywhere,
         host.stiffness,
+        *(max(float(np.max(np.abs(x))) for x in signals) for signals in (given, shown)),
     )
