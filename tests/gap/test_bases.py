@@ -466,3 +466,11 @@ class TestLoad:
     def test_a_file_that_is_not_there(self, tmp_path):
         path = str(tmp_path / "no.yaml")
         assert path in message(lambda: load_base(path, self.known))
+
+
+def test_a_stretch_shorter_than_its_transient_has_numbers_is_fitted():
+    u = np.array([0.0, 1.0, -1.0, 0.5])
+    long = np.random.default_rng(2).normal(size=(2, 400))
+    stretches = [Stretch(*long, 0.001), Stretch(u, 0.5 * u, 0.001)]
+    ratio = fit_ratio(Spectra.of(stretches, "linear"), 6, 6)
+    assert np.all(np.isfinite(ratio.a))

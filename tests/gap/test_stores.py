@@ -75,3 +75,11 @@ def test_an_output_that_is_negative_is_no_level():
     record = tanks(root=False, height=np.inf)
     below = Record("below", DT, record.u, record.y - 3, *CHANNELS, "measured")
     assert list(stores((below,), "zero-order", NOISE, 1)) == []
+
+
+def test_a_level_may_be_negative_by_its_noise():
+    record = tanks(root=True, height=np.inf)
+    low = record.y - record.y[0] - NOISE
+    begun = Record("low", DT, record.u, low - low.min() - NOISE, *CHANNELS, "measured")
+    assert min(begun.y) < 0
+    assert list(stores((begun,), "zero-order", NOISE, 1))

@@ -56,6 +56,10 @@ from hystbench.record import FloatArray, Record
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
+NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "asymmetry", "saturation")
+"""Effects that windows of a free mass cannot tell. An integrator makes a path of its
+own in every window of any error; and each begins at zero wherever the mass is, so that
+no curve over its place has a meaning."""
 
 
 @dataclass(frozen=True)
@@ -142,8 +146,7 @@ def find(
     """
     limits = Limits.within(records, asked) if asked else None
     if any(record.decay_s is not None for record in records):
-        # A path of its own in every window is what an integrator makes of any error.
-        offered = tuple(effect for effect in among(offered) if effect != "drift")
+        offered = tuple(name for name in among(offered) if name not in NOT_IN_WINDOWS)
     start, floor = start_state(records, base, hold, declared, offered)
     inside = None
     if quantities is not None:

@@ -114,8 +114,9 @@ def identified_linear(evidence: Evidence) -> Linear:
         best = min(best, found[-1].folds)
         if in_vain > IN_VAIN:
             break
-    likely = next(item for item in found if item.folds <= best / (1 - MATTERS))
-    if len(likely.ratio.a) >= MANY:
+    enough = best / (1 - MATTERS)
+    likely = next((item for item in found if item.folds <= enough), None)
+    if likely is not None and len(likely.ratio.a) >= MANY:
         found += _further_modes(spectra, likely, whole, folds)
         best = min(static_folds, *(item.folds for item in found))
     enough = best / (1 - MATTERS)

@@ -257,7 +257,9 @@ class _Problem:
                 modelled = linear @ np.append(now.b, now.offset * a[0])
                 basis, triangle = np.linalg.qr(_real(transients))
                 inside = basis.T @ _real(lines.y - modelled)
-                modelled = modelled + transients @ np.linalg.solve(triangle, inside)
+                # Of fewer lines than the transient has numbers: the least numbers.
+                moved_by, *_ = np.linalg.lstsq(triangle, inside, rcond=None)
+                modelled = modelled + transients @ moved_by
                 moved = powers * (weight * modelled)[:, None]
                 target = -(lines.y - modelled)
             columns = np.column_stack([-moved, linear])

@@ -63,7 +63,7 @@ def stores(
             rest = float(np.mean((wanted - columns @ [gain, offset]) ** 2))
             inflow = float(records[0].u[0] + offset / gain)
             chain = _chain(rates, float(gain), float(offset / gain), inflow, hold)
-            last = replace(chain[-1], start_level=float(records[0].y[0]))
+            last = replace(chain[-1], start_level=max(float(records[0].y[0]), 0.0))
             found.append((rest, (*chain[:-1], last)))
     for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]:
         free = [Free(0, "bias")]
