@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.signal import lsim, lti
 
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.simulated_column import SimulatedColumn
@@ -474,3 +475,21 @@ def test_a_stretch_shorter_than_its_transient_has_numbers_is_fitted():
     stretches = [Stretch(*long, 0.001), Stretch(u, 0.5 * u, 0.001)]
     ratio = fit_ratio(Spectra.of(stretches, "linear"), 6, 6)
     assert np.all(np.isfinite(ratio.a))
+
+
+def test_where_five_poles_do_not_do_modes_are_added_one_by_one():
+    modes = [
+        lti([size * w**2], [1.0, 0.06 * w, w**2])
+        for frequency, size in ((12.0, 1.0), (25.0, 0.5), (43.0, -0.4), (70.0, 0.3))
+        for w in (2 * np.pi * frequency,)
+    ]
+    time = 0.001 * np.arange(2000)
+    records = []
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        u = steady(multisine(seed, highest_hz=100.0)) * np.minimum(1.0, time / 0.1)
+        y = sum(lsim(mode, u, time)[1] for mode in modes)
+        records.append(record(u, y + 0.02 * random.standard_normal(2000)))
+    found = identified_linear(evidence(*records))
+    assert len(dynamics(found.model).denominator) == 9
+    assert found.fold_rms < 1.5 * 0.02

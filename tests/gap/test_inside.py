@@ -152,3 +152,25 @@ def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring(
     best = min(tried[1:], key=lambda item: item.score)
     assert best.effects == ("gravity",)
     assert best.fitted.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)
+
+
+def test_a_limit_of_the_amplifier_before_a_mass_on_a_spring_is_found_there():
+    random = np.random.default_rng(6)
+    records = []
+    for size in (2.0, 6.0):
+        u = size * np.repeat(random.uniform(-1, 1, 160), 10)
+        q, v, out = 0.0, 0.0, []
+        for force in np.repeat(np.clip(u, -3.0, 3.0), 20):
+            out.append(q)
+            v += DT / 20 * (force - 1.5 * v - 60.0 * q)
+            q += DT / 20 * v
+        noise = 1e-4 * random.standard_normal(1600)
+        records.append(record(f"{size:g}", u, np.array(out[::20]) + noise, ("N", "m")))
+    begun = one_coordinate(tuple(records), MOVES, "zero-order")
+    sample = Sample.of(tuple(records))
+    score = Score(sample, np.zeros((len(sample), 0)), 1e-8)
+    best = min(search(best_host(list(begun), score), score), key=lambda x: x.score)
+    assert best.effects == ("drive-saturation",)
+    limit, *_ = best.fitted.state.chain
+    assert limit.limit == pytest.approx(3.0, rel=0.02)
+    assert best.fitted.state.added[0].place == "before"
