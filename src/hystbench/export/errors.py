@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hystbench.blocks import step
 from hystbench.blocks.step import Sampling, sample_rate
 from hystbench.export import python
 from hystbench.export.described import describe
@@ -89,8 +90,7 @@ def error(case: Case, points: int, delay: int) -> float:
 
 def noise_of_rate(points: int, delay: int) -> float:
     """Give how noisy a rate is, of white noise, over that of a central difference."""
-    weights = sample_rate(Sampling(1.0, points, delay=delay), delay)
-    return float(np.sqrt(np.sum(weights**2) / 0.5))
+    return step.noise_of_rate(sample_rate(points, delay))
 
 
 def table(cases: Sequence[Case] = CASES) -> list[dict[str, str]]:
