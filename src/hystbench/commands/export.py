@@ -12,7 +12,7 @@ from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
-from hystbench.export.described import describe
+from hystbench.export.described import Described, describe
 from hystbench.export.inverse import describe_inverse
 from hystbench.export.past import begun, begun_inverse
 from hystbench.files import whole_folder
@@ -54,6 +54,12 @@ from hystbench.record import FloatArray, column_name
     "the simulation of this record, where MODEL says 'start: settled' or 'moving'.",
 )
 @click.option(
+    "--compare",
+    type=options.FILE,
+    help="CSV file with time_s and the input: say how far the code is from the "
+    "simulation of this record.",
+)
+@click.option(
     "--hold",
     type=click.Choice(HOLDS),
     help="How the input moves between samples where MODEL does not say.",
@@ -74,6 +80,7 @@ def export(
     delay: int,
     duration: float | None,
     past: Path | None,
+    compare: Path | None,
     hold: Hold | None,
     inverse: bool,
     limit_low: float | None,
@@ -91,6 +98,11 @@ def export(
     limits = (limit_low, limit_high)
     if not inverse and limits != (None, None):
         raise InputError("--limit-low and --limit-high: expected them with --inverse")
+    if inverse and compare is not None:
+        raise InputError(
+            "--compare: expected none with --inverse; 'hystbench invert --sampled' "
+            "says how far the output is from what is wanted"
+        )
     sampling = Sampling(dt, points, duration, delay)
     try:
         described = (
@@ -106,6 +118,9 @@ def export(
     if past is not None:
         start = begun_inverse if inverse else begun
         described = start(described, system, _record(system, past, dt))
+    told = [described.memory, *described.differences]
+    if compare is not None:
+        told.append(_compared(described, system, compare))
     name = described.name
     names = {
         "c": [f"{name}.h", f"{name}.c"],
@@ -120,10 +135,21 @@ def export(
             (fresh / names[0]).write_text(python.module(described), encoding="utf-8")
         else:
             fmu.write_fmu(described, fresh / names[0])
-    told = [f"{out / made}" for made in names]
-    click.echo(f"{', '.join(told)}: {described.about}")
-    for line in [described.memory, *described.differences]:
+    made = ", ".join(f"{out / file}" for file in names)
+    click.echo(f"{made}: {described.about}")
+    for line in told:
         click.echo(line)
+
+
+def _compared(code: Described, system: Model, file: Path) -> str:
+    """Say how far the code is from the simulation of a record."""
+    from hystbench.export.compared import off  # late: it runs
+
+    u = _record(system, file, code.sampling.dt)
+    try:
+        return f"{file}: {off(code, system, u).words}."
+    except InputError as error:
+        raise InputError(f"--compare: {file}: {error}") from None
 
 
 def _record(system: Model, file: Path, wanted: float) -> FloatArray:

@@ -56,6 +56,8 @@ static double hb_impedance(double mass, double damping, double stiffness, double
     else
         v = known ? hb_weighted(points, rate, history + 1) : 0;
     if (known) a = hb_weighted(points, velocity ? rate : curvature, history + 1);
+    if (!moves && !velocity && ahead > 1) /* at its start that of the sample after it */
+        a = hb_weighted(points - 1, curvature + 1, history + 1);
     place[0] = q;
     place[1] = z;
     const double way = moves ? q - before : 0;

@@ -329,6 +329,8 @@ def impedance(
         v, a = z, v
     else:
         q, a = z, curvature @ history[1:] if known else 0.0
+        if not moves and ahead > 1:  # at its start that of the sample after it
+            a = curvature[1:] @ history[1:-1]
     place[:] = q, z
     way = q - before if moves else 0.0
     force = all_forces(count, forces, q, v, way, memory)
