@@ -32,7 +32,10 @@ class Simulator(Block):
     place: ClassVar[Place] = "base"
     reference: ClassVar[str] = "by definition"
     seen: ClassVar[bool] = False
-    no_step: ClassVar[str] = "a simulator of somebody's own cannot be turned into code"
+    no_step: ClassVar[str] = (
+        "a simulator of somebody's own cannot be turned into code; expected a model "
+        "file without it: run it beside the code of the blocks before it, or behind it"
+    )
 
     @property
     @abstractmethod
