@@ -74,11 +74,41 @@ class Piece:
         """Name the state that the model's input is kept in."""
         return f"{self.label}_history"
 
+    @property
+    def takes(self) -> list[str]:
+        """Name what it takes inside another: a signal, and a factor on thresholds."""
+        return ["v"] + ["growth"] * self.step.grows
+
     def all_inside(self) -> Iterator[Piece]:
         """Give the piece and what is inside it, the innermost first."""
         if self.inner is not None:
             yield from self.inner.all_inside()
         yield self
+
+
+@dataclass(frozen=True)
+class Language:
+    """How a language calls a piece's step, and a function of the model's own for it.
+
+    Parameters
+    ----------
+    step, own : callable
+        Give the text of the call, from the piece and the signals that it takes.
+    """
+
+    step: Callable[[Piece, Sequence[str]], str]
+    own: Callable[[Piece, Sequence[str]], str]
+
+    def in_chain(self, piece: Piece, one: str) -> str:
+        """Call a piece that the model's signal ``y`` passes."""
+        call = self.step if piece.inner is None else self.own
+        return call(piece, ["y"] + [one] * piece.step.grows)
+
+    def inside(self, piece: Piece) -> str:
+        """Call a piece inside another, of which what is inside it is called once."""
+        own = self.step(piece, piece.takes)
+        inner = piece.inner
+        return own if inner is None else f"{self.own(inner, inner.takes)} + {own}"
 
 
 @dataclass(frozen=True)
