@@ -1,9 +1,11 @@
 """Forces tried inside a host, alone and together."""
 
+from functools import partial
+
 from hystbench.gap.inside.search import laws_for, singles, together
 
 
-def search(host, score, offered=None):
+def search(host, score, offered=None, turns=False):
     """Give the host alone first; then every other with the score that was reached."""
-    laws = laws_for(host, offered=offered)
-    return together(singles(host, laws, score), laws, score)
+    offer = partial(laws_for, offered=offered, turns=turns)
+    return together(singles(host, offer, score), offer, score)

@@ -125,3 +125,30 @@ def test_where_the_place_does_not_matter_no_force_depends_on_it():
     offered = {name for name, item in effects().items() if any(item.inside(moved))}
     assert {"friction", "drag", "hysteretic-force"} <= offered
     assert not {"stop", "stiffness-hardening", "gravity"} & offered
+
+
+def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring():
+    def swing(u, fine=20):
+        angle, rate, found = 0.0, 0.0, []
+        for moment in np.repeat(u, fine):
+            found.append(angle)
+            rate += DT / fine * (moment - 40.0 * np.sin(angle) - 0.8 * rate)
+            angle += DT / fine * rate
+        return np.array(found[::fine])
+
+    random = np.random.default_rng(3)
+    units = ("N*m", "rad")
+    records = []
+    for size in (8.0, 25.0):
+        u = size * np.repeat(random.uniform(-1, 1, 80), 20)
+        y = swing(u) + 1e-3 * random.standard_normal(1600)
+        records.append(record(f"swing-{size:g}", u, y, units))
+    assert max(float(np.abs(one.y).max()) for one in records) > 1.2
+    quantities = Quantities("force", "position")
+    begun = one_coordinate(tuple(records), quantities, "zero-order")
+    sample = Sample.of(tuple(records))
+    score = Score(sample, np.zeros((len(sample), 0)), 1e-6)
+    tried = search(best_host(list(begun), score), score, turns=True)
+    best = min(tried[1:], key=lambda item: item.score)
+    assert best.effects == ("gravity",)
+    assert best.fitted.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)

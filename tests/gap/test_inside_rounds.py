@@ -2,8 +2,10 @@
 
 from types import SimpleNamespace
 
+import pytest
+
 from hystbench.gap.inside.least_squares import Fitted
-from hystbench.gap.inside.name import _rounds
+from hystbench.gap.inside.name import _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
 
 
@@ -45,3 +47,30 @@ def test_where_one_order_of_three_was_tried_it_is_the_one_that_is_told():
 def test_without_an_effect_there_is_no_round():
     alone = tried(0.0)
     assert _rounds(alone.fitted.state, alone, [alone]) == []
+
+
+class Told(SimpleNamespace):
+    """A state of which only the power of its residual is known."""
+
+    def power(self, floor):
+        return self.left - floor
+
+    def share(self, other, floor, gap):
+        return (other.power(floor) - self.power(floor)) / gap
+
+
+def measured(score, left, *effects):
+    state = Told(left=left, freedom=len(effects))
+    return Hypothesis(effects, ("",) * len(effects), Fitted(state, score))
+
+
+@pytest.mark.parametrize(("left", "count"), [(0.02, 2), (0.095, 1)])
+def test_a_further_effect_that_takes_no_share_of_the_gap_must_be_beyond_doubt(
+    left, count
+):
+    found = [
+        measured(0.0, 1.0),
+        measured(-900.0, 0.1, "friction"),
+        measured(-1050.0, left, "friction", "input-delay"),
+    ]
+    assert len(chosen(found, 0.0).effects) == count

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil, sqrt
 from typing import ClassVar
 
@@ -208,16 +209,36 @@ class Mechanism(HeldBlock):
 
     def _steps(self, dt: float) -> FloatArray:
         """Weights of a step, and of an eighth of it."""
-        return np.array([self._step(dt), self._step(dt / 8)])
+        return step_weights(self.mass, self.damping, self.stiffness, dt)
 
-    def _step(self, dt: float) -> FloatArray:
-        """Weights of q, q' and of the driving force at both ends of a step."""
-        m, c, k = self.mass, self.damping, self.stiffness
-        system = StateSpace(
-            np.array([[0.0, 1.0], [-k / m, -c / m]]),
-            np.array([0.0, 1.0 / m]),
-            np.array([1.0, 0.0]),
-            0.0,
-        )
-        phi, now, following = discretise(system, dt, "linear")
-        return np.ascontiguousarray(np.column_stack([phi, now, following]))
+
+@lru_cache(maxsize=256)
+def step_weights(
+    mass: float, damping: float, stiffness: float, dt: float
+) -> FloatArray:
+    """Give weights of q, q' and of the driving force at both ends of a step.
+
+    Of a mass on a spring without forces inside. They are kept, as a fit simulates many
+    records with the same linear part.
+
+    Returns
+    -------
+    ndarray, shape (2, 2, 4)
+        Of a step, and of an eighth of it; not to be written to.
+    """
+    system = StateSpace(
+        np.array([[0.0, 1.0], [-stiffness / mass, -damping / mass]]),
+        np.array([0.0, 1.0 / mass]),
+        np.array([1.0, 0.0]),
+        0.0,
+    )
+    weights = np.array(
+        [
+            np.column_stack([phi, now, following])
+            for phi, now, following in (
+                discretise(system, step, "linear") for step in (dt, dt / 8)
+            )
+        ]
+    )
+    weights.setflags(write=False)
+    return weights

@@ -158,8 +158,10 @@ def what_is_unnamed(base: State, state: State, floor_rms: float) -> Unnamed:
     increment = base.residual - state.residual
     if any(item.blocks for item in state.added):
         changing = {"changing": halves(state, _numbers(state, increment))}
-    if any(beside.effect == PATH for beside, _ in state.beside):
-        # A path owns all that is slow, the input's slow power too.
+    integrates = any(record.decay_s is not None for record in state.records)
+    if integrates or any(beside.effect == PATH for beside, _ in state.beside):
+        # A path owns all that is slow, the input's slow power too. A free mass makes a
+        # path in each of its windows of any small error of a force.
         own["path"] = generic.pop("path")
         del generic["slow power"]
     groups = own | generic | changing

@@ -12,15 +12,22 @@ from hystbench.blocks.transfer_function import STARTS
 from hystbench.errors import InputError
 from hystbench.gap.bases.halves import HalvesError
 from hystbench.gap.bases.output_error import OutputError
-from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
+from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio, with_a_mode
 from hystbench.gap.bases.split import best_split, chain_of, is_bent
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.folds import Fold, make_folds
 from hystbench.model import Model
 from hystbench.record import FloatArray, Mask
 
-#: Highest order that is tried.
+#: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
+MOST_ORDERS = 12
+#: Order from which on a further mode is looked for: two modes and a lag do not do.
+MANY = 5
+#: Damping ratio at which a further mode is begun.
+BEGUN_DAMPING = 0.01
+#: Peaks of what is left at which a further mode is begun.
+PEAKS = 3
 #: An order is needed if it lowers the error on the folds by more than this share.
 MATTERS = 0.005
 #: Orders above are not tried once so many in a row have not mattered.
@@ -68,7 +75,8 @@ def identified_linear(evidence: Evidence) -> Linear:
 
     A ratio of polynomials in s and a constant, in output error. Orders from 0 (a gain)
     to 6 are fitted to the spectra first, then by least squares on simulation with the
-    dataset's hold, without the first tenth of each record. The order is the lowest
+    dataset's hold, without the first tenth of each record. Where the folds ask for 5 or
+    more, modes are added one by one, up to order 12. The order is the lowest
     whose error on folds of the fit records is within half a percent of the best; then
     the numerator is shortened by the same rule. Deterministic.
 
@@ -106,6 +114,10 @@ def identified_linear(evidence: Evidence) -> Linear:
         best = min(best, found[-1].folds)
         if in_vain > IN_VAIN:
             break
+    likely = next(item for item in found if item.folds <= best / (1 - MATTERS))
+    if len(likely.ratio.a) >= MANY:
+        found += _further_modes(spectra, likely, whole, folds)
+        best = min(static_folds, *(item.folds for item in found))
     enough = best / (1 - MATTERS)
     chosen = next((item for item in found if item.folds <= enough), None)
     if static_folds <= enough or chosen is None:
@@ -113,7 +125,7 @@ def identified_linear(evidence: Evidence) -> Linear:
         fit, fold, what = static_fit, static_folds, "order 0 (a gain and an offset)"
     else:
         order = len(chosen.ratio.a)
-        for zeros in range(order - 1, -1, -1):
+        for zeros in range(order - 1, -1, -1) if order <= HIGHEST else ():
             shorter = dynamic(order, zeros)
             if shorter.folds > enough:
                 break
@@ -140,6 +152,37 @@ def identified_linear(evidence: Evidence) -> Linear:
         note += more
     model = Model("linear", evidence.input, evidence.output, chain)
     return Linear(model, note, fit, fold)
+
+
+def _further_modes(
+    spectra: Spectra,
+    last: _Found,
+    whole: tuple[Mask, ...],
+    folds: tuple[Fold, ...],
+) -> list[_Found]:
+    """Add one mode at a time where most is left, while it matters on the folds.
+
+    Of many poles at once a fit to the spectra finds no good start.
+    """
+    found: list[_Found] = []
+    while len(last.ratio.a) + 2 <= MOST_ORDERS:
+        begun = [
+            last.task.refined(ratio, whole, FOLD_ROUNDS)
+            for ratio in with_a_mode(
+                spectra,
+                last.ratio,
+                last.task.left(last.ratio),
+                BEGUN_DAMPING,
+                PEAKS,
+            )
+        ]
+        best = min(begun, key=lambda ratio: ratio.cost)
+        further = _judged(last.task, best, whole, folds)
+        if further.folds >= (1 - MATTERS) * last.folds:
+            break
+        found.append(further)
+        last = further
+    return found
 
 
 def _halves(
@@ -229,7 +272,6 @@ def _dynamic(
 ) -> _Found:
     """Fit one order to all records, and from there to each fold's."""
     everything = [record.counted for record in evidence.fit]
-    count = sum(int(mask.sum()) for mask in whole)
     first = fit_ratio(spectra, order, zeros)
     tasks = [
         OutputError(evidence.fit, evidence.hold, spectra.scale, start)
@@ -241,6 +283,14 @@ def _dynamic(
         for task, cost in zip(tasks, costs, strict=True)
         if cost <= CLEARLY * min(costs)
     )
+    return _judged(task, first, whole, folds)
+
+
+def _judged(
+    task: OutputError, first: Ratio, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
+) -> _Found:
+    """Fit a ratio to all records, and from there to each fold's."""
+    count = sum(int(mask.sum()) for mask in whole)
     ratio = task.refined(first, whole, ROUNDS)
     judged = sum(
         task.squares(task.refined(ratio, fold.train, FOLD_ROUNDS), fold.validation)

@@ -55,13 +55,14 @@ class OutputError:
             for record in self.records
         ]
 
+    def left(self, ratio: Ratio) -> list[FloatArray]:
+        """Give what a ratio leaves of each output."""
+        simulated = self.simulate(ratio)
+        return [r.y - y for r, y in zip(self.records, simulated, strict=True)]
+
     def squares(self, ratio: Ratio, masks: Sequence[Mask]) -> float:
         """Sum of squares of the error over the masked samples."""
-        simulated = self.simulate(ratio)
-        error = [
-            (record.y - y)[mask]
-            for record, y, mask in zip(self.records, simulated, masks, strict=True)
-        ]
+        error = [x[mask] for x, mask in zip(self.left(ratio), masks, strict=True)]
         return float(sum(part @ part for part in error))
 
     def refined(

@@ -13,7 +13,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, cast
@@ -25,7 +25,7 @@ from hystbench.blocks.held import Hold
 from hystbench.record import FloatArray
 
 #: Highest order that is fitted.
-MOST = 8
+MOST = 12
 #: Share of a channel's power that may lie beyond the last line that is used.
 BEYOND = 1e-5
 #: Fewest lines that are used.
@@ -35,6 +35,8 @@ ROUNDS = 12
 REFINED = 25
 #: Share of the cost that a round must win for another one to follow.
 LEAST_GAIN = 1e-5
+#: Half the width of a band, as a share of its frequency.
+BAND = 0.05
 #: A pole is kept off the imaginary axis by this share of its size.
 MARGIN = 1e-5
 
@@ -161,6 +163,59 @@ def fit_ratio(spectra: Spectra, order: int, zeros: int) -> Ratio:
         if small:
             break
     return best
+
+
+def with_a_mode(
+    spectra: Spectra,
+    ratio: Ratio,
+    left: Sequence[FloatArray],
+    damping_ratio: float,
+    count: int,
+) -> Iterator[Ratio]:
+    """Give a ratio a further pair of poles, at each of the peaks of what it leaves.
+
+    Numerator, constant and transients are solved for.
+
+    Parameters
+    ----------
+    spectra : Spectra
+    ratio : Ratio
+    left : sequence of ndarray, shape (n,) each
+        What it leaves of the output, by stretch.
+    damping_ratio : float
+        Of the further mode.
+    count : int
+        Peaks that are tried, the highest ones.
+    """
+    order = len(ratio.a) + 2
+    problem = _Problem(spectra, order, order)
+    for s in _peaks(spectra, left, count):
+        pair = [s**2, 2 * damping_ratio * s, 1.0]
+        a = np.polymul(np.append(ratio.a, 1.0)[::-1], pair[::-1])[:0:-1]
+        yield problem.solved(np.asarray(a))
+
+
+def _peaks(spectra: Spectra, left: Sequence[FloatArray], count: int) -> Iterator[float]:
+    """Give where most power is left in a band of a tenth, in units of the scale."""
+    s = np.concatenate([lines.s.imag for lines in spectra.lines])
+    power = np.concatenate(
+        [
+            np.abs(np.fft.rfft(rest)[: len(lines.s)]) ** 2 / len(rest)
+            for rest, lines in zip(left, spectra.lines, strict=True)
+        ]
+    )
+    s, power = s[s > 0], power[s > 0]
+    order = np.argsort(s)
+    s, power = s[order], power[order]
+    for _ in range(count):
+        total = np.concatenate([[0.0], np.cumsum(power)])
+        first, end = (np.searchsorted(s, s * k) for k in (1 - BAND, 1 + BAND))
+        best = int(np.argmax(total[end] - total[first]))
+        near = slice(first[best], end[best])
+        if not np.any(power[near]):
+            return
+        yield float(np.average(s[near], weights=power[near]))
+        power[near] = 0.0
 
 
 def stable(a: FloatArray, margin: float = MARGIN) -> FloatArray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
 from hystbench.gap.scene import Scene
 
 
@@ -23,3 +23,8 @@ class Backlash(Effect):
             end,
             grids={"half_width": logarithmic(3e-4 * largest, largest / 3, 4)},
         )
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer narrow and wide play behind the mechanism."""
+        for share in (0.01, 0.1):
+            yield self.curve("behind", half_width=share * moved.shown)

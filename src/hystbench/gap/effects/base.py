@@ -148,6 +148,10 @@ class Moved:
     anywhere : bool
         Whether where it is does not matter, as of a mass without a spring: a force
         that depends on the place has no meaning then.
+    stiffness : float
+        Of its linear spring; zero without one.
+    given, shown : float
+        The model's input, and its output.
     """
 
     reach: float
@@ -156,6 +160,9 @@ class Moved:
     step: float
     turns: bool = False
     anywhere: bool = False
+    stiffness: float = 0.0
+    given: float = 1.0
+    shown: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -170,12 +177,18 @@ class Law:
     free : tuple of str
         Parameters that are fitted.
     place : {"inside", "before", "behind"}
+    stands_for : float
+        Share of the linear spring that the force stands for: it goes out of the spring.
+    least : float
+        Of its numbers, where that is more than their blocks' own bound.
     """
 
     form: str
     block: Block
     free: tuple[str, ...]
     place: Literal["inside", "before", "behind"] = "inside"
+    stands_for: float = 0.0
+    least: float = -np.inf
 
 
 class Filled(NamedTuple):
@@ -318,7 +331,8 @@ class Effect(ABC):
     ) -> Law:
         """Give the effect's filter before or behind a mechanism.
 
-        It starts short against the records' rates: at two sampling intervals.
+        It starts short against the records' rates: at two sampling intervals. Less than
+        one is no effect but how input and output were sampled.
 
         Parameters
         ----------
@@ -330,7 +344,28 @@ class Effect(ABC):
             Other parameters.
         """
         block = registry()[self.name].from_mapping({name: 2 * moved.step, **given})
-        return Law("", block, (name,), place)
+        return Law("", block, (name,), place, least=moved.step)
+
+    def curve(
+        self,
+        place: Literal["before", "behind"],
+        form: str = "",
+        also: Mapping[str, float] | None = None,
+        **start: float,
+    ) -> Law:
+        """Give the effect's curve or play before or behind a mechanism.
+
+        Parameters
+        ----------
+        place : {"before", "behind"}
+        form : str
+        also : mapping of str to float, optional
+            Numbers that are not fitted.
+        **start : float
+            Those that are, where their fit starts.
+        """
+        block = registry()[self.name].from_mapping({**(also or {}), **start})
+        return Law(form, block, tuple(start), place)
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 from hystbench.gap.effects.base import (
     Effect,
+    Law,
+    Moved,
     Variant,
     logarithmic,
     places_in_drive,
@@ -26,3 +28,8 @@ class DeadZone(Effect):
             largest = scene.largest(place)
             widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
             yield self.inserted(scene, place, grids={"half_width": widths})
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer narrow and wide ones before the mechanism."""
+        for share in (0.02, 0.15):
+            yield self.curve("before", half_width=share * moved.given)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant, places_in_drive
+from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_drive
 from hystbench.gap.scene import Scene
 
 
@@ -22,3 +22,8 @@ class DriveSaturation(Effect):
         for place in places_in_drive(scene):
             limits = scene.largest(place) * share
             yield self.inserted(scene, place, grids={"limit": limits})
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer limits before the mechanism, met seldom and often."""
+        for share in (0.9, 0.6):
+            yield self.curve("before", limit=share * moved.given)

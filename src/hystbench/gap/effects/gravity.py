@@ -14,7 +14,14 @@ class Gravity(ForceEffect):
     name = "gravity"
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer it of either sign, where the coordinate is an angle."""
-        for sign in (1.0, -1.0) if moved.turns and not moved.anywhere else ():
-            block = GravityBlock(amplitude=sign * 0.1 * moved.force)
-            yield Law("", block, ("amplitude", "angle"))
+        """Offer a weight that makes half of the spring, and one that works against it.
+
+        The coordinate is an angle. It is counted from the vertical, or from any angle.
+        """
+        for share in (0.5, -0.5) if moved.turns and not moved.anywhere else ():
+            block = GravityBlock(amplitude=share * moved.stiffness)
+            for form, free in (
+                ("", ("amplitude",)),
+                ("tilted", ("amplitude", "angle")),
+            ):
+                yield Law(form, block, free, stands_for=share)

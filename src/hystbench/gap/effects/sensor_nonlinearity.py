@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from hystbench.gap.effects.base import Effect, Variant, places_in_sensor
+from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_sensor
 from hystbench.gap.scene import Scene
 
 
@@ -30,6 +30,12 @@ class SensorNonlinearity(Effect):
                     free=used,
                 )
                 yield replace(found, charge=CHARGE)
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer it behind the mechanism with both terms, the cube of either sign."""
+        for sign in (1.0, -1.0):
+            quadratic, cubic = 0.03 / moved.shown, sign * 0.03 / moved.shown**2
+            yield self.curve("behind", "both", quadratic=quadratic, cubic=cubic)
 
 
 CHARGE = 2.0

@@ -37,6 +37,8 @@ RATIOS = (0.01, 0.05, 0.2, 0.7, 2.0)
 BEGUN = 3
 """Starts that are fitted, the best ones of the grid."""
 MOTIONS = ("position", "velocity", "acceleration")
+STORES = {1: "a store stands", 2: "two stores in series stand"}
+"""How many are tried, and how that is told."""
 TRIED = 2
 """Modes of a base in which forces are tried, those that need it most."""
 
@@ -76,9 +78,12 @@ def hosts(
     score : Score
     """
     if identified and quantities.causality in ("storage", "unknown"):
-        best = best_host(list(stores(start.records, start.hold)), score)
-        if best is not None:
-            yield Host(best.state, best, "stores in series stand in place of the base")
+        noise = float(np.sqrt(score.floor))
+        for count, words in STORES.items():
+            begun = stores(start.records, start.hold, noise, count)
+            best = best_host(list(begun), score)
+            if best is not None:
+                yield Host(best.state, best, f"{words} in place of the base")
     if identified:
         begun = one_coordinate(start.records, quantities, start.hold)
         best = best_host(list(begun), score)

@@ -4,18 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
 from hystbench.gap.held_back import gain_held_back
 from hystbench.gap.inside.hosts import hosts
-from hystbench.gap.inside.search import Hypothesis, laws_for, singles, together
+from hystbench.gap.inside.search import (
+    Hypothesis,
+    laws_for,
+    may_gain,
+    singles,
+    together,
+)
 from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, Round
 from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import State
-from hystbench.gap.thresholds import FURTHER, PAYS, TIE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, MATTERS, PAYS, TIE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -69,16 +77,23 @@ def named_inside(
     nothing = np.zeros((len(start.sample), 0))
     score = Score(start.sample, nothing, floor_rms**2)
     turns = start.records[0].output.unit.startswith("rad")
+    offer = partial(laws_for, turns=turns, offered=start.offered)
     tried = []
     for host in hosts(start, quantities, identified, score):
-        laws = laws_for(host.fitted, turns, start.offered)
-        tried.append((host, laws, singles(host.fitted, laws, score, say)))
+        found = singles(host.fitted, offer, score, say)
+        tried.append((host, found))
+        if not may_gain(chosen(found, score.floor), score):
+            break  # no other host could do better
     if not tried:
         return None
+
     # Together forces are tried in the host that does best with one.
-    host, laws, found = min(tried, key=lambda item: charged(chosen(item[2])))
-    found = together(found, laws, score, say)
-    best = chosen(found)
+    def least(found: Sequence[Hypothesis]) -> float:
+        return charged(chosen(found, score.floor), found, score.floor)
+
+    host, found = min(tried, key=lambda item: least(item[1]))
+    found = together(found, offer, score, say)
+    best = chosen(found, score.floor)
     fitted = found[0].fitted.state
     if not best.effects:
         say("inside: no force pays")
@@ -115,23 +130,50 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
     return gain >= PAYS
 
 
-def charged(item: Hypothesis) -> float:
-    """Give the score: a first effect has to pay, and each further one more."""
-    count = len(item.effects)
-    return item.score + (PAYS + FURTHER * (count - 1) if count else 0.0)
+def charged(item: Hypothesis, found: Sequence[Hypothesis], floor: float) -> float:
+    """Give the score with what effects have to pay: the first, and each further one.
+
+    A further one must take a share of the gap that matters, or be beyond doubt: what is
+    left after the right force is also what its law, or the simulation, misses.
+    """
+    gap, value = max(found[0].fitted.state.power(floor), floor), item.score
+    for before, after in pairwise((found[0], *way_to(item, found))):
+        share = after.fitted.state.share(before.fitted.state, floor, gap)
+        if not before.effects:
+            value += PAYS
+        else:
+            value += FURTHER if share > MATTERS else CERTAIN
+    return value
 
 
-def chosen(found: Sequence[Hypothesis]) -> Hypothesis:
+def way_to(item: Hypothesis, found: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Give hypotheses of one effect more each, up to one with all of them.
+
+    The effect that is missed least comes last, and so on.
+    """
+    way = [item] if item.effects else []
+    while way and len(way[0].effects) > 1:
+        fewer = [
+            other
+            for other in found
+            if {*other.effects} < {*way[0].effects}
+            and len(other.effects) == len(way[0].effects) - 1
+        ]
+        way.insert(0, min(fewer, key=lambda other: other.score))
+    return way
+
+
+def chosen(found: Sequence[Hypothesis], floor: float) -> Hypothesis:
     """Take the least score with what effects have to pay; of a tie the fewest numbers.
 
     Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
     """
-    best = min(found, key=charged)
+    values = [charged(item, found, floor) for item in found]
+    best = found[int(np.argmin(values))]
     tied = [
         item
-        for item in found
-        if charged(item) < charged(best) + TIE
-        and len(item.effects) == len(best.effects)
+        for item, value in zip(found, values, strict=True)
+        if value < min(values) + TIE and len(item.effects) == len(best.effects)
     ]
     return min(tied, key=lambda item: (item.fitted.state.freedom, item.score))
 
@@ -139,20 +181,11 @@ def chosen(found: Sequence[Hypothesis]) -> Hypothesis:
 def _rounds(start: State, best: Hypothesis, found: Sequence[Hypothesis]) -> list[Round]:
     """Write how the effects were found as rounds: each beside those before it.
 
-    The one that is missed least comes last, and so on.
+    They come in the order of :func:`way_to`.
     """
-    way = [best]
-    while len(way[0].effects) > 1:
-        fewer = [
-            item
-            for item in found
-            if {*item.effects} < {*way[0].effects}
-            and len(item.effects) == len(way[0].effects) - 1
-        ]
-        way.insert(0, min(fewer, key=lambda item: item.score))
     rounds: list[Round] = []
     before, now, already = start, found[0].score, frozenset[str]()
-    for taken in way if best.effects else ():
+    for taken in way_to(best, found):
         candidates = [
             _candidate(item, already, now)
             for item in found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -54,6 +54,8 @@ class Hypothesis:
 
 Laws = Mapping[str, Sequence[Law | Changed]]
 """What may be put into a host, by effect."""
+Offer = Callable[[Fitted], Laws]
+"""Gives what may be put into a fitted host."""
 
 
 def laws_for(
@@ -64,7 +66,7 @@ def laws_for(
     Parameters
     ----------
     host : Fitted
-        Linear, without a force.
+        With or without effects inside already.
     turns : bool
         Whether its coordinate is an angle.
     offered : iterable of str, optional
@@ -81,29 +83,56 @@ def laws_for(
 
 
 def singles(
-    host: Fitted, laws: Laws, score: Score, say: Say = silent
+    host: Fitted, offer: Offer, score: Score, say: Say = silent
 ) -> list[Hypothesis]:
     """Try each force alone: the host without one first, then the least score."""
     alone = Hypothesis((), (), host)
-    return [alone, *_one_more([alone], laws, score, SINGLES, host.score, say)]
+    return [alone, *_one_more([alone], offer, score, SINGLES, host.score, say)]
 
 
 def together(
-    found: Sequence[Hypothesis], laws: Laws, score: Score, say: Say = silent
+    found: Sequence[Hypothesis], offer: Offer, score: Score, say: Say = silent
 ) -> list[Hypothesis]:
-    """Go on from singles to pairs and threes."""
-    every, alone = list(found), found[0].score
-    carried = [item for item in found[1:] if item.score < alone]
+    """Go on from singles to pairs and threes.
+
+    Returns
+    -------
+    list of Hypothesis
+        The host alone first; of each set of effects the best laws.
+    """
+    every, alone, carried = list(found), found[0].score, list(found[1:])
     for keep in (PAIRS, 1):
-        further = _one_more(carried, laws, score, keep, alone, say)
-        every += further
-        carried = [item for item in further if item.score < alone]
-    return every
+        if not may_gain(min(every, key=lambda item: item.score), score):
+            break
+        if not of_stores(found[0]):
+            carried = [item for item in carried if item.score < alone]
+        carried = _one_more(carried, offer, score, keep, alone, say)
+        every += carried
+    return best_of_each(every)
+
+
+def of_stores(item: Hypothesis) -> bool:
+    """Tell whether a hypothesis is of stores: all their laws are tried with each other.
+
+    They are few, and the root of the level, which may be worse than a linear outflow
+    alone, may be better than any other law with an overflow.
+    """
+    return any(isinstance(block, Store) for block in item.fitted.state.chain)
+
+
+def best_of_each(found: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Keep of each set of effects the hypothesis that scores least, in their order."""
+    best: dict[frozenset[str], Hypothesis] = {}
+    for item in found:
+        effects = frozenset(item.effects)
+        if effects not in best or item.score < best[effects].score:
+            best[effects] = item
+    return list(best.values())
 
 
 def _one_more(
     carried: Sequence[Hypothesis],
-    laws: Laws,
+    offer: Offer,
     score: Score,
     keep: int,
     alone: float,
@@ -114,11 +143,14 @@ def _one_more(
         further
         for before in carried
         if may_gain(before, score)
-        for name, own in laws.items()
+        for name, own in offer(before.fitted).items()
         if name not in before.effects
         for further in starts(before, name, own, score)
     ]
-    best_first = fitted_likely(begun, score, keep)
+    if any(of_stores(item) for item in carried):
+        best_first = fitted_each(begun, score)
+    else:
+        best_first = fitted_likely(begun, score, keep)
     for item in best_first[:3]:
         say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
     return best_first
@@ -199,14 +231,34 @@ def fitted_likely(
     )
 
 
+def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
+    """Fit all laws of all effects to the end, each from its likeliest start."""
+    likely: dict[tuple[str, ...], Hypothesis] = {}
+    for item in sorted(begun, key=lambda item: item.score):
+        law = tuple(sorted(map(" ".join, zip(item.effects, item.forms, strict=True))))
+        likely.setdefault(law, item)
+    done = [
+        replace(item, fitted=fitted(item.fitted.state, score))
+        for item in likely.values()
+    ]
+    return sorted(
+        (item for item in done if np.isfinite(item.score)), key=lambda item: item.score
+    )
+
+
 def with_law(state: State, effect: str, law: Law) -> State:
     """Put a law into a chain, with its numbers free.
 
-    A force goes behind the host, a filter before all or behind all.
+    A force goes behind the host, a filter before all or behind all. What a force stands
+    for goes out of the host's spring.
     """
     host = next(k for k, block in enumerate(state.chain) if is_host(block))
     place = {"before": 0, "inside": host + 1, "behind": len(state.chain)}[law.place]
-    chain = (*state.chain[:place], law.block, *state.chain[place:])
+    base: list[Any] = list(state.chain)
+    if law.stands_for:
+        spring = (1.0 - law.stands_for) * base[host].stiffness
+        base[host] = replace(base[host], stiffness=spring)
+    chain = (*base[:place], law.block, *base[place:])
 
     def moved(block: int) -> int:
         return block + 1 if block >= place else block
@@ -218,7 +270,7 @@ def with_law(state: State, effect: str, law: Law) -> State:
         chain=chain,
         free=(
             *(free._replace(block=moved(free.block)) for free in state.free),
-            *(Free(place, name) for name in law.free),
+            *(Free(place, name, low=law.least) for name in law.free),
         ),
         added=(
             *(
@@ -248,7 +300,16 @@ def how_it_moves(state: State, turns: bool) -> Moved:
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
     step = min(record.dt for record in state.records)
+    given = [record.u for record in state.records]
+    shown = state.scene.output
     anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
     return Moved(
-        max(reach, tiny), max(speed, tiny), max(force, tiny), step, turns, anywhere
+        max(reach, tiny),
+        max(speed, tiny),
+        max(force, tiny),
+        step,
+        turns,
+        anywhere,
+        host.stiffness,
+        *(max(float(np.max(np.abs(x))) for x in signals) for signals in (given, shown)),
     )

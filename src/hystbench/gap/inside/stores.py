@@ -18,22 +18,29 @@ from hystbench.record import Record
 
 RATES = 6
 """Rates of outflow at which stores are begun, from slow to fast."""
+FARTHEST = 5.0
+"""Noise in times of its rms, at most: of a million samples one is farther off."""
 BEGUN = 3
 """Starts that are fitted, the best ones of the grid."""
 
 
-def stores(records: tuple[Record, ...], hold: Hold) -> Iterator[State]:
-    """Give one store and two in series, with all their numbers free, begun.
+def stores(
+    records: tuple[Record, ...], hold: Hold, noise_rms: float, count: int
+) -> Iterator[State]:
+    """Give stores in series, with all their numbers free, begun.
 
-    At each pair of rates the gain and a constant inflow are solved for. Nothing is
-    given where the output is negative somewhere: no level is.
+    At each set of rates the gain and a constant inflow are solved for. Nothing is
+    given where the output is negative somewhere beyond what noise does: no level is.
 
     Parameters
     ----------
     records : tuple of Record
     hold : {"zero-order", "linear", "band-limited"}
+    noise_rms : float
+    count : {1, 2}
+        How many.
     """
-    if min(float(record.y.min()) for record in records) < 0:
+    if min(float(record.y.min()) for record in records) < -FARTHEST * noise_rms:
         return
     sample = Sample.of(records)
     wanted = sample.take([record.y for record in records])
@@ -41,10 +48,7 @@ def stores(records: tuple[Record, ...], hold: Hold) -> Iterator[State]:
     fastest = 0.3 / min(record.dt for record in records)
     grid = np.geomspace(3 / span, fastest, RATES).tolist()
     found: list[tuple[float, tuple[Store, ...]]] = []
-    for rates in (
-        *((rate,) for rate in grid),
-        *itertools.combinations_with_replacement(grid, 2),
-    ):
+    for rates in itertools.combinations_with_replacement(grid, count):
         down = np.poly([-rate for rate in rates])
         unit = TransferFunction(
             numerator=(float(down[-1]),),
@@ -75,9 +79,10 @@ def _chain(
     """Write stores in series; all but the last have a gain of one."""
     start = max(inflow, 0.0)
     if len(rates) == 1:
-        return (
-            Store(gain=gain * rates[0], rate=rates[0], bias=gain * bias, hold=hold),
-        )
+        (rate,) = rates
+        bias *= gain * rate
+        store = Store(gain=gain * rate, rate=rate, exponent=1.0, bias=bias, hold=hold)
+        return (store,)
     upper = Store(
         gain=1.0,
         rate=rates[0],
