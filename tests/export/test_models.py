@@ -402,8 +402,8 @@ def test_a_simulator_of_ones_own_is_one_line(tmp_path):
     assert done.returncode == 2
     assert done.stderr == (
         f"hystbench: {file}: chain: block 1: external: a simulator of somebody's own "
-        "cannot be turned into code; expected a model file without it: run it beside "
-        "the code of the blocks before it, or behind it\n"
+        "cannot be turned into code; expected --part before or --part behind: it runs "
+        "between the two\n"
     )
     assert not (tmp_path / "c").exists()
 

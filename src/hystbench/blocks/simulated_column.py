@@ -41,8 +41,8 @@ class SimulatedColumn(Block):
     reruns: ClassVar = False
     seen: ClassVar = False
     no_step: ClassVar = (
-        "stored output cannot be turned into code; expected a model file without it: "
-        "the blocks behind it take the simulator's output"
+        "stored output cannot be turned into code; expected --part behind: what "
+        "stands there takes the simulator's output"
     )
 
     column: str = text("the name of a column of simulated output")

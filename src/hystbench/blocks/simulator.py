@@ -33,8 +33,8 @@ class Simulator(Block):
     reference: ClassVar[str] = "by definition"
     seen: ClassVar[bool] = False
     no_step: ClassVar[str] = (
-        "a simulator of somebody's own cannot be turned into code; expected a model "
-        "file without it: run it beside the code of the blocks before it, or behind it"
+        "a simulator of somebody's own cannot be turned into code; expected --part "
+        "before or --part behind: it runs between the two"
     )
 
     @property

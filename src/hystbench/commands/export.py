@@ -14,6 +14,7 @@ from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
 from hystbench.export.described import Described, describe
 from hystbench.export.inverse import describe_inverse
+from hystbench.export.parts import PARTS, Part, check_alone, part_of
 from hystbench.export.past import begun, begun_inverse
 from hystbench.files import whole_folder
 from hystbench.model import Model, load_model
@@ -65,6 +66,12 @@ from hystbench.record import FloatArray, column_name
     help="How the input moves between samples where MODEL does not say.",
 )
 @click.option(
+    "--part",
+    type=click.Choice(PARTS),
+    help="What stands before, or behind, a simulator of your own in MODEL: that runs "
+    "between the two.",
+)
+@click.option(
     "--inverse",
     is_flag=True,
     help="Write code that turns a wanted output into the input; give both limits.",
@@ -82,6 +89,7 @@ def export(
     past: Path | None,
     compare: Path | None,
     hold: Hold | None,
+    part: Part | None,
     inverse: bool,
     limit_low: float | None,
     limit_high: float | None,
@@ -95,6 +103,8 @@ def export(
     system = load_model(model)
     if hold is not None:
         system = system.with_hold(hold)
+    if part is not None:
+        system = part_of(system, part)
     limits = (limit_low, limit_high)
     if not inverse and limits != (None, None):
         raise InputError("--limit-low and --limit-high: expected them with --inverse")
@@ -115,6 +125,8 @@ def export(
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None
+    if part == "behind":
+        check_alone(described)
     if past is not None:
         start = begun_inverse if inverse else begun
         described = start(described, system, _record(system, past, dt))
