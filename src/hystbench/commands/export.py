@@ -16,7 +16,7 @@ from hystbench.export.described import Described, describe
 from hystbench.export.inverse import describe_inverse
 from hystbench.export.parts import PARTS, Part, check_alone, part_of
 from hystbench.export.past import begun, begun_inverse
-from hystbench.files import whole_folder
+from hystbench.files import atomic_path, whole_folder, write_text
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
 
@@ -141,12 +141,13 @@ def export(
     }[to]
     with whole_folder(out, names) as fresh:
         if to == "c":
-            (fresh / names[0]).write_text(c.header(described), encoding="utf-8")
-            (fresh / names[1]).write_text(c.source(described), encoding="utf-8")
+            write_text(fresh / names[0], c.header(described))
+            write_text(fresh / names[1], c.source(described))
         elif to == "python":
-            (fresh / names[0]).write_text(python.module(described), encoding="utf-8")
+            write_text(fresh / names[0], python.module(described))
         else:
-            fmu.write_fmu(described, fresh / names[0])
+            with atomic_path(fresh / names[0]) as unit:
+                fmu.write_fmu(described, unit)
     made = ", ".join(f"{out / file}" for file in names)
     click.echo(f"{made}: {described.about}")
     for line in told:
