@@ -46,7 +46,8 @@ def test_a_part_says_what_enters_and_what_leaves():
         ((LIMIT, LAG), "behind", "--part: 0 simulators"),
         ((OWN, OWN, LAG), "behind", "--part: 2 simulators"),
         ((OWN, LAG), "before", "--part before: no block stands before external"),
-        ((LIMIT, OWN), "behind", "--part behind: no block stands behind external"),
+        ((LIMIT, OWN), "behind", "--part behind: .* external; expected --part before$"),
+        ((OWN,), "behind", "--part behind: .*; expected another model"),
     ],
 )
 def test_a_part_that_is_none_is_refused(blocks, part, said):

@@ -35,7 +35,11 @@ def part_of(model: Model, part: Part) -> Model:
     before = part == "before"
     chain = model.chain[:place] if before else model.chain[place + 1 :]
     if not chain:
-        raise InputError(f"--part {part}: no block stands {part} {own}")
+        other = f"--part {'behind' if before else 'before'}"
+        expected = other if len(model.chain) > 1 else "another model: that is all of it"
+        raise InputError(
+            f"--part {part}: no block stands {part} {own}; expected {expected}"
+        )
     if before:
         sides = model.input, Channel(f"input of {own}", model.input.unit)
     else:
