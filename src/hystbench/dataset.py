@@ -379,8 +379,8 @@ def read_input(file: Path, column: str) -> tuple[float, FloatArray]:
     table = read_table(file, ["time_s", column])
     columns = [table.column(name) for name in ("time_s", column)]
     rows = rows_of(file, table, {}, columns)
-    time, u = (whole(table, each, rows, None) for each in columns)
-    return sampling_interval(table, time, UNIFORM_TOLERANCE, 0), u
+    time, u = (whole(table, each, rows, None, False) for each in columns)
+    return sampling_interval(table, time, UNIFORM_TOLERANCE, 0, False), u
 
 
 def _file_of(about: Path, entry: Mapping[str, Any]) -> Path:

@@ -75,8 +75,16 @@ def rows_of(
     return slice(first - 1, last)
 
 
-def whole(table: Table, column: Column, rows: slice, missing: str | None) -> FloatArray:
+def whole(
+    table: Table,
+    column: Column,
+    rows: slice,
+    missing: str | None,
+    described: bool = True,
+) -> FloatArray:
     """Give the samples of a column, all finite.
+
+    Of a record that no dataset.yaml describes, none is named to the user.
 
     Raises
     ------
@@ -91,11 +99,11 @@ def whole(table: Table, column: Column, rows: slice, missing: str | None) -> Flo
     ends = {0, len(values) - 1} & set(lost.tolist())
     if missing is None or ends or not np.isnan(values[lost]).all():
         at = int(min(ends) if missing is not None and ends else lost[0])
-        hint = (
-            "; at an end nothing can be interpolated: give 'rows' without it"
-            if missing is not None and ends
-            else " (for lone ones say 'missing: interpolate' of this record)"
-        )
+        hint = ""
+        if missing is not None and ends:
+            hint = "; at an end nothing can be interpolated: give 'rows' without it"
+        elif described:
+            hint = " (for lone ones say 'missing: interpolate' of this record)"
         raise InputError(
             f"{table.path}: {table.place(rows.start + at)}: column {column.name!r} is "
             f"{_shown(values[at])}; expected a finite number{hint}"
@@ -144,9 +152,16 @@ def check_period(place: str, period: int, u: FloatArray) -> None:
 
 
 def sampling_interval(
-    table: Table, time: FloatArray, tolerance: float, first: int
+    table: Table,
+    time: FloatArray,
+    tolerance: float,
+    first: int,
+    described: bool = True,
 ) -> float:
-    """Mean step of a time column that increases uniformly within a tolerance."""
+    """Mean step of a time column that increases uniformly within a tolerance.
+
+    Of a record that no dataset.yaml describes, none is named to the user.
+    """
     steps = np.diff(time)
     backward = np.flatnonzero(steps <= 0)
     if len(backward):
@@ -161,9 +176,10 @@ def sampling_interval(
     step_error = np.abs(steps - dt)
     row = int(np.argmax(step_error))
     if step_error[row] > tolerance * dt or away.max() > max(tolerance, 0.5) * dt:
+        hint = " (time: tolerance)" if described else ""
         raise InputError(
             f"{table.path}: {table.place(first + row + 1)}: a step of {steps[row]:g} s "
             f"where the mean is {dt:g} s; expected uniform sampling within "
-            f"{tolerance:.3g} of a step (time: tolerance)"
+            f"{tolerance:.3g} of a step{hint}"
         )
     return dt

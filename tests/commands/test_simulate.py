@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import subprocess
 import sys
 
@@ -173,6 +174,9 @@ def test_an_input_of_ones_own_needs_no_dataset(tmp_path, model):
         (OWN_INPUT.replace("current_A", "current_mA"), "no column 'current_A'"),
         (OWN_INPUT.replace("time_s", "time"), "no column 'time_s'"),
         (OWN_INPUT.replace("0.1,", "0.17,", 1), "increase"),
+        # No dataset.yaml describes it: none of its keys is of any use.
+        (OWN_INPUT.replace("0.05,", "0.054,", 1), "within 0.01 of a step\n"),
+        (re.sub(r"\n0.05,.*", "\n0.05,NaN", OWN_INPUT), "expected a finite number\n"),
         ("", "no column"),
     ],
 )

@@ -10,6 +10,7 @@ from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
 from hystbench.export import python
 from hystbench.export.described import describe
+from tests.blocks.examples import EXAMPLES
 
 from .compiled import Compiled
 from .test_steps import CHAINS, DT, INPUT, ROUND, TIME, chain_of, model_of
@@ -122,13 +123,63 @@ def test_python_is_the_c(gaining, tmp_path):
 @pytest.mark.parametrize(
     ("sampling", "said"),
     [
-        (Sampling(DT, points=4, delay=3), "--delay: 3; expected 0 to 2"),
-        (Sampling(DT, delay=-1), "--delay: -1; expected 0 to 4"),
+        (Sampling(DT, delay=16), "--delay: 16; expected at most 15$"),
+        (Sampling(DT, delay=-1), "--delay: -1; expected 0 or more samples"),
     ],
 )
 def test_a_delay_that_no_curve_can_use_is_refused(sampling, said):
     with pytest.raises(InputError, match=said):
         describe(model_of("any", chain_of(SMOOTH)), sampling)
+
+
+def test_a_rate_gets_the_first_sample_of_a_delay():
+    """A curve is a little nearer with it, a rate exact: it makes noise no larger."""
+    model = model_of("felt", chain_of(SMOOTH, ("impedance", EXAMPLES["impedance"])))
+    lag, force = late(model, 1).pieces
+    assert (lag.step.constants["ahead"], force.step.constants["ahead"]) == (0, 1)
+
+
+def test_a_force_of_a_motion_is_exact_once_the_next_sample_is_known(tmp_path):
+    """Of a measured motion, with noise: foretold it is wrong by much, and says so."""
+    noisy = INPUT + 1e-3 * np.random.default_rng(2).standard_normal(len(INPUT))
+    model = model_of("felt", chain_of(("impedance", EXAMPLES["impedance"])))
+    wanted = model.simulate(noisy, DT)
+    for delay in (1, 2):
+        y = Compiled([late(model, delay)], tmp_path).outputs(noisy)["felt"][delay:]
+        # At its first sample the simulation takes the curvature of the next one.
+        apart = np.abs(y - wanted[:-delay])[2 - delay :]
+        assert apart.max() <= 1e-9 * np.ptp(wanted)
+    (told,) = describe(model, Sampling(DT)).differences
+    assert "noise is 22 times as large as with --delay 1" in told
+
+
+def test_modes_stay_in_step_with_the_mechanism_beside_them(tmp_path):
+    """One of them takes straight lines: it gains nothing, and waits for the other."""
+    model = model_of(
+        "both",
+        chain_of(
+            ("mechanism", EXAMPLES["mechanism"] | {"hold": "linear"}),
+            ("friction-force", EXAMPLES["friction-force"]),
+            ("other-modes", EXAMPLES["other-modes"] | {"hold": "band-limited"}),
+        ),
+    )
+    wanted = model.simulate(INPUT, DT)[:-6]
+    y = Compiled([late(model, 6)], tmp_path).outputs(INPUT)["both"][6:]
+    assert np.abs(y - wanted).max() <= 1e-9 * np.ptp(wanted)
+
+
+@pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
+def test_a_long_delay_is_the_simulation_to_a_fifth_of_the_sampling_rate(
+    share, tmp_path
+):
+    """Up to the record's end, where the simulation turns about its last sample."""
+    u = np.sin(2 * np.pi * share * np.arange(1000))
+    lags = ("drive-lag", "sensor-lag")
+    values = {"time_constant_s": 1e-3, "hold": "band-limited"}
+    model = model_of("lags", chain_of(*((name, values) for name in lags)))
+    wanted = model.simulate(u, DT)[:-30]
+    off = Compiled([late(model, 30)], tmp_path).outputs(u)["lags"][30:] - wanted
+    assert np.abs(off)[50:-50].max() <= 1e-6  # of the input's amplitude
 
 
 def test_a_delay_that_gains_nothing_is_refused():

@@ -402,9 +402,23 @@ def test_a_simulator_of_ones_own_is_one_line(tmp_path):
     assert done.returncode == 2
     assert done.stderr == (
         f"hystbench: {file}: chain: block 1: external: a simulator of somebody's own "
-        "cannot be turned into code\n"
+        "cannot be turned into code; expected --part before or --part behind: it runs "
+        "between the two\n"
     )
     assert not (tmp_path / "c").exists()
+
+
+@pytest.mark.parametrize("to", ["c", "python", "fmu"])
+def test_code_is_written_again_until_somebody_changes_it(to, augmented, tmp_path):
+    exported(tmp_path, augmented, to)
+    exported(tmp_path, augmented, to, "--points", 3)
+    (written, *_) = sorted((tmp_path / to).glob("gpi*"))
+    written.write_bytes(written.read_bytes() + b" ")
+    done = run_hystbench(
+        "export", augmented, "--to", to, "--dt", DT, "--out", tmp_path / to
+    )
+    assert done.returncode == 2
+    assert "changed since hystbench wrote it" in done.stderr
 
 
 def test_what_a_user_wrote_stays(augmented, tmp_path):

@@ -64,6 +64,34 @@ def test_code_starts_as_the_simulation_of_the_record(name, tmp_path):
     assert np.abs(without - wanted).max() > 1e-4 * np.ptp(wanted)
 
 
+SMOOTH = {"hold": "band-limited"}
+LATE = {
+    "plays that a field drives": (
+        GPI,
+        ("rate-dependent-hysteresis", RATE | SMOOTH | {"form": "acting-field"}),
+    ),
+    "a motion": (moving("transfer-function", **SMOOTH),),
+    "modes that move": (
+        moving("mechanism", **SMOOTH),
+        ("friction-force", EXAMPLES["friction-force"]),
+        moving("other-modes", **SMOOTH),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LATE)
+@pytest.mark.parametrize("delay", [1, 5, 15])
+def test_late_code_starts_as_the_simulation_of_the_record_too(name, delay, tmp_path):
+    model = model_of("begun", chain_of(*LATE[name]))
+    code = begun(describe(model, Sampling(DT, delay=delay)), model, RECORD)
+    y = Compiled([code], tmp_path).outputs(RECORD)["begun"]
+    wanted = model.simulate(RECORD, DT)[:-delay]
+    np.testing.assert_array_equal(y[:delay], 0.0)
+    # It is smooth up to where it was rolled.
+    off = np.abs(y[delay:] - wanted)[:800]
+    assert off.max() <= 1e-5 * np.ptp(wanted)
+
+
 def test_an_inverse_begins_with_the_plays_that_the_record_leaves(tmp_path):
     model = model_of("begun", chain_of(GPI))
     limits = (2 * RECORD.min(), 2 * RECORD.max())
@@ -89,12 +117,6 @@ def test_a_record_is_refused_where_it_says_nothing():
     model = model_of("at rest", chain_of(("gpi", EXAMPLES["gpi"])))
     with pytest.raises(InputError, match=r"^--past: expected none, as no block"):
         begun(describe(model, Sampling(DT)), model, RECORD)
-    late = chain_of(
-        GPI, ("drive-lag", {"time_constant_s": 1e-3, "hold": "band-limited"})
-    )
-    model = model_of("late", late)
-    with pytest.raises(InputError, match=r"^--past: expected none beside --delay"):
-        begun(describe(model, Sampling(DT, delay=1)), model, RECORD)
 
 
 def test_the_command_takes_a_record_of_the_same_interval(tmp_path):

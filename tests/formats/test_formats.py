@@ -203,6 +203,7 @@ def test_an_empty_cell_is_no_number_and_a_word_is_an_error(tmp_path):
     [
         ("a.mat", b"MATLAB 5.0 MAT-file" + bytes(200)),
         ("a.mat", b"no matlab at all"),
+        pytest.param("a.mat", b"MATLAB 7.3 MAT-file" + bytes(99), marks=needs_h5py),
         pytest.param("a.mat", bytes(512) + b"\x89HDF\r\n\x1a\n1", marks=needs_h5py),
         pytest.param("a.h5", b"\x89HDF\r\n\x1a\n" + bytes(50), marks=needs_h5py),
         pytest.param("a.parquet", b"PAR1" + bytes(50), marks=needs_parquet),

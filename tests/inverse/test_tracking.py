@@ -1,11 +1,13 @@
 """Tracking on the twin with inputs from several models."""
 
 import csv
+import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from hystbench.inverse.told import table, verdict
+from hystbench.inverse.told import left, table, verdict
 from hystbench.inverse.tracking import (
     CODE,
     DRIVES,
@@ -24,7 +26,9 @@ from hystbench.inverse.tracking import (
 )
 from hystbench.model import load_model
 from hystbench.signals import Signal, highest_hz
+from tests.blocks.examples import EXAMPLES
 from tests.conftest import ROOT, run_hystbench
+from tests.export.test_steps import chain_of, model_of
 
 DT = 1e-4
 TIME = np.arange(2000) * DT
@@ -98,17 +102,32 @@ def made_up(name, hz, errors):
 
 def test_the_verdict_tells_what_misses_the_goal_and_what_gets_worse():
     rows = [
-        *made_up("slow", 10, (0.08, 0.01, 0.015, 0.016, 0.001)),
-        *made_up("fast", 60, (0.2, 0.1, 0.03, 0.03, 0.001)),
-        *made_up("beyond", 200, (0.3, 0.3, 0.3, 0.3, 0.001)),
+        *made_up("slow", 10, (0.08, 0.01, 0.05, 0.015, 0.016, 0.001)),
+        *made_up("fast", 60, (0.2, 0.1, 0.07, 0.03, 0.03, 0.001)),
+        *made_up("beyond", 200, (0.3, 0.3, 0.3, 0.3, 0.3, 0.001)),
     ]
     told = verdict(rows)
     assert "8.00 to 20.00 with a linear gain" in told
+    assert "5.00 to 7.00 with that of the rate-dependent Prandtl-Ishlinskii" in told
     assert "1.50 to 3.00 with the gap's effects" in told
     assert "met on 1 of 2 references, and missed on fast (3.00 %)" in told
     assert "worse on slow (1.50 instead of 1.00 %)" in told
     assert "beyond" not in told
     assert "| beyond | 2.0 | 30.00 (30.0) |" in table(rows, "um")
+
+
+def test_what_an_inverse_leaves_on_its_own_model_is_told_apart():
+    """Of a gain of two, half the reference is the input: nothing is left to 100 Hz."""
+    doubles = model_of("doubles", chain_of(("gain", {"value": 2.0})))
+    slow, beyond = (made_up(*given, [0.0] * len(DRIVES)) for given in (
+        ("slow", 10), ("beyond", 200),
+    ))  # fmt: skip
+    halved = [replace(row, u=0.5 * row.reference.y) for row in slow]
+    assert "leaves 0.00 to 0.00 % on" in left([*halved, *beyond], doubles)
+    # With the reference itself the model goes twice as far as it should.
+    told = left(slow, doubles)
+    rms = 100 * np.sqrt(np.mean(slow[0].reference.y ** 2)) / 2
+    assert f"leaves {rms:.2f} to {rms:.2f} % on" in told
 
 
 @pytest.mark.parametrize(
@@ -148,7 +167,10 @@ def test_the_command_writes_table_verdict_and_figure(tmp_path):
     without_dynamics().save(tmp_path / "base.yaml")
     out = tmp_path / "inverse"
     settings = '{"input_zero_error": 0.0, "highest_hz": {"sine-040hz": 40}}'
+    numbers = EXAMPLES["rdgpi"] | {"order": 5.0}
+    (tmp_path / "rdgpi.json").write_text(json.dumps({"parameters": numbers}))
     given = ("--slow", slow, "--plant", TWIN, "--base", tmp_path / "base.yaml")
+    given += ("--rate-dependent", tmp_path / "rdgpi.json")
     done = run_hystbench(
         "job", "tracking", fast, *given, "--augmented", TWIN, "--settings", settings,
         "--out", out,

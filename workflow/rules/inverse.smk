@@ -12,6 +12,7 @@ if TWIN:
             plant=SETTINGS.model_file,
             base=rules.gap_twin.output.base,
             augmented=f"{GAP}/twin/model.yaml",
+            rate_dependent=rules.rdgpi_identify.output,
             code=code("hystbench.commands.jobs.tracking"),
         output:
             table=f"{INVERSE}/tracking.csv",
@@ -30,7 +31,8 @@ if TWIN:
         shell:
             "hystbench job tracking {input.signals:q} --slow {input.slow:q}"
             " --plant {input.plant:q} --base {input.base:q}"
-            " --augmented {input.augmented:q} --settings {params.settings:q}"
+            " --augmented {input.augmented:q} --rate-dependent {input.rate_dependent:q}"
+            " --settings {params.settings:q}"
             " --out {params.folder:q} 2> {log:q}"
 
     rule draw_tracking_errors:

@@ -101,7 +101,9 @@ def _unpacked(fmpy: Any, label: str, path: str, changed: int, size: int) -> _Uni
         folder = fmpy.extract(path)
     except Exception as error:
         said = " ".join(f"{type(error).__name__}: {error}".split())
-        raise InputError(f"{label}: no readable {EXPECTED} ({said})") from error
+        raise InputError(
+            f"{label}: cannot be read ({said}); expected {EXPECTED}"
+        ) from error
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     if description.coSimulation is None:
         raise InputError(

@@ -45,18 +45,20 @@ class Friction(Block):
 
     def step(self, sampling: Sampling) -> Step:
         """Take the rate from the curve through the input's newest samples."""
+        points = max(sampling.points, sampling.late + 2)
         constants = {
             "coulomb": self.coulomb,
             "velocity_scale": self.velocity_scale,
-            "points": sampling.points,
-            "rate": sample_rate(sampling, sampling.late),
+            "points": points,
+            "rate": sample_rate(points, sampling.late) / sampling.dt,
         }
-        history = {"history": 1 + sampling.points}
+        history = {"history": 1 + points}
         return Step(
             "friction",
             constants,
             history,
             watches=True,
             forward=True,
-            differs=foretold(sampling.points, sampling.late),
+            rates=True,
+            differs=foretold(points, sampling.late),
         )

@@ -13,9 +13,9 @@ from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import (
     Sampling,
     Step,
-    central_difference,
     foretold,
-    second_difference,
+    sample_curvature,
+    sample_rate,
 )
 from hystbench.record import FloatArray
 
@@ -76,12 +76,12 @@ class Impedance(Block):
         )
 
     def step(self, sampling: Sampling) -> Step:
-        """Foretell the next sample, for the rates."""
+        """Take rates from the curve through the newest samples."""
         return self.driven_step(sampling, ())
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Do so with forces inside."""
-        points, dt = sampling.points, sampling.dt
+        points, ahead, dt = sampling.curve_points, sampling.ahead, sampling.dt
         constants = {
             "mass": self.mass,
             "damping": self.damping,
@@ -90,13 +90,17 @@ class Impedance(Block):
             "velocity": int(self.input == "velocity"),
             "dt": dt,
             "points": points,
-            "rate": central_difference(points, 0.0, 1.0) / dt,
-            "curvature": second_difference(points) / dt**2,
+            "ahead": ahead,
+            "rate": sample_rate(points, ahead) / dt,
+            "curvature": sample_curvature(points, ahead) / dt**2,
             **exported(forces),
         }
         memory = max(len(forces), 1)
         states = {"place": 2, "memory": memory, "history": 1 + points}
-        return Step("impedance", constants, states, differs=foretold(points))
+        told = foretold(points, ahead)
+        return Step(
+            "impedance", constants, states, forward=True, rates=True, differs=told
+        )
 
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Give the motion and the forces that it meets, as for :meth:`driven`."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import lru_cache
-from math import comb, factorial
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -194,24 +193,19 @@ def linear_step(
     settled : bool
         Whether the first value is to have stood there for ever before.
     """
-    smooth = hold == "band-limited"
-    points = sampling.points if smooth else 2
-    ahead = sampling.ahead if smooth else 0
+    smooth, ahead = hold == "band-limited", sampling.ahead
+    points = sampling.curve_points if smooth else 2
+    phi, moments = moments_of(system, sampling.dt, points)
     diagonal = system.is_diagonal
-    if diagonal:
-        phi, moments = moments_of_modes(system, sampling.dt, points)
-    else:
-        phi, moments = moments_of(system, sampling.dt, points)
     if hold == "zero-order":
         drive = np.array([np.zeros(len(system.b)), moments[0]])
     else:
         # The moments count from the start of the interval, one before its end.
-        start = -1.0 - ahead
-        moved = [
-            sum(comb(m, j) * start ** (m - j) * moments[j] for j in range(m + 1))
-            for m in range(points)
-        ]
-        drive = through_samples(points, lambda m: moved[m])
+        start = -1.0 - (ahead if smooth else 0)
+        drive = through_samples(points, lambda m: moments[m], start)
+    if not smooth:  # of no use alone, but in step with what stands beside it
+        points = 2 + ahead
+        drive = np.concatenate([np.zeros((ahead, len(system.b))), drive])
     static = 0.0
     if settled:
         static = float(system.d - system.c @ np.linalg.solve(system.a, system.b))
@@ -219,7 +213,7 @@ def linear_step(
         "size": len(system.b),
         "points": points,
         "ahead": ahead,
-        "phi": phi.ravel(),
+        "phi": np.diagonal(phi) if diagonal else phi.ravel(),
         "drive": drive.ravel(),
         "output": system.c,
         "direct": system.d,
@@ -235,52 +229,59 @@ def linear_step(
 
 def moments_of(
     system: StateSpace, dt: float, points: int
-) -> tuple[FloatArray, list[FloatArray]]:
+) -> tuple[FloatArray, FloatArray]:
     """Give what inputs ``s^m`` add to the state in one interval, s from 0 to 1.
+
+    ``I_m = int exp(X (1 - s)) b s^m ds``, with ``X = A dt`` and ``b = B dt``, fulfils
+    ``X I_m = m I_(m-1) - b``. On the Schur form of X that is a recursion for each
+    state, the last one first. As for incomplete gamma functions, it keeps its digits
+    where m rises up to the size of the eigenvalue, and where m falls to it from far
+    above.
 
     Returns
     -------
     phi : ndarray, shape (n, n)
         What is left of the state.
-    moments : list of ndarray, shape (n,)
-        For m from 0 to ``points - 1``, by one matrix exponential as
-        :func:`discretise`.
+    moments : ndarray, shape (points, n)
+        For m from 0.
     """
+    phi, moved = _over_interval(system, dt)
+    x, drive = system.a * dt, system.b * dt
+    if system.is_diagonal:
+        triangle, basis = x, np.eye(len(drive))
+    else:
+        from scipy.linalg import schur  # late: a filter's process never needs it
+
+        triangle, basis = schur(x, output="complex")
+    back = basis.conj().T
+    b, top = back @ drive, 2 * points + 60
+    found = np.zeros((top + 1, len(drive)), dtype=triangle.dtype)
+    found[0] = back @ moved
+    for i in reversed(range(len(drive))):
+        own, value = found[:, i], triangle[i, i]
+        driven = b[i] + found[:, i + 1 :] @ triangle[i, i + 1 :]
+        turn = int(min(abs(value), top))
+        for m in range(1, turn + 1):
+            own[m] = (m * own[m - 1] - driven[m]) / value
+        if turn < top:
+            own[top] = driven[top] / (top + 1)
+        for m in range(top, turn + 1, -1):
+            own[m - 1] = (driven[m] + value * own[m]) / m
+    return phi, np.ascontiguousarray((found[:points] @ basis.T).real)
+
+
+def _over_interval(system: StateSpace, dt: float) -> tuple[FloatArray, FloatArray]:
+    """Give what is left of the state after one interval, and what a one adds to it."""
+    if system.is_diagonal:
+        x = np.diag(system.a) * dt
+        return np.diag(np.exp(x)), system.b * dt * _over(np.expm1(x), x, 1.0)
     from scipy.linalg import expm  # late: a filter's process never needs it
 
     n = len(system.b)
-    augmented = np.zeros((n + points, n + points))
-    augmented[:n, :n] = system.a * dt
-    augmented[:n, n] = system.b * dt
-    for m in range(points - 1):
-        augmented[n + m, n + m + 1] = 1.0
+    augmented = np.zeros((n + 1, n + 1))
+    augmented[:n, :n], augmented[:n, n] = system.a * dt, system.b * dt
     exponential = expm(augmented)
-    moments = [factorial(m) * exponential[:n, n + m] for m in range(points)]
-    return exponential[:n, :n], moments
-
-
-def moments_of_modes(
-    system: StateSpace, dt: float, points: int
-) -> tuple[FloatArray, list[FloatArray]]:
-    """Do the same where A is diagonal, mode by mode; ``phi`` is its diagonal.
-
-    ``I_m = int exp(x (1 - s)) s^m ds`` is ``(m I_(m-1) - 1) / x``, and for small x,
-    where that loses digits, the series ``sum_k x^k m! / (m + k + 1)!``.
-    """
-    x = np.diag(system.a) * dt
-    phi = np.exp(x)
-    small = np.abs(x) < 2.0
-    safe = np.where(small, 1.0, x)
-    moments: list[FloatArray] = []
-    for m in range(points):
-        term = np.full(len(x), 1.0 / (m + 1))
-        series = term.copy()
-        for k in range(1, 40):
-            term = term * np.where(small, x, 0.0) / (m + k + 1)
-            series += term
-        closed = (phi - 1) / safe if m == 0 else (m * moments[-1] - 1) / safe
-        moments.append(np.where(small, series, closed))
-    return phi, [system.b * dt * moment for moment in moments]
+    return exponential[:n, :n], exponential[:n, n]
 
 
 class Steps(NamedTuple):

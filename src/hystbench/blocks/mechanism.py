@@ -149,7 +149,10 @@ class Mechanism(HeldBlock):
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Do so with forces inside."""
-        segments, points, corners = line_corners(self.holding, sampling.points)
+        ahead = sampling.ahead
+        segments, points, corners = line_corners(
+            self.holding, sampling.curve_points, ahead
+        )
         line = sampling.dt / segments
         parts = self._parts(line, forces)
         balanced = 0.0 if self.start == "rest" else self.stiffness
@@ -158,6 +161,7 @@ class Mechanism(HeldBlock):
             "bias": self.bias,
             "segments": segments,
             "points": points,
+            "ahead": ahead,
             "corners": corners,
             "ramp": float(self.holding != "zero-order"),
             "parts": parts,
@@ -168,9 +172,12 @@ class Mechanism(HeldBlock):
             **exported(forces),
         }
         states = {"motion": 2, "memory": max(len(forces), 1), "history": 1 + points}
-        differs = smooth_curve(points) if segments > 1 else ""
+        smooth = segments > 1
+        differs = smooth_curve(points, ahead) if smooth else ""
         past = TURNED if self.start == "moving" else ""
-        return Step("mechanism", constants, states, past=past, differs=differs)
+        return Step(
+            "mechanism", constants, states, forward=smooth, past=past, differs=differs
+        )
 
     def _shown(self) -> FloatArray:
         """Weights of q, q', the forces inside and the driving force in the output."""

@@ -98,7 +98,9 @@ def _session(runtime: Any, label: str, path: str, changed: int, size: int) -> An
         )
     except Exception as error:
         said = " ".join(f"{type(error).__name__}: {error}".split())
-        raise InputError(f"{label}: no readable {EXPECTED} ({said})") from error
+        raise InputError(
+            f"{label}: cannot be read ({said}); expected {EXPECTED}"
+        ) from error
 
 
 def _type(label: str, item: Any) -> type[np.floating[Any]]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -56,10 +55,6 @@ class OtherModes(TransferFunction, AttachedBlock):
             y.setflags(write=False)
             _KEPT[key] = z, y  # with z kept, no other array has its identity
         return _KEPT[key][1]
-
-    def step(self, sampling: Sampling) -> Step:
-        """Move the state in step with the mechanism, which knows no sample to come."""
-        return replace(super().step(replace(sampling, ahead=0)), forward=False)
 
     def attach(self, before: Any) -> Superposed:
         """Add the response to the output of the mechanism before."""

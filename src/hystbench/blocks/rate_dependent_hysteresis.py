@@ -115,7 +115,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         It gives the inner points of a band-limited field, and the sample after the
         newest, which a central difference needs.
         """
-        points = sampling.points
+        points = sampling.curve_points
         fine = OVERSAMPLING if self.holding == "band-limited" else 1
         ahead = sampling.ahead
         places = np.arange(1 - fine, 1) / fine - ahead
@@ -143,5 +143,6 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
             grows=True,
             drives=fine,
             forward=bool(told),
+            rates=self.form != "acting-field",
             differs="; ".join(filter(None, told)),
         )

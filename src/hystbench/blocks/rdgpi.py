@@ -70,6 +70,7 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
     def step(self, sampling: Sampling) -> Step:
         """Take the rate from the curve through the input's newest samples."""
         count = int(self.order) + 1
+        points, ahead = sampling.curve_points, sampling.ahead
         constants = {
             "spacing": np.array([self.c * self.alpha1, self.beta1, self.lambda1]),
             "loss": np.array([self.alpha2, self.beta2, self.lambda2]),
@@ -77,17 +78,18 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
             "tau": self.tau,
             "envelope_gain": self.envelope_gain,
             "envelope_offset": self.envelope_offset,
-            "points": sampling.points,
-            "ahead": sampling.ahead,
-            "rate": sample_rate(sampling, sampling.ahead),
+            "points": points,
+            "ahead": ahead,
+            "rate": sample_rate(points, ahead) / sampling.dt,
             "count": count,
         }
-        states = {"history": 1 + sampling.points, "w": count}
+        states = {"history": 1 + points, "w": count}
         return Step(
             "rdgpi",
             constants,
             states,
             forward=True,
+            rates=True,
             past=PASSED if self.start == "settled" else "",
-            differs=foretold(sampling.points, sampling.ahead),
+            differs=foretold(points, ahead),
         )

@@ -40,7 +40,10 @@ class SimulatedColumn(Block):
     reference: ClassVar = "by definition"
     reruns: ClassVar = False
     seen: ClassVar = False
-    no_step: ClassVar = "stored output cannot be turned into code; it needs a model"
+    no_step: ClassVar = (
+        "stored output cannot be turned into code; expected --part behind: what "
+        "stands there takes the simulator's output"
+    )
 
     column: str = text("the name of a column of simulated output")
     records: tuple[Record, ...] = field(default=(), kw_only=True, repr=False)

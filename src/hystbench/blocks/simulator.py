@@ -32,7 +32,10 @@ class Simulator(Block):
     place: ClassVar[Place] = "base"
     reference: ClassVar[str] = "by definition"
     seen: ClassVar[bool] = False
-    no_step: ClassVar[str] = "a simulator of somebody's own cannot be turned into code"
+    no_step: ClassVar[str] = (
+        "a simulator of somebody's own cannot be turned into code; expected --part "
+        "before or --part behind: it runs between the two"
+    )
 
     @property
     @abstractmethod

@@ -12,11 +12,15 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.polynomial.polynomial import polyfromroots
 
 from hystbench.record import FloatArray
 
 LARGEST_POINTS = 8
-"""Samples that a curve goes through at most; the C functions hold so many."""
+"""Samples that a curve goes through at most where none to come is known."""
+LARGEST_AHEAD = 15
+"""Samples to come that a block gains by at most: a curve through so many on both sides
+is within a millionth of a sine's amplitude up to a fifth of the sampling rate."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +51,11 @@ class Sampling:
     ahead: int = 0
     late: int = 0
 
+    @property
+    def curve_points(self) -> int:
+        """Samples that a curve goes through: at least as many on either side."""
+        return max(self.points, 2 * self.ahead + 2)
+
 
 @dataclass(frozen=True)
 class Step:
@@ -65,6 +74,8 @@ class Step:
         many samples as the constant ``points`` says, before anything else is done.
     forward : bool
         Whether the step is nearer to the simulation where samples to come are known.
+    rates : bool
+        Whether it takes a central difference, which the next sample makes exact.
     grows : bool
         Whether it takes a factor on its thresholds.
     drives : int
@@ -86,6 +97,7 @@ class Step:
     states: Mapping[str, int] = field(default_factory=dict)
     watches: bool = False
     forward: bool = False
+    rates: bool = False
     grows: bool = False
     drives: int = 0
     undoes: bool = False
@@ -100,7 +112,7 @@ def polynomial(*coefficients: float) -> Step:
 
 
 def through_samples(
-    points: int, moment: Callable[[int], float | FloatArray]
+    points: int, moment: Callable[[int], float | FloatArray], origin: float = 0.0
 ) -> FloatArray:
     """Find what a linear functional takes of the polynomial through the newest samples.
 
@@ -109,42 +121,61 @@ def through_samples(
     points : int
         Samples, the newest at time 0 and the others at -1, -2 and so on.
     moment : callable
-        Gives the functional of ``t^m`` from m.
+        Gives the functional of ``(t - origin)^m`` from m.
+    origin : float
+        A time where the functional looks: about it powers are well told apart.
 
     Returns
     -------
     ndarray, shape (points,) or (points, k)
         Weights of the samples, the newest first; ``(points, k)`` for k functionals.
     """
-    degrees = np.arange(points)
-    places = -np.arange(points, dtype=np.float64)
-    wanted = np.array([moment(int(m)) for m in degrees])
-    weights: FloatArray = np.linalg.solve(places[None, :] ** degrees[:, None], wanted)
+    places = -np.arange(points) - origin
+    # The polynomials that are one at a sample and zero at the others.
+    basis = np.empty((points, points))
+    for k, place in enumerate(places):
+        others = np.delete(places, k)
+        basis[k] = polyfromroots(others) / np.prod(place - others)
+    weights: FloatArray = basis @ np.array([moment(m) for m in range(points)])
     return weights
 
 
 def value_at(points: int, place: float) -> FloatArray:
     """Weights of the samples for the curve's value at a time, the newest at 0."""
-    return through_samples(points, lambda m: place**m)
+    return through_samples(points, lambda m: float(m == 0), place)
 
 
-def sample_rate(sampling: Sampling, ahead: int) -> FloatArray:
-    """Weights of the samples for the central difference at a sample, per second.
+def sample_rate(points: int, ahead: int) -> FloatArray:
+    """Weights of the samples for the central difference at a sample, per sample.
 
     Where the next sample is known it is that of the two neighbours alone.
     """
-    if ahead:
-        weights = np.zeros(sampling.points)
-        weights[[ahead - 1, ahead + 1]] = 0.5, -0.5
-    else:
-        weights = central_difference(sampling.points, 0.0, 1.0)
-    return np.asarray(weights / sampling.dt)
+    if not ahead:
+        return central_difference(points, 0.0, 1.0)
+    weights = np.zeros(points)
+    weights[[ahead - 1, ahead + 1]] = 0.5, -0.5
+    return weights
+
+
+def sample_curvature(points: int, ahead: int) -> FloatArray:
+    """Weights of the samples for the second difference at a sample.
+
+    Where the next sample is known it is that of three neighbours alone.
+    """
+    if not ahead:
+        return through_samples(points, lambda m: 1.0 + (-1.0) ** m - 2 * 0.0**m)
+    weights = np.zeros(points)
+    weights[ahead - 1 : ahead + 2] = 1.0, -2.0, 1.0
+    return weights
 
 
 def central_difference(points: int, place: float, half_width: float) -> FloatArray:
     """Weights of the samples for a central difference of the curve, per sample."""
-    ahead, back = place + half_width, place - half_width
-    return through_samples(points, lambda m: (ahead**m - back**m) / (2 * half_width))
+
+    def moment(m: int) -> float:
+        return (half_width**m - (-half_width) ** m) / (2 * half_width)
+
+    return through_samples(points, moment, place)
 
 
 def line_corners(hold: str, points: int, ahead: int = 0) -> tuple[int, int, FloatArray]:
@@ -169,7 +200,8 @@ def line_corners(hold: str, points: int, ahead: int = 0) -> tuple[int, int, Floa
         Weights of the samples for each corner, the oldest corner first.
     """
     if hold != "band-limited":
-        return 1, 2, np.concatenate([value_at(2, -1.0), value_at(2, 0.0)])
+        points = 2 + ahead
+        return 1, points, np.eye(points)[[ahead + 1, ahead]].ravel()
     each = [_smooth_corner(points, at - ahead) for at in (-1.0, -0.5, 0.0)]
     return 2, points, np.concatenate(each)
 
@@ -182,21 +214,8 @@ def _smooth_corner(points: int, place: float) -> FloatArray:
     their signs, is added to its value.
     """
     h = 0.5
-
-    def derivative(m: int, order: int) -> float:
-        lost = float(np.prod(np.arange(m, m - order, -1.0)))
-        return lost * place ** (m - order) if m >= order else 0.0
-
-    def moment(m: int) -> float:
-        second, fourth = derivative(m, 2), derivative(m, 4)
-        return derivative(m, 0) - h**2 / 12 * second + h**4 / 240 * fourth
-
-    return through_samples(points, moment)
-
-
-def second_difference(points: int) -> FloatArray:
-    """Weights of the samples for a second difference of the curve at the newest."""
-    return through_samples(points, lambda m: 1.0 + (-1.0) ** m - 2 * 0.0**m)
+    share = {0: 1.0, 2: -(h**2) / 12 * 2, 4: h**4 / 240 * 24}
+    return through_samples(points, lambda m: share.get(m, 0.0), place)
 
 
 def smooth_curve(points: int, ahead: int = 0) -> str:
@@ -212,10 +231,23 @@ def foretold(points: int, ahead: int = 0) -> str:
     """Say what becomes of a central difference; nothing where it knows both sides."""
     if ahead:
         return ""
+    weights = central_difference(points, 0.0, 1.0)
     return (
-        f"foretells the next sample by the polynomial through the newest {points}, "
-        "for its rate"
+        f"foretells the next sample by the polynomial through the newest {points}, for "
+        f"its rate, in which noise is {noise_of_rate(weights):.2g} times as large as "
+        "with --delay 1"
     )
+
+
+def noise_of_rate(weights: FloatArray) -> float:
+    """Give how noisy a rate is, of white noise, over that of a central difference.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (n,)
+        Of the samples, for the rate per sample.
+    """
+    return float(np.sqrt(np.sum(weights**2) / 0.5))
 
 
 PASSED, TURNED = "passed", "turned"

@@ -66,8 +66,10 @@ class StiffnessHardening(HeldBlock):
     def step(self, sampling: Sampling) -> Step:
         """Integrate the mode over the interval that has passed."""
         smooth = self.holding == "band-limited"
-        ahead = sampling.ahead if smooth else 0
-        segments, points, corners = line_corners(self.holding, sampling.points, ahead)
+        ahead = sampling.ahead
+        segments, points, corners = line_corners(
+            self.holding, sampling.curve_points, ahead
+        )
         constants = {
             "participation": self.participation,
             "phase": 2 * np.pi * self.frequency_hz * sampling.dt / segments,

@@ -30,6 +30,7 @@ MAKERS = (
     ("results/blind-mechanisms/", "snakemake blind with the set mechanisms"),
     ("results/gap/", "snakemake gap"),
     ("results/devices/", "snakemake devices"),
+    ("results/export/gap", "snakemake export_gap"),
     ("results/export/", "snakemake export_errors"),
     ("results/inverse/", "snakemake inverse"),
     ("", "make reproduce"),

@@ -12,10 +12,11 @@ from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
-from hystbench.export.described import describe
+from hystbench.export.described import Described, describe
 from hystbench.export.inverse import describe_inverse
+from hystbench.export.parts import PARTS, Part, check_alone, part_of
 from hystbench.export.past import begun, begun_inverse
-from hystbench.files import whole_folder
+from hystbench.files import atomic_path, whole_folder, write_text
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
 
@@ -39,7 +40,7 @@ from hystbench.record import FloatArray, column_name
 )
 @click.option(
     "--delay",
-    type=click.IntRange(0, LARGEST_POINTS - 2),
+    type=click.IntRange(min=0),
     default=0,
     help="Samples by which the output may be late: values between samples, and rates, "
     "are then taken with samples on both sides.",
@@ -54,9 +55,21 @@ from hystbench.record import FloatArray, column_name
     "the simulation of this record, where MODEL says 'start: settled' or 'moving'.",
 )
 @click.option(
+    "--compare",
+    type=options.FILE,
+    help="CSV file with time_s and the input: say how far the code is from the "
+    "simulation of this record.",
+)
+@click.option(
     "--hold",
     type=click.Choice(HOLDS),
     help="How the input moves between samples where MODEL does not say.",
+)
+@click.option(
+    "--part",
+    type=click.Choice(PARTS),
+    help="What stands before, or behind, a simulator of your own in MODEL: that runs "
+    "between the two.",
 )
 @click.option(
     "--inverse",
@@ -74,7 +87,9 @@ def export(
     delay: int,
     duration: float | None,
     past: Path | None,
+    compare: Path | None,
     hold: Hold | None,
+    part: Part | None,
     inverse: bool,
     limit_low: float | None,
     limit_high: float | None,
@@ -88,9 +103,16 @@ def export(
     system = load_model(model)
     if hold is not None:
         system = system.with_hold(hold)
+    if part is not None:
+        system = part_of(system, part)
     limits = (limit_low, limit_high)
     if not inverse and limits != (None, None):
         raise InputError("--limit-low and --limit-high: expected them with --inverse")
+    if inverse and compare is not None:
+        raise InputError(
+            "--compare: expected none with --inverse; 'hystbench invert --sampled' "
+            "says how far the output is from what is wanted"
+        )
     sampling = Sampling(dt, points, duration, delay)
     try:
         described = (
@@ -103,9 +125,14 @@ def export(
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None
+    if part == "behind":
+        check_alone(described)
     if past is not None:
         start = begun_inverse if inverse else begun
         described = start(described, system, _record(system, past, dt))
+    told = [described.memory, *described.differences]
+    if compare is not None:
+        told.append(_compared(described, system, compare))
     name = described.name
     names = {
         "c": [f"{name}.h", f"{name}.c"],
@@ -114,16 +141,28 @@ def export(
     }[to]
     with whole_folder(out, names) as fresh:
         if to == "c":
-            (fresh / names[0]).write_text(c.header(described), encoding="utf-8")
-            (fresh / names[1]).write_text(c.source(described), encoding="utf-8")
+            write_text(fresh / names[0], c.header(described))
+            write_text(fresh / names[1], c.source(described))
         elif to == "python":
-            (fresh / names[0]).write_text(python.module(described), encoding="utf-8")
+            write_text(fresh / names[0], python.module(described))
         else:
-            fmu.write_fmu(described, fresh / names[0])
-    told = [f"{out / made}" for made in names]
-    click.echo(f"{', '.join(told)}: {described.about}")
-    for line in [described.memory, *described.differences]:
+            with atomic_path(fresh / names[0]) as unit:
+                fmu.write_fmu(described, unit)
+    made = ", ".join(f"{out / file}" for file in names)
+    click.echo(f"{made}: {described.about}")
+    for line in told:
         click.echo(line)
+
+
+def _compared(code: Described, system: Model, file: Path) -> str:
+    """Say how far the code is from the simulation of a record."""
+    from hystbench.export.compared import off  # late: it runs
+
+    u = _record(system, file, code.sampling.dt)
+    try:
+        return f"{file}: {off(code, system, u).words}."
+    except InputError as error:
+        raise InputError(f"--compare: {file}: {error}") from None
 
 
 def _record(system: Model, file: Path, wanted: float) -> FloatArray:

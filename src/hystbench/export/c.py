@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from hystbench import kernels
-from hystbench.export.described import Described, Piece, needed
+from hystbench.export.described import Described, Language, Piece, needed
 
 #: The laws of forces are those of the compiled kernel.
 LIBRARY = (
@@ -93,6 +93,7 @@ def body(model: Described) -> str:
         _array(f"{model.name}_{state}_start", value)
         for state, value in model.starts.items()
     ]
+    language = _language(model)
     for piece in model.pieces:
         parts += [_wrapped(model, part) for part in piece.all_inside() if piece.inner]
     lines = [
@@ -105,7 +106,7 @@ def body(model: Described) -> str:
             f"    if (call < {model.sampling.delay}) *s->calls += 1;",
         ]
     for piece in model.pieces:
-        lines.append(_chained(model, piece))
+        lines.append(f"    y = {language.in_chain(piece, '1')};")
         if piece.wait:
             lines.append(f"    if (call < {piece.wait}) return 0; /* none yet */")
     used = [] if any(model.all_states()) else ["    (void)s;"]
@@ -139,45 +140,34 @@ def body(model: Described) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _chained(model: Described, piece: Piece) -> str:
-    """Write the line of a block in the chain."""
-    if piece.inner is not None:
-        growth = ", 1" if piece.step.grows else ""
-        return f"    y = {model.name}_{piece.label}(s, y{growth});"
-    own = ["y"]
-    if piece.step.grows:
-        own.append("1")
-    return f"    y = {_call(model, piece, own)};"
-
-
 def _wrapped(model: Described, piece: Piece) -> str:
     """Write the function of hysteresis that is wrapped, or of what wraps it."""
-    own = ["v"] + ["growth"] * piece.step.grows
-    declared = ", ".join(f"double {name}" for name in own)
+    inner, language = piece.inner, _language(model)
+    if inner is not None and piece.step.undoes:
+        return _searched(model, piece, inner)
+    declared = ", ".join(f"double {name}" for name in piece.takes)
     name = f"{model.name}_{piece.label}"
     opening = f"static double {name}({model.name}_state *s, {declared})"
-    inner = piece.inner
-    if inner is None:
-        lines = [f"    return {_call(model, piece, own)};"]
-    elif piece.step.undoes:
-        return _searched(model, piece, inner)
-    else:
-        inside = f"{model.name}_{inner.label}(s"
-        if not piece.step.drives:
-            given = ", ".join(["v"] + ["growth"] * inner.step.grows)
-            call = _call(model, piece, own)
-            lines = [f"    return {inside}, {given}) + {call};"]
-        else:
-            given = ", ".join(["fields[i]"] + ["growths[i]"] * inner.step.grows)
-            call = _call(model, piece, [*own, "fields", "growths"])
-            lines = [
-                f"    double fields[{piece.step.drives}], "
-                f"growths[{piece.step.drives}], y = 0;",
-                f"    const int count = {call};",
-                f"    for (int i = 0; i < count; i++) y = {inside}, {given});",
-                "    return y;",
-            ]
+    lines = [f"    return {language.inside(piece)};"]
+    if inner is not None and piece.step.drives:
+        each = language.own(inner, [f"{name}s[i]" for name in inner.takes])
+        call = language.step(piece, [*piece.takes, "vs", "growths"])
+        lines = [
+            f"    double vs[{piece.step.drives}], growths[{piece.step.drives}], y = 0;",
+            f"    const int count = {call};",
+            f"    for (int i = 0; i < count; i++) y = {each};",
+            "    return y;",
+        ]
     return "\n".join([opening, "{", *lines, "}"])
+
+
+def _language(model: Described) -> Language:
+    """Give how C calls: a piece's own function takes the state first."""
+
+    def own(piece: Piece, given: Sequence[str]) -> str:
+        return f"{model.name}_{piece.label}({', '.join(['s', *given])})"
+
+    return Language(partial(_call, model), own)
 
 
 def _searched(model: Described, piece: Piece, inner: Piece) -> str:

@@ -13,7 +13,13 @@ from typing import Any
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven, Host
 from hystbench.blocks.other_modes import OtherModes, Superposed
-from hystbench.blocks.step import LARGEST_POINTS, UNKNOWN_PAST, Sampling, Step
+from hystbench.blocks.step import (
+    LARGEST_AHEAD,
+    LARGEST_POINTS,
+    UNKNOWN_PAST,
+    Sampling,
+    Step,
+)
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.model import Model
@@ -68,11 +74,41 @@ class Piece:
         """Name the state that the model's input is kept in."""
         return f"{self.label}_history"
 
+    @property
+    def takes(self) -> list[str]:
+        """Name what it takes inside another: a signal, and a factor on thresholds."""
+        return ["v"] + ["growth"] * self.step.grows
+
     def all_inside(self) -> Iterator[Piece]:
         """Give the piece and what is inside it, the innermost first."""
         if self.inner is not None:
             yield from self.inner.all_inside()
         yield self
+
+
+@dataclass(frozen=True)
+class Language:
+    """How a language calls a piece's step, and a function of the model's own for it.
+
+    Parameters
+    ----------
+    step, own : callable
+        Give the text of the call, from the piece and the signals that it takes.
+    """
+
+    step: Callable[[Piece, Sequence[str]], str]
+    own: Callable[[Piece, Sequence[str]], str]
+
+    def in_chain(self, piece: Piece, one: str) -> str:
+        """Call a piece that the model's signal ``y`` passes."""
+        call = self.step if piece.inner is None else self.own
+        return call(piece, ["y"] + [one] * piece.step.grows)
+
+    def inside(self, piece: Piece) -> str:
+        """Call a piece inside another, of which what is inside it is called once."""
+        own = self.step(piece, piece.takes)
+        inner = piece.inner
+        return own if inner is None else f"{self.own(inner, inner.takes)} + {own}"
 
 
 @dataclass(frozen=True)
@@ -170,15 +206,16 @@ Maker = Callable[[Sampling], Piece]
 
 
 def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
-    """Divide a delay among the pieces that gain by it, the first ones get the rest.
+    """Divide a delay among the pieces that gain by it.
 
-    What looks at the model's input itself gains by the delay of a piece before it, and
-    gets none of its own then.
+    The rest goes to those that take a rate, which one sample makes exact, and then to
+    the first ones. What looks at the model's input itself gains by the delay of a piece
+    before it, and gets none of its own then.
 
     Raises
     ------
     InputError
-        If no piece gains.
+        If no piece gains, or the delay is more than they gain by.
     """
     gain: list[int] = []
     for place, piece in enumerate(pieces):
@@ -189,6 +226,12 @@ def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
             f"--delay: {delay}; expected none, as no step of this model is nearer to "
             "the simulation where samples to come are known"
         )
+    if delay > LARGEST_AHEAD * len(gain):
+        each = f", {LARGEST_AHEAD} for each block that gains" * (len(gain) > 1)
+        raise InputError(
+            f"--delay: {delay}; expected at most {LARGEST_AHEAD * len(gain)}{each}"
+        )
+    gain.sort(key=lambda place: not pieces[place].step.rates)
     shares = [0] * len(pieces)
     for k in range(delay):
         shares[gain[k % len(gain)]] += 1
@@ -239,6 +282,11 @@ def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
             return of_block(step, step, sampling)
         outer: WrappingBlock | OtherModes = step.by
         around = of_block(outer, outer, sampling)
+        if isinstance(step, Superposed):  # both get the same input, and stay in step
+            beside = of_step(step.inner, sampling)
+            gains = around.step.forward or beside.step.forward
+            both = replace(around.step, forward=gains)
+            return replace(around, step=both, inner=beside)
         times = max(around.step.drives, 1)
         inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times, ahead=0))
         return replace(around, inner=inner)
@@ -306,11 +354,8 @@ def _check_sampling(sampling: Sampling) -> None:
         raise InputError(
             f"--points: {sampling.points}; expected 2 to {LARGEST_POINTS} samples"
         )
-    if not 0 <= sampling.delay <= sampling.points - 2:
-        raise InputError(
-            f"--delay: {sampling.delay}; expected 0 to {sampling.points - 2}, two less "
-            "than --points"
-        )
+    if sampling.delay < 0:
+        raise InputError(f"--delay: {sampling.delay}; expected 0 or more samples")
 
 
 def identifier(name: str) -> str:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hystbench.blocks.step import Sampling, sample_rate
+from hystbench.blocks import step
+from hystbench.blocks.step import LARGEST_AHEAD, Sampling, sample_rate
 from hystbench.export import python
 from hystbench.export.described import describe
 from hystbench.model import Model
@@ -55,7 +56,7 @@ CASES = (
     Case("friction, noise of 0.1 %", (_FRICTION,), 100, NOISE),
     Case("a lag, noise of 0.1 %", (_LAG,), 100, NOISE),
 )
-WAYS = ((6, 0), (3, 0), (2, 0), (6, 1), (6, 2))
+WAYS = ((6, 0), (3, 0), (2, 0), (6, 1), (6, LARGEST_AHEAD))
 """Points and delay, as ``hystbench export`` takes them."""
 
 
@@ -89,8 +90,7 @@ def error(case: Case, points: int, delay: int) -> float:
 
 def noise_of_rate(points: int, delay: int) -> float:
     """Give how noisy a rate is, of white noise, over that of a central difference."""
-    weights = sample_rate(Sampling(1.0, points, delay=delay), delay)
-    return float(np.sqrt(np.sum(weights**2) / 0.5))
+    return step.noise_of_rate(sample_rate(max(points, delay + 2), delay))
 
 
 def table(cases: Sequence[Case] = CASES) -> list[dict[str, str]]:

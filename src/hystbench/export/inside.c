@@ -5,14 +5,15 @@
  * and the driving force in the output. start: q, v, and the stiffness of a spring that
  * balances the first sample, or zero. */
 static double hb_mechanism(double gain, double bias, int segments, int points,
-                           const double *corners, double ramp, int parts, double h,
-                           const double *step, const double *shown,
+                           int ahead, const double *corners, double ramp, int parts,
+                           double h, const double *step, const double *shown,
                            const double *start, int count, const double *forces,
                            double *motion, double *memory, double *history, double z)
 {
-    const int moves = history[0] > 0;
-    double p = gain * z + bias;
-    hb_remember(points, history, p);
+    const int moves = history[0] > ahead;
+    hb_remember(points, history, gain * z + bias);
+    if (history[0] <= ahead) return 0;
+    double p = history[1 + ahead];
     if (!moves) {
         motion[0] = start[0];
         if (start[2] > 0)
@@ -36,21 +37,27 @@ static double hb_mechanism(double gain, double bias, int segments, int points,
     return shown[0] * x + shown[1] * w + shown[2] * force + shown[3] * p;
 }
 
-/* The force that a motion takes; its next sample is foretold, for rate and curvature. */
+/* The force that a motion takes; rate and curvature take samples on both sides. */
 static double hb_impedance(double mass, double damping, double stiffness, double bias,
-                           int velocity, double dt, int points, const double *rate,
-                           const double *curvature, int count, const double *forces,
-                           double *place, double *memory, double *history, double z)
+                           int velocity, double dt, int points, int ahead,
+                           const double *rate, const double *curvature, int count,
+                           const double *forces, double *place, double *memory,
+                           double *history, double z)
 {
-    const int moves = history[0] > 0;
+    const int moves = history[0] > ahead;
     hb_remember(points, history, z);
+    if (history[0] <= ahead) return 0;
+    z = history[1 + ahead];
+    const int known = history[0] > 1;
     const double before = place[0];
     double q = z, v = z, a = 0;
     if (velocity)
         q = moves ? before + (z + place[1]) / 2 * dt : 0;
     else
-        v = moves ? hb_weighted(points, rate, history + 1) : 0;
-    if (moves) a = hb_weighted(points, velocity ? rate : curvature, history + 1);
+        v = known ? hb_weighted(points, rate, history + 1) : 0;
+    if (known) a = hb_weighted(points, velocity ? rate : curvature, history + 1);
+    if (!moves && !velocity && ahead > 1) /* at its start that of the sample after it */
+        a = hb_weighted(points - 1, curvature + 1, history + 1);
     place[0] = q;
     place[1] = z;
     const double way = moves ? q - before : 0;

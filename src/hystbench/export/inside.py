@@ -258,6 +258,7 @@ def mechanism(
     bias,
     segments,
     points,
+    ahead,
     corners,
     ramp,
     parts,
@@ -273,8 +274,11 @@ def mechanism(
     z,
 ):
     """Move a coordinate with forces inside over straight lines of what drives it."""
-    moves, p = history[0] > 0, gain * z + bias
-    remember(points, history, p)
+    moves = history[0] > ahead
+    remember(points, history, gain * z + bias)
+    if history[0] <= ahead:
+        return 0.0
+    p = history[1 + ahead]
     if not moves:
         motion[:] = start[0], start[1]
         if start[2] > 0:
@@ -303,6 +307,7 @@ def impedance(
     velocity,
     dt,
     points,
+    ahead,
     rate,
     curvature,
     count,
@@ -312,15 +317,20 @@ def impedance(
     history,
     z,
 ):
-    """Give the force that a motion takes; its next sample is foretold."""
-    moves, before = history[0] > 0, place[0]
+    """Give the force that a motion takes; rates take samples on both sides."""
+    moves, before = history[0] > ahead, place[0]
     remember(points, history, z)
-    v = rate @ history[1:] if moves else 0.0
+    if history[0] <= ahead:
+        return 0.0
+    z, known = history[1 + ahead], history[0] > 1
+    v = rate @ history[1:] if known else 0.0
     if velocity:
         q = before + (z + place[1]) / 2 * dt if moves else 0.0
         v, a = z, v
     else:
-        q, a = z, curvature @ history[1:] if moves else 0.0
+        q, a = z, curvature @ history[1:] if known else 0.0
+        if not moves and ahead > 1:  # at its start that of the sample after it
+            a = curvature[1:] @ history[1:-1]
     place[:] = q, z
     way = q - before if moves else 0.0
     force = all_forces(count, forces, q, v, way, memory)

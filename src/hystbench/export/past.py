@@ -25,7 +25,7 @@ def begun(described: Described, model: Model, past: FloatArray) -> Described:
     Parameters
     ----------
     described : Described
-        Of the model; its output is not late.
+        Of the model.
     model : Model
     past : ndarray, shape (n,)
         Input of the record, with the interval of the code.
@@ -33,10 +33,8 @@ def begun(described: Described, model: Model, past: FloatArray) -> Described:
     Raises
     ------
     InputError
-        If the start of no block depends on a record, or the output is to be late.
+        If the start of no block depends on a record.
     """
-    if described.sampling.delay:
-        raise InputError("--past: expected none beside --delay")
     starts: dict[str, FloatArray] = {}
     z = past
     for piece, step in zip(described.pieces, model.steps, strict=True):
@@ -84,7 +82,12 @@ def _states(alone: Described, part: Piece, z: FloatArray) -> dict[str, FloatArra
     """Run a piece over what came before it, and give the states that are left."""
     machine = python.loaded(alone)
     turned = part.step.past == TURNED
-    machine.simulate(2 * z[0] - z[:0:-1] if turned else z)
+    if turned:
+        before = 2 * z[0] - z[:0:-1]
+    else:  # samples to come are those of the record turned about its end
+        ahead = alone.pieces[0].step.constants.get("ahead", 0)
+        before = np.concatenate([z, 2 * z[-1] - z[-2 : -2 - ahead : -1]])
+    machine.simulate(before)
     kept = list(part.step.states) if turned else ["w"]
     names = [f"{part.label}_{state}" for state in kept]
     return {name: np.array(getattr(machine, name)) for name in names}

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.export.described import Described, Piece, needed
+from hystbench.export.described import Described, Language, Piece, needed
 
 LIBRARY = tuple(
     Path(__file__).with_name(f"{name}.py")
@@ -70,7 +70,7 @@ def module(model: Described) -> str:
     if model.sampling.delay:
         steps += ["call = self.calls[0]", "self.calls[0] += 1"]
     for piece in model.pieces:
-        steps.append(_line(piece))
+        steps.append(f"y = {LANGUAGE.in_chain(piece, '1.0')}")
         if piece.wait:
             steps.append(f"if call < {piece.wait}:\n    return 0.0  # none yet")
     for piece in model.pieces:
@@ -109,34 +109,20 @@ def _quoted(line: str) -> str:
     return line.replace("\\", "\\\\").replace('"', '\\"')
 
 
-def _line(piece: Piece) -> str:
-    if piece.inner is not None:
-        growth = ", 1.0" if piece.step.grows else ""
-        return f"y = self._{piece.label}(y{growth})"
-    given = ["y"]
-    if piece.step.grows:
-        given.append("1.0")
-    return f"y = {_call(piece, given)}"
-
-
 def _method(piece: Piece) -> str:
-    own = ["v"] + ["growth"] * piece.step.grows
-    lines = [f"return {_call(piece, own)}"]
+    """Write the method of hysteresis that is wrapped, or of what wraps it."""
     inner = piece.inner
     if inner is not None and piece.step.undoes:
         return _searched(piece, inner)
-    if inner is not None:
-        given = ", ".join(["v"] + ["growth"] * inner.step.grows)
-        if not piece.step.drives:
-            lines = [f"return self._{inner.label}({given}) + {_call(piece, own)}"]
-        else:
-            lines = [
-                f"y, inside = 0.0, {_call(piece, own)}",
-                "for v, growth in inside:",
-                f"    y = self._{inner.label}({given})",
-                "return y",
-            ]
-    opening = f"\ndef _{piece.label}(self, {', '.join(own)}):"
+    lines = [f"return {LANGUAGE.inside(piece)}"]
+    if inner is not None and piece.step.drives:
+        lines = [
+            f"y, inside = 0.0, {LANGUAGE.step(piece, piece.takes)}",
+            "for v, growth in inside:",
+            f"    y = {LANGUAGE.own(inner, inner.takes)}",
+            "return y",
+        ]
+    opening = f"\ndef _{piece.label}(self, {', '.join(piece.takes)}):"
     return indent("\n".join([opening, *(f"    {line}" for line in lines)]), "    ")
 
 
@@ -178,6 +164,13 @@ def _call(piece: Piece, given: Sequence[str]) -> str:
         break_on_hyphens=False,
     )  # fmt: skip
     return f"{piece.step.function}(\n    " + "\n    ".join(inside) + "\n)"
+
+
+def _own(piece: Piece, given: Sequence[str]) -> str:
+    return f"self._{piece.label}({', '.join(given)})"
+
+
+LANGUAGE = Language(_call, _own)
 
 
 def _constant(piece: Piece, key: str) -> str:

@@ -16,16 +16,16 @@ static double hb_weighted(int count, const double *weights, const double *values
     return sum;
 }
 
-/* Go on, beyond the samples that are known, with the polynomial through all of them. */
+/* Go on, before the first of the known samples, with what came after it turned about
+ * it, as the simulation does; behind that straight on. */
 static void hb_continue(int count, int known, double *values)
 {
+    const int first = known - 1;
     for (int i = known; i < count; i++) {
-        double sum = 0, binomial = 1;
-        for (int j = 1; j <= known; j++) {
-            binomial *= -(double)(known - j + 1) / j;
-            sum -= binomial * values[i - j];
-        }
-        values[i] = sum;
+        if (i <= 2 * first)
+            values[i] = 2 * values[first] - values[2 * first - i];
+        else
+            values[i] = 2 * values[i - 1] - values[i > 1 ? i - 2 : 0];
     }
 }
 

@@ -12,13 +12,13 @@ import numpy as np
 
 
 def carry_on(count, known, values):
-    """Go on, beyond the known samples, with the polynomial through all of them."""
+    """Turn what came after the first sample about it; behind that go straight on."""
+    first = known - 1
     for i in range(known, count):
-        total, binomial = 0.0, 1.0
-        for j in range(1, known + 1):
-            binomial *= -(known - j + 1) / j
-            total -= binomial * values[i - j]
-        values[i] = total
+        if i <= 2 * first:
+            values[i] = 2 * values[first] - values[2 * first - i]
+        else:
+            values[i] = 2 * values[i - 1] - values[max(i - 2, 0)]
 
 
 def remember(points, history, v):

@@ -141,7 +141,7 @@ def field(by: RateDependentHysteresis, sampling: Sampling) -> Step:
             "runs away; with 'form: acting-field' it does not"
         )
     smooth = by.holding == "band-limited"
-    points = sampling.points if smooth else 2
+    points = sampling.curve_points if smooth else 2
     ahead = sampling.ahead if smooth else 0
     constants = {
         "coefficient": by.coefficient,
@@ -181,7 +181,7 @@ def _derivatives(order: int, w: float, sampling: Sampling) -> Step:
     CannotBe
         If the curve has not so many.
     """
-    points, ahead = sampling.points, sampling.ahead
+    points, ahead = sampling.curve_points, sampling.ahead
     if order > points - 1:
         raise CannotBe(
             f"it takes {order} derivatives, and --points {points} gives less"
@@ -259,14 +259,8 @@ def _advanced(block: LinearBlock) -> tuple[StateSpace, int, float]:
 
 def _derivative(points: int, ahead: int, order: int) -> FloatArray:
     """Weights of the samples for the curve's derivative, per sample to that power."""
-
-    def moment(m: int) -> float:
-        if m < order:
-            return 0.0
-        lost = factorial(m) / factorial(m - order)
-        return float(lost * (-float(ahead)) ** (m - order))
-
-    return through_samples(points, moment)
+    size = float(factorial(order))
+    return through_samples(points, lambda m: size * (m == order), -float(ahead))
 
 
 def _band(taps: FloatArray, ahead: int, order: int, turn: float) -> float:

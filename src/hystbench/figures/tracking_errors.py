@@ -13,11 +13,20 @@ from matplotlib.figure import Figure
 from hystbench.figures import style
 from hystbench.figures.data import read_table
 from hystbench.inverse.told import GOAL
-from hystbench.inverse.tracking import CODE, DRIVES, LINEAR, OWN, WITH, WITHOUT
+from hystbench.inverse.tracking import (
+    CODE,
+    DRIVES,
+    FIELD,
+    LINEAR,
+    OWN,
+    WITH,
+    WITHOUT,
+)
 
 LOOKS = {
     LINEAR: (style.VERMILION, "s", (0, (1, 1.2))),
     WITHOUT: (style.ORANGE, "^", (0, (5, 1.5))),
+    FIELD: (style.PURPLE, "P", (0, (4, 1, 1, 1))),
     WITH: (style.BLUE, "o", "-"),
     CODE: (style.GREEN, "v", (0, (3, 1, 1, 1))),
     OWN: (style.GREY, "D", "-"),

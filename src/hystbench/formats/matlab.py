@@ -13,6 +13,7 @@ from hystbench.formats.table import Column, Table, columns_of
 from hystbench.libraries import library
 
 _HDF5 = b"\x89HDF"
+_TEXT_73 = b"MATLAB 7.3"  # also of a file that ends before its HDF5 begins
 """What HDF5 begins with; MATLAB writes 512 bytes of its own before it."""
 _OBJECT = (
     "{}: a MATLAB object such as a table or timeseries; left out: save its columns as "
@@ -33,7 +34,7 @@ def read(path: Path) -> Table:
     columns: list[Column] = []
     numbers: dict[str, float] = {}
     notes: list[str] = []
-    is_hdf5 = _HDF5 in (start[: len(_HDF5)], start[512:])
+    is_hdf5 = _HDF5 in (start[: len(_HDF5)], start[512:]) or start.startswith(_TEXT_73)
     variables = _version_73(path) if is_hdf5 else _version_5(path)
     for name, values in variables:
         if values is None:

@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hystbench.inverse.tracking import CODE, DRIVES, LINEAR, OWN, WITH, WITHOUT, Tracked
+from hystbench.inverse.tracking import (
+    CODE,
+    DRIVES,
+    FIELD,
+    LINEAR,
+    OWN,
+    WITH,
+    WITHOUT,
+    Tracked,
+    follows,
+)
+from hystbench.model import Model
 
 GOAL = 0.02
 """RMS error that is asked for, as a share of the stroke, to :data:`GOAL_HZ`."""
@@ -45,7 +56,9 @@ def verdict(rows: Sequence[Tracked]) -> str:
         f"RMS errors on the {len(within)} references to {GOAL_HZ:g} Hz, in % of the "
         f"stroke: {_range(within, LINEAR)} with a linear gain, "
         f"{_range(within, WITHOUT)} with the inverse of the slow loop's model, "
-        f"{_range(within, WITH)} with the gap's effects in it, "
+        f"{_range(within, FIELD)} with that of the rate-dependent Prandtl-Ishlinskii "
+        "model, "
+        f"{_range(within, WITH)} with the gap's effects in the slow loop's, "
         f"{_range(within, CODE)} with the same sample by sample, as exported, and "
         f"{_range(within, OWN)} with the twin's own model, which no device comes with.",
         f"The goal, {100 * GOAL:g} %, is met on {len(within) - len(missed)} of "
@@ -60,6 +73,20 @@ def verdict(rows: Sequence[Tracked]) -> str:
     if worse:
         parts.append(f"The effects make it worse on {', '.join(worse)}.")
     return " ".join(parts) + "\n"
+
+
+def left(rows: Sequence[Tracked], model: Model) -> str:
+    """Say what the inverse of the rate-dependent model leaves on that model itself."""
+    errors = [
+        100 * follows(model, row).rms
+        for row in rows
+        if row.drive == FIELD and row.reference.highest_hz <= GOAL_HZ
+    ]
+    return (
+        "The inverse of the rate-dependent model leaves "
+        f"{min(errors):.2f} to {max(errors):.2f} % on that model itself; the rest is "
+        "the model's own error.\n"
+    )
 
 
 def _range(rows: dict[str, dict[str, Tracked]], drive: str) -> str:

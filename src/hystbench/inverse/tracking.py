@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,10 +18,12 @@ what is lost to the dynamics needs more input than a slow motion of the same str
 RASTER_HZ = (5.0, 20.0)
 """Lines a second of the raster scans."""
 
-LINEAR, WITHOUT, WITH, CODE, OWN = "linear", "without", "with", "code", "own"
+LINEAR, WITHOUT, FIELD = "linear", "without", "rate-dependent"
+WITH, CODE, OWN = "with", "code", "own"
 DRIVES = {
     LINEAR: "no inverse: a linear gain",
     WITHOUT: "inverse without the gap's effects",
+    FIELD: "inverse of the RDGPI model",
     WITH: "inverse with the gap's effects",
     CODE: "the same sample by sample, as exported",
     OWN: "inverse of the plant itself",
@@ -93,6 +95,11 @@ def by_inverse(model: Model) -> Way:
 def by_line(line: Line) -> Way:
     """Take a straight line for the inverse."""
     return lambda reference: (reference.y - line.offset) / line.gain
+
+
+def follows(model: Model, row: Tracked) -> Tracked:
+    """Give what a model does with the input of a row, instead of the plant."""
+    return replace(row, y=model.simulate(row.u, row.reference.dt))
 
 
 def references(

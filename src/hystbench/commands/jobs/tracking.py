@@ -9,13 +9,15 @@ import click
 import numpy as np
 
 from hystbench import options
+from hystbench.blocks.rdgpi import RateDependentPrandtlIshlinskii
 from hystbench.blocks.step import Sampling
 from hystbench.export import python
 from hystbench.export.inverse import describe_inverse
-from hystbench.files import whole_folder, write_csv, write_text
-from hystbench.inverse.told import table, verdict
+from hystbench.files import read_json, whole_folder, write_csv, write_text
+from hystbench.inverse.told import left, table, verdict
 from hystbench.inverse.tracking import (
     CODE,
+    FIELD,
     LINEAR,
     OWN,
     WITH,
@@ -50,6 +52,12 @@ WRITTEN = ("tracking.csv", "raster.csv", "tracking.md", "verdict.md")
 @click.option(
     "--augmented", type=options.FILE, required=True, help="The model with the effects."
 )
+@click.option(
+    "--rate-dependent",
+    type=options.FILE,
+    required=True,
+    help="The RDGPI model as identified from the twin's records (JSON).",
+)
 @options.settings
 @options.out_folder
 def tracking(
@@ -58,18 +66,21 @@ def tracking(
     base: Path,
     slow: Path,
     augmented: Path,
+    rate_dependent: Path,
     settings: dict[str, Any],
     out: Path,
 ) -> None:
     """Drive the twin open loop with inputs for references of the SIGNALS' forms.
 
     Each reference is followed with a linear gain, with the inverse of the slow loop's
-    model, with that of the augmented model, also as code that is fed sample by sample,
-    and with that of the twin itself.
+    model, with that of the rate-dependent Prandtl-Ishlinskii model, with that of the
+    augmented model, also as code that is fed sample by sample, and with that of the
+    twin itself.
     """
     given = [load_signal(path) for path in signals]
     twin, of_loop = load_model(plant), load_model(base)
     with_effects = load_model(augmented)
+    of_field = _rdgpi(rate_dependent, twin)
     line = Line.of(of_loop, load_signal(slow))
     rest = float(twin.simulate(np.zeros(64), given[0].dt)[-1])
     wanted = references(given, settings["highest_hz"], line, rest)
@@ -77,6 +88,7 @@ def tracking(
     ways = {
         LINEAR: by_line(line),
         WITHOUT: by_inverse(of_loop),
+        FIELD: by_inverse(of_field),
         WITH: by_inverse(with_effects),
         CODE: _by_code(with_effects, ROOM * largest),
         OWN: by_inverse(twin),
@@ -89,7 +101,14 @@ def tracking(
         scan = _part(rows, wanted[-1])
         write_csv(fresh / "raster.csv", list(scan), _lines(scan))
         write_text(fresh / "tracking.md", table(rows, twin.output.unit))
-        write_text(fresh / "verdict.md", verdict(rows))
+        write_text(fresh / "verdict.md", verdict(rows) + left(rows, of_field))
+
+
+def _rdgpi(identified: Path, twin: Model) -> Model:
+    """Give the identified RDGPI model: what the field inverts for such actuators."""
+    numbers = read_json(identified)["parameters"]
+    chain = (RateDependentPrandtlIshlinskii.from_mapping(numbers),)
+    return Model("rdgpi", twin.input, twin.output, chain)
 
 
 def _by_code(model: Model, limit: float) -> Way:
