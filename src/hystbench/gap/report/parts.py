@@ -190,17 +190,18 @@ def _attached(stage: Stage, block: Block, host: Block | None, part: Part) -> Sta
 
 def _told(stage: Stage) -> str:
     places = (
-        ("with", stage.within),
-        ("inside", stage.around),
-        ("with, fed back,", stage.fed_back),
-        ("beside", stage.beside),
-        ("which spills by", (stage.spilt,) if stage.spilt else ()),
+        ("in it", stage.within),
+        ("around it", stage.around),
+        ("fed back", stage.fed_back),
+        ("beside it", stage.beside),
+        ("above it", (stage.spilt,) if stage.spilt else ()),
     )
-    return stage.core.words + "".join(
-        f" {place} {' and '.join(part.words for part in parts)}"
+    told = [
+        f"{' and '.join(part.words for part in parts)} {place}"
         for place, parts in places
         if parts
-    )
+    ]
+    return stage.core.words + (f" with {' and '.join(told)}" if told else "")
 
 
 def _owners(model: Model, gap: Mapping[str, Any]) -> dict[int, list[_Owner]]:

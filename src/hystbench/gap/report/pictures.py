@@ -60,15 +60,20 @@ def draw(
     clear: bool = False,
     panels: tuple[int, int] = (1, 1),
 ) -> Picture:
-    """Draw a figure as SVG, the same bytes each time."""
+    """Draw a figure with axes for the page."""
     with in_style():
         figure = Figure(figsize=(width, height))
         axes = figure.subplots(*panels, squeeze=False)
         paint(axes if panels[0] > 1 else axes[0], *content)
         plain_ticks(figure)
-        buffer = io.BytesIO()
-        about = {"Date": None, "Creator": None}
-        figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
+        return embedded(figure, words, clear=clear)
+
+
+def embedded(figure: Figure, words: str, *, clear: bool = False) -> Picture:
+    """Take a figure into the page as SVG, the same bytes each time."""
+    buffer = io.BytesIO()
+    about = {"Date": None, "Creator": None}
+    figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
     text = base64.b64encode(buffer.getvalue()).decode("ascii")
     return Picture(f"data:image/svg+xml;base64,{text}", words)
 
