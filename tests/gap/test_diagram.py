@@ -144,6 +144,6 @@ def test_the_same_bytes_each_time():
 
 def test_it_is_told_in_words():
     assert words_of(*CASES["two stores"]) == (
-        "Block diagram: force, then store with outflow in it and overflow above it, then "
-        "store with outflow in it, then position"
+        "Block diagram: force, then store with outflow in it and overflow above it, "
+        "then store with outflow in it, then position"
     )

@@ -199,6 +199,6 @@ def test_no_line_breaks_between_a_number_and_its_unit():
 def test_the_diagram_in_words():
     rig = model({"input-delay": {"delay_s": 0.01}}, MECHANISM, FRICTION, OTHERS)
     assert in_one_line(rig, stages(rig, gap(FELT))) == (
-        "force, then input delay, then mechanism with friction fed back and other modes "
-        "beside it, then position"
+        "force, then input delay, then mechanism with friction fed back and other "
+        "modes beside it, then position"
     )
