@@ -1,9 +1,11 @@
 """What a page of several devices shows of each."""
 
+import csv
+
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.report.gallery import write_gallery
+from hystbench.gap.report.gallery import write_gallery, write_sentences
 from hystbench.gap.report.words import verdict_text
 from tests.gap.test_report import GAP, write_folder
 
@@ -40,6 +42,14 @@ def test_where_there_is_no_gap_the_reason_is_in_the_sentence():
     gap = {"verdict": "no-gap", "reason": "it is the noise", "effects": []}
     gap |= {"findings": [], "withdrawn": None, "asked": None}
     assert verdict_text(gap) == "**There is no gap: it is the noise.**\n"
+
+
+def test_sentences_of_several_stand_in_one_table(tmp_path):
+    write_sentences([GAP, GAP | {"dataset": "other"}], tmp_path / "sentences.csv")
+    with (tmp_path / "sentences.csv").open(newline="") as stream:
+        rows = list(csv.reader(stream))
+    sentence = "The simulator lacks resonance and creep."
+    assert rows[1:] == [["bench", sentence], ["other", sentence]]
 
 
 def test_pictures_of_another_are_not_written_over(tmp_path):

@@ -251,6 +251,7 @@ rule gap_summary:
         summary=f"{GAP}/summary.csv",
         effects=f"{GAP}/effects.csv",
         records=f"{GAP}/records.csv",
+        sentences=f"{GAP}/sentences.csv",
         adds=[f"{GAP}/twin-adds.csv"] if TWIN else [],
     log:
         f"{RESULTS}/logs/gap/summary.log",
@@ -267,6 +268,7 @@ rule gap_summary:
     shell:
         "hystbench job gap-summary {input.gaps:q} {params.twin}"
         " --effects {output.effects:q} --records {output.records:q}"
+        " --sentences {output.sentences:q}"
         " --out {output.summary:q} 2> {log:q}"
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from matplotlib.figure import Figure
 
 from hystbench.errors import InputError
 from hystbench.figures import style
-from hystbench.files import write_text
+from hystbench.files import write_csv, write_text
 from hystbench.gap.report import diagram, pictures, words
 from hystbench.gap.report.page import with_optional
 from hystbench.gap.report.read import Content, read_content
@@ -46,6 +48,23 @@ def write_gallery(folder: str | Path) -> None:
             for suffix in FORMATS:
                 style.save(figure, place / f"{name}.{suffix}")
     write_text(place / "verdict.md", words.verdict_text(with_optional(content.gap)))
+
+
+def write_sentences(contents: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write one row a dataset: the verdict in a sentence.
+
+    Parameters
+    ----------
+    contents : sequence of mapping
+        What gap.json of each holds.
+    path : Path
+        CSV file.
+    """
+    rows = [
+        [content["dataset"], words.verdict_sentence(with_optional(content))]
+        for content in contents
+    ]
+    write_csv(path, ("dataset", "verdict in a sentence"), rows)
 
 
 def _residual(content: Content, place: Path) -> Figure:
