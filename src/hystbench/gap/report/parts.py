@@ -24,6 +24,8 @@ Whose = Literal["simulator", "added", "put in"]
 
 #: Numbers of an effect that its box has.
 LEADING = 2
+_Number = tuple[object, str]
+"""A value, and its unit."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -82,7 +84,7 @@ class _Owner:
 
     effect: str
     whose: Whose
-    numbers: Mapping[str, tuple[object, str]]
+    numbers: Mapping[str, _Number]
     """Value and unit of each, by parameter."""
     of_block: bool
     """Whether they are numbers of a block that is not the effect's own."""
@@ -214,11 +216,11 @@ def _owners(model: Model, gap: Mapping[str, Any]) -> dict[int, list[_Owner]]:
     )
     for whose, items in given:
         for item in items:
+            effect = effects().get(item["name"])
+            of_block = bool(effect and effect.numbers)
             taken = {k for k, own in found.items() if not all(x.of_block for x in own)}
             again = whose == "put in"
             for k, numbers in _blocks_of(item, model.chain, taken, again):
-                effect = effects().get(item["name"])
-                of_block = bool(effect and effect.numbers)
                 own = _Owner(item["name"], whose, numbers, of_block)
                 found.setdefault(k, []).append(own)
     return found
@@ -226,14 +228,14 @@ def _owners(model: Model, gap: Mapping[str, Any]) -> dict[int, list[_Owner]]:
 
 def _blocks_of(
     item: Mapping[str, Any], chain: Sequence[Block], taken: set[int], again: bool
-) -> Iterator[tuple[int, dict[str, tuple[object, str]]]]:
+) -> Iterator[tuple[int, dict[str, _Number]]]:
     """Find the blocks of an effect: those that have its name and its numbers.
 
     Where they were fitted ``again`` since their numbers were told, as those that the
     user put in, the name alone decides.
     """
     effect = effects().get(item["name"])
-    told: dict[str, list[tuple[object, str]]] = {}
+    told: dict[str, list[_Number]] = {}
     for key, about in item["parameters"].items():
         name = key.partition("#")[0]
         told.setdefault(name, []).append((about["value"], about["unit"]))
@@ -249,8 +251,8 @@ def _blocks_of(
 
 
 def _same_numbers(
-    block: Block, told: Mapping[str, list[tuple[object, str]]]
-) -> dict[str, tuple[object, str]]:
+    block: Block, told: Mapping[str, list[_Number]]
+) -> dict[str, _Number]:
     """Give the numbers of a block that were told; none where one is another."""
     found = {}
     for name in told.keys() & block.parameters().keys():
@@ -262,9 +264,7 @@ def _same_numbers(
     return {name: found[name] for name in told if name in found}
 
 
-def _numbers_now(
-    block: Block, told: Mapping[str, list[tuple[object, str]]]
-) -> dict[str, tuple[object, str]]:
+def _numbers_now(block: Block, told: Mapping[str, list[_Number]]) -> dict[str, _Number]:
     known = block.parameters()
     return {
         name: (known[name].plain(getattr(block, name)), told[name][0][1])
@@ -274,8 +274,8 @@ def _numbers_now(
 
 
 def _offsets(
-    effect: Effect | None, told: Mapping[str, list[tuple[object, str]]]
-) -> dict[str, tuple[object, str]]:
+    effect: Effect | None, told: Mapping[str, list[_Number]]
+) -> dict[str, _Number]:
     """Give the numbers of an effect whose blocks are plain gains with an offset."""
     if effect is None:
         return {}
@@ -284,8 +284,8 @@ def _offsets(
 
 
 def _gains(
-    offsets: Mapping[str, tuple[object, str]], chain: Sequence[Block]
-) -> Iterator[tuple[int, dict[str, tuple[object, str]]]]:
+    offsets: Mapping[str, _Number], chain: Sequence[Block]
+) -> Iterator[tuple[int, dict[str, _Number]]]:
     for name, about in offsets.items():
         for k, block in enumerate(chain):
             if block.name == "gain" and getattr(block, "offset", None) == about[0]:
