@@ -297,8 +297,22 @@ def curves():
     }
 
 
-def write_folder(folder, gap=GAP, with_curves=True, with_tables=True):
+#: What the search of the example came out with.
+MODEL = """
+name: rig-augmented
+input: {name: current, unit: A}
+output: {name: displacement, unit: um}
+chain:
+- gain: {value: 5.0}
+- resonance: {frequency_hz: 69.7123, damping_ratio: 0.0412, participation: 0.1}
+- creep: {magnitudes: [0.0213, 0.0117], time_constants_s: [0.5, 5.0]}
+"""
+
+
+def write_folder(folder, gap=GAP, with_curves=True, with_tables=True, model=MODEL):
     (folder / "gap.json").write_text(json.dumps(gap))
+    if model:
+        (folder / "model.yaml").write_text(MODEL)
     if with_curves:
         (folder / "curves.json").write_text(json.dumps(curves()))
     if with_tables:
@@ -397,6 +411,17 @@ def test_a_reason_to_decline_is_said_once_and_what_ranks_is_said(page):
 
 def test_how_much_of_the_gap_the_map_holds_is_said(page):
     assert "These cells hold 41 % of the gap" in page.said
+
+
+def test_the_model_is_drawn_as_blocks_where_its_effects_are_told(tmp_path):
+    text = write_report(write_folder(tmp_path)).read_text()
+    (told,) = re.findall(
+        r'alt="Block diagram: (.*?)"', text[text.index("<h2>Effects") :]
+    )
+    assert told == "current, then gain, then resonance, then creep, then displacement"
+    (tmp_path / "bare").mkdir()
+    alone = read(write_report(write_folder(tmp_path / "bare", model="")))
+    assert "Not drawn: the folder holds no model.yaml." in alone.said
 
 
 def image(text):
@@ -599,7 +624,7 @@ DRAWN = (
 @pytest.mark.usefixtures("unrendered")
 @pytest.mark.parametrize("key", ["spectrum", "records", "over_rate", *DRAWN[4:9]])
 def test_curves_are_drawn_and_missing_ones_named(tmp_path, key):
-    folder = write_folder(tmp_path, small(), with_tables=False)
+    folder = write_folder(tmp_path, small(), with_tables=False, model="")
     there = {"units": curves()["units"], key: curves()[key]}
     (folder / "curves.json").write_text(json.dumps(there))
     page = read(write_report(folder))

@@ -183,15 +183,22 @@ rule gap_show:
         " --out {params.folder:q} 2> {log:q}"
 
 
+# The page; and what a page of several devices shows of each.
 rule gap_report:
     input:
         gap=rules.gap_show.output.gap,
+        model=rules.gap_show.output.model,
         hold_out=rules.gap_show.output.hold_out,
         curves=rules.gap_decide.output.curves,
         code=code("hystbench.commands.jobs.gap_report"),
         page=PACKAGE / "gap/report/report.html.j2",
+        style=PACKAGE / "figures" / "hystbench.mplstyle",
     output:
-        f"{GAP_CASE}/report.html",
+        page=f"{GAP_CASE}/report.html",
+        verdict=f"{GAP_CASE}/verdict.md",
+        pictures=multiext(
+            f"{GAP_CASE}/", "model.svg", "model.png", "residual.svg", "residual.png"
+        ),
     log:
         f"{RESULTS}/logs/gap/{{case}}/report.log",
     benchmark:
@@ -244,6 +251,7 @@ rule gap_summary:
         summary=f"{GAP}/summary.csv",
         effects=f"{GAP}/effects.csv",
         records=f"{GAP}/records.csv",
+        sentences=f"{GAP}/sentences.csv",
         adds=[f"{GAP}/twin-adds.csv"] if TWIN else [],
     log:
         f"{RESULTS}/logs/gap/summary.log",
@@ -260,6 +268,7 @@ rule gap_summary:
     shell:
         "hystbench job gap-summary {input.gaps:q} {params.twin}"
         " --effects {output.effects:q} --records {output.records:q}"
+        " --sentences {output.sentences:q}"
         " --out {output.summary:q} 2> {log:q}"
 
 

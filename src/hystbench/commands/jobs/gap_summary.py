@@ -8,6 +8,7 @@ import click
 
 from hystbench import options
 from hystbench.files import read_json
+from hystbench.gap.report.gallery import write_sentences
 from hystbench.gap.summary import (
     write_adds,
     write_effects,
@@ -28,6 +29,12 @@ from hystbench.model import load_model
     required=True,
     help="Table of the hold-out records.",
 )
+@click.option(
+    "--sentences",
+    type=options.NEW_FILE,
+    required=True,
+    help="Table of the verdicts in a sentence.",
+)
 @click.option("--twin", type=options.FILE, help="Model file of the twin.")
 @click.option("--adds", type=options.NEW_FILE, help="Table of what it adds.")
 @options.out
@@ -35,14 +42,16 @@ def gap_summary(
     gaps: tuple[Path, ...],
     effects: Path,
     records: Path,
+    sentences: Path,
     twin: Path | None,
     adds: Path | None,
     out: Path,
 ) -> None:
-    """Write tables of GAPS, gap.json files: of datasets, parameters and records."""
+    """Write tables of GAPS, gap.json files: datasets, parameters, records, words."""
     contents = [read_json(path) for path in gaps]
     write_effects(contents, effects)
     write_records(contents, records)
+    write_sentences(contents, sentences)
     write_summary(contents, out)
     if twin is not None and adds is not None:
         write_adds(load_model(twin), adds)

@@ -11,8 +11,8 @@ def write_report(folder: str | Path) -> Path:
     """Write report.html from what the gap workflow left in a folder.
 
     The page stands alone: pictures are inside, there is no script, and nothing is
-    fetched. It reads gap.json, the tables in holdout/ and curves.json; what is not
-    there is said to be missing.
+    fetched. It reads gap.json, model.yaml, the tables in holdout/ and curves.json; what
+    is not there is said to be missing.
 
     Parameters
     ----------

@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping
 from itertools import groupby
 from typing import Any
 
-from hystbench.figures.style import COLUMN, unit_text
+from hystbench.figures.style import COLUMN, in_style, unit_text
 from hystbench.gap.behaviour import for_readers
 from hystbench.gap.locate import LEVEL
-from hystbench.gap.report import pictures, words
-from hystbench.gap.report.pictures import Picture, draw
+from hystbench.gap.report import diagram, pictures, words
+from hystbench.gap.report.pictures import Picture, draw, embedded
 from hystbench.gap.report.read import Content
 from hystbench.gap.report.where_drawn import pictures_of
 from hystbench.record import column_name
@@ -78,6 +78,7 @@ def page(content: Content) -> str:
         y=unit_text(gap["unit"]),
         named=[effect["name"] for effect in gap["effects"]],
         glance=headline(gap, content),
+        diagram=_diagram(content),
         advice=words.advice(gap),
         reruns=words.rerun_commands(named),
         causes=words.causes(gap),
@@ -151,6 +152,14 @@ def headline(gap: dict[str, Any], content: Content) -> list[Picture]:
         )
     )
     return found
+
+
+def _diagram(content: Content) -> Picture | None:
+    if content.model is None:
+        return None
+    said = diagram.words_of(content.model, content.gap)
+    with in_style():
+        return embedded(diagram.figure_of(content.model, content.gap), said)
 
 
 def _input_column(gap: dict[str, Any]) -> str:

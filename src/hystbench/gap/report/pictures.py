@@ -60,15 +60,20 @@ def draw(
     clear: bool = False,
     panels: tuple[int, int] = (1, 1),
 ) -> Picture:
-    """Draw a figure as SVG, the same bytes each time."""
+    """Draw a figure with axes for the page."""
     with in_style():
         figure = Figure(figsize=(width, height))
         axes = figure.subplots(*panels, squeeze=False)
         paint(axes if panels[0] > 1 else axes[0], *content)
         plain_ticks(figure)
-        buffer = io.BytesIO()
-        about = {"Date": None, "Creator": None}
-        figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
+        return embedded(figure, words, clear=clear)
+
+
+def embedded(figure: Figure, words: str, *, clear: bool = False) -> Picture:
+    """Take a figure into the page as SVG, the same bytes each time."""
+    buffer = io.BytesIO()
+    about = {"Date": None, "Creator": None}
+    figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
     text = base64.b64encode(buffer.getvalue()).decode("ascii")
     return Picture(f"data:image/svg+xml;base64,{text}", words)
 
@@ -180,46 +185,68 @@ def sizes(
 
 def series(axes: Any, tables: Sequence[HoldOut], floor: float, unit: str) -> None:
     """Draw hold-out records: outputs, residuals and their spectra, a row each."""
-    shown = unit_text(unit)
     for (outputs, residuals, spectrum), table in zip(axes, tables, strict=True):
-        time = table.time_s
-        left = (table.measured - table.before, table.measured - table.after)
         part = _window(table)
+        time = table.time_s[part]
         outputs.plot(
-            time[part],
-            table.measured[part],
-            color=GREY,
-            linewidth=2.6,
-            label="measured",
+            time, table.measured[part], color=GREY, linewidth=2.6, label="measured"
         )
         for name, values, color, line in (
             ("before", table.before, BEFORE, "--"),
             ("after", table.after, AFTER, "-"),
         ):
-            outputs.plot(time[part], values[part], line, color=color, label=name)
+            outputs.plot(time, values[part], line, color=color, label=name)
         outputs.set_title(table.name)
-        outputs.set_ylabel(f"output ({shown})")
-        for values, color in zip(left, (BEFORE, AFTER), strict=True):
-            residuals.plot(*hull(time, values), color=color, linewidth=0.8)
-        residuals.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
-        residuals.set_title("residual, noise floor grey")
-        residuals.set_ylabel(f"({shown})")
-        for panel in (outputs, residuals):
-            panel.set_xlabel("time (s)")
-        dt = float(time[-1] - time[0]) / (len(time) - 1)
-        found = spectra(*left, dt, floor)
-        for power, color, line in (
-            (found.before, BEFORE, "--"),
-            (found.after, AFTER, "-"),
-        ):
-            spectrum.plot(found.frequency_hz[1:], np.sqrt(power[1:]), line, color=color)
-        spectrum.axhline(np.sqrt(found.floor), color=FLOOR, linestyle=":")
-        logarithmic(spectrum, "xy")
-        spectrum.set_title("residual, noise floor dotted")
-        spectrum.set_xlabel("frequency (Hz)")
-        spectrum.set_ylabel(f"({shown}/√Hz)")
+        outputs.set_xlabel("time (s)")
+        outputs.set_ylabel(f"output ({unit_text(unit)})")
+        _residuals(residuals, table, slice(None), floor, unit)
+        _spectrum(spectrum, table, floor, unit)
     lines = axes[0][0].get_legend_handles_labels()[0]
     legend_above(axes[0][0].figure, lines)
+
+
+def residual(axes: Any, table: HoldOut, floor: float, unit: str) -> None:
+    """Draw what is left of a record before and after: a stretch, and the spectrum."""
+    over_time, over_frequency = axes
+    _residuals(over_time, table, _window(table), floor, unit)
+    over_time.set_title(f"a stretch of {table.name}, noise floor grey")
+    over_time.set_ylabel(f"residual ({unit_text(unit)})")
+    _spectrum(over_frequency, table, floor, unit)
+    over_frequency.set_title("its spectrum, noise floor dotted")
+    over_frequency.set_ylabel(f"residual ({unit_text(unit)}/√Hz)")
+    legend_above(over_time.figure, over_time.get_legend_handles_labels()[0])
+
+
+def _residuals(
+    panel: Axes, table: HoldOut, part: slice, floor: float, unit: str
+) -> None:
+    for name, simulated, color in (
+        ("before", table.before, BEFORE),
+        ("after", table.after, AFTER),
+    ):
+        left = (table.measured - simulated)[part]
+        look: dict[str, Any] = {"color": color, "linewidth": 0.8, "label": name}
+        panel.plot(*hull(table.time_s[part], left), **look)
+    panel.axhspan(-floor, floor, color=GREY, alpha=0.35, linewidth=0)
+    panel.set_title("residual, noise floor grey")
+    panel.set_xlabel("time (s)")
+    panel.set_ylabel(f"({unit_text(unit)})")
+
+
+def _spectrum(panel: Axes, table: HoldOut, floor: float, unit: str) -> None:
+    left = (table.measured - table.before, table.measured - table.after)
+    dt = float(table.time_s[-1] - table.time_s[0]) / (len(table.time_s) - 1)
+    found = spectra(*left, dt, floor)
+    for power, color, line in (
+        (found.before, BEFORE, "--"),
+        (found.after, AFTER, "-"),
+    ):
+        panel.plot(found.frequency_hz[1:], np.sqrt(power[1:]), line, color=color)
+    panel.axhline(np.sqrt(found.floor), color=FLOOR, linestyle=":")
+    logarithmic(panel, "xy")
+    panel.set_title("residual, noise floor dotted")
+    panel.set_xlabel("frequency (Hz)")
+    panel.set_ylabel(f"({unit_text(unit)}/√Hz)")
 
 
 def _window(table: HoldOut) -> slice:

@@ -1,4 +1,4 @@
-"""What the page is made of: gap.json, the hold-out tables and the curves."""
+"""What the page is made of: gap.json, model.yaml, hold-out tables and curves."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from hystbench.errors import InputError, nearest
 from hystbench.gap.schema import NAMES, NUMBER, OPTIONAL, SCHEMA
+from hystbench.model import Model, load_model
 from hystbench.record import FloatArray
 from hystbench.schema import check_against_schema
 
@@ -80,11 +81,14 @@ class Content:
     hold_out : tuple of HoldOut
     curves : mapping or None
         Of curves.json; None where there is none.
+    model : Model or None
+        Of model.yaml; None where there is none.
     """
 
     gap: dict[str, Any]
     hold_out: tuple[HoldOut, ...]
     curves: dict[str, Any] | None
+    model: Model | None = None
 
 
 def read_content(folder: Path) -> Content:
@@ -93,8 +97,8 @@ def read_content(folder: Path) -> Content:
     Raises
     ------
     InputError
-        If gap.json is missing or not as its schema says, or a table or the curves
-        cannot be read.
+        If gap.json is missing or not as its schema says, or a table, the curves or
+        the model cannot be read.
     """
     place = folder / "gap.json"
     gap = _json(place)
@@ -113,7 +117,13 @@ def read_content(folder: Path) -> Content:
     found = _json(curves) if curves.is_file() else None
     if found is not None and not isinstance(found, dict):
         raise InputError(f"{curves}: expected a mapping of curves")
-    return Content(gap, tuple(map(_hold_out, tables)), found)
+    model = folder / "model.yaml"
+    return Content(
+        gap,
+        tuple(map(_hold_out, tables)),
+        found,
+        load_model(model) if model.is_file() else None,
+    )
 
 
 def _json(path: Path) -> Any:

@@ -40,6 +40,15 @@ def verdict_sentence(gap: dict[str, Any]) -> str:
     return f"With {names}, which you put in, {said[:1].lower()}{said[1:]}"
 
 
+def verdict_text(gap: dict[str, Any]) -> str:
+    """Give the verdict and its reason as two paragraphs, for a page of several."""
+    said = f"**{verdict_sentence(gap)}**\n"
+    if gap["verdict"] == "no-gap":  # the sentence holds the reason
+        return said
+    reason = in_words(gap["reason"]).rstrip(".")
+    return f"{said}\n{reason[:1].upper()}{reason[1:]}.\n"
+
+
 def rerun_commands(gap: dict[str, Any]) -> list[tuple[str, str]]:
     """Give what an engineer may say to a verdict, and the command for each.
 

@@ -1,0 +1,195 @@
+"""The block diagram of a model with its effects, as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
+
+from hystbench.figures.style import BLACK, BLUE, GREY, ORANGE, PAGE, axis_label
+from hystbench.gap.report.diagram_layout import (
+    NAME,
+    NAME_LINE,
+    NUMBER,
+    NUMBER_LINE,
+    PAD,
+    RADIUS,
+    Box,
+    Diagram,
+    Label,
+    Line,
+    Sum,
+    layout,
+)
+from hystbench.gap.report.parts import Part, Stage, Whose, in_one_line, stages
+from hystbench.model import Model
+
+#: Edge, face and width of the edge of a box. Added boxes differ by their edges too.
+LOOKS: dict[Whose, tuple[str, str, float]] = {
+    "simulator": (GREY, "#F2F2F2", 0.8),
+    "added": (BLUE, "#E1EEF7", 1.6),
+    "put in": (ORANGE, "#FCF2DC", 1.6),
+}
+SAID: dict[Whose, str] = {
+    "simulator": "the simulator",
+    "added": "added by the search",
+    "put in": "put in by you",
+}
+KEY = 0.24
+"""Height of the line that says what the colours mean, in inches."""
+
+
+def figure_of(model: Model, gap: Mapping[str, Any]) -> Figure:
+    """Draw a model as a block diagram, each effect in its place.
+
+    Parameters
+    ----------
+    model : Model
+        With its effects.
+    gap : mapping
+        What gap.json holds, which tells the effects from the simulator.
+
+    Returns
+    -------
+    Figure
+        As wide as a page.
+    """
+    found = stages(model, gap)
+    diagram = layout(found, axis_label(model.input), axis_label(model.output), PAGE)
+    size = (diagram.width, diagram.height + KEY)
+    figure = Figure(figsize=size)
+    figure.set_layout_engine("none")  # all is in its place
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    axes.set_xlim(0.0, diagram.width)
+    axes.set_ylim(-KEY, diagram.height)
+    paint(axes, diagram)
+    _key(axes, sorted_parts(found))
+    return figure
+
+
+def words_of(model: Model, gap: Mapping[str, Any]) -> str:
+    """Tell the diagram in words."""
+    return f"Block diagram: {in_one_line(model, stages(model, gap))}"
+
+
+def sorted_parts(found: Sequence[Stage]) -> list[Whose]:
+    """Give whose parts there are, in the order of the key."""
+    there = {part.whose for stage in found for part in _parts(stage)}
+    return [whose for whose in LOOKS if whose in there]
+
+
+def _parts(stage: Stage) -> list[Part]:
+    spilt = [stage.spilt] if stage.spilt else []
+    attached = (*stage.within, *stage.around, *stage.fed_back, *stage.beside)
+    return [stage.core, *attached, *spilt]
+
+
+def paint(axes: Axes, diagram: Diagram) -> None:
+    """Draw what was laid out, larger boxes first: they may hold others."""
+    drawn = diagram.drawn
+    for box in sorted(drawn.boxes, key=lambda box: -box.width * box.height):
+        _box(axes, box)
+    for line in drawn.lines:
+        _line(axes, line)
+    for item in drawn.sums:
+        _sum(axes, item)
+    for label in drawn.labels:
+        _label(axes, label)
+
+
+def _box(axes: Axes, box: Box) -> None:
+    edge, face, width = LOOKS[box.whose]
+    axes.add_patch(
+        FancyBboxPatch(
+            (box.x, box.y),
+            box.width,
+            box.height,
+            boxstyle="round,pad=0,rounding_size=0.04",
+            edgecolor=edge,
+            facecolor=face,
+            linewidth=width,
+        )
+    )
+    y = box.y + box.height - PAD
+    for lines, size, step in (
+        (box.words, NAME, NAME_LINE),
+        (box.numbers, NUMBER, NUMBER_LINE),
+    ):
+        for text in lines:
+            _text(axes, box.x + box.width / 2, y - step / 2, text, size)
+            y -= step
+
+
+def _text(axes: Axes, x: float, y: float, text: str, size: float) -> None:
+    # A name of the user's may hold what matplotlib would take for a formula.
+    axes.text(x, y, text, fontsize=size, ha="center", va="center", parse_math=False)
+
+
+def _line(axes: Axes, line: Line) -> None:
+    look: dict[str, Any] = {"color": BLACK, "linewidth": 0.8}
+    x, y = zip(*line.points, strict=True)
+    if not line.arrow:
+        axes.add_line(Line2D(x, y, solid_joinstyle="miter", **look))
+        return
+    axes.add_line(Line2D(x[:-1], y[:-1], solid_joinstyle="miter", **look))
+    axes.add_patch(
+        FancyArrowPatch(
+            line.points[-2],
+            line.points[-1],
+            arrowstyle="-|>,head_length=3.2,head_width=1.6",
+            mutation_scale=1.0,
+            shrinkA=0.0,
+            shrinkB=0.0,
+            joinstyle="miter",
+            **look,
+        )
+    )
+
+
+def _sum(axes: Axes, item: Sum) -> None:
+    axes.add_patch(
+        Circle(
+            (item.x, item.y),
+            RADIUS,
+            edgecolor=BLACK,
+            facecolor="white",
+            linewidth=0.8,
+            zorder=3,
+        )
+    )
+    arm = 0.55 * RADIUS
+    look: dict[str, Any] = {"color": BLACK, "linewidth": 0.8, "zorder": 4}
+    axes.add_line(Line2D((item.x - arm, item.x + arm), (item.y, item.y), **look))
+    axes.add_line(Line2D((item.x, item.x), (item.y - arm, item.y + arm), **look))
+    if item.minus:  # what comes from below is subtracted
+        x, y = item.x + 1.2 * RADIUS, item.y - 1.7 * RADIUS
+        axes.add_line(Line2D((x, x + 1.2 * arm), (y, y), **look))
+
+
+def _label(axes: Axes, label: Label) -> None:
+    y = label.y + NAME_LINE * len(label.words)
+    for text in label.words:
+        _text(axes, label.x + label.width / 2, y - NAME_LINE / 2, text, NAME)
+        y -= NAME_LINE
+
+
+def _key(axes: Axes, there: Sequence[Whose]) -> None:
+    """Say below the diagram whose each colour is."""
+    x = PAD
+    for whose in there:
+        edge, face, width = LOOKS[whose]
+        look: dict[str, Any] = {
+            "edgecolor": edge,
+            "facecolor": face,
+            "linewidth": width,
+        }
+        axes.add_patch(
+            FancyBboxPatch((x, -0.17), 0.16, 0.1, boxstyle="square,pad=0", **look)
+        )
+        axes.text(x + 0.22, -0.12, SAID[whose], fontsize=NUMBER, va="center")
+        x += 1.5

@@ -1,0 +1,392 @@
+"""Where the boxes, lines and sums of a block diagram are, in inches.
+
+A group is a piece of the diagram: the signal enters it at (0, 0) and leaves it at
+(width, 0). Each function puts something around a group and gives the larger group, so
+that a force inside a mechanism that has other modes beside it needs no rule of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from textwrap import wrap
+
+from hystbench.gap.report.parts import Part, Stage, Whose
+
+#: Type of names and of numbers (points), and the height of a line (inches).
+NAME, NUMBER = 8.0, 7.0
+NAME_LINE, NUMBER_LINE = 0.15, 0.13
+#: Letters of a line, at most: longer words are broken.
+NAME_LETTERS, NUMBER_LETTERS = 18, 24
+#: Widths of letters, in times of the type's size. Most are narrower than this says.
+NARROW, USUAL, BROAD = 0.42, 0.67, 1.0
+_NARROW, _BROAD = frozenset("ijltfrI.,:;'|()[]/- ·"), frozenset("mwMWOQ@%&")
+
+PAD = 0.07
+"""Between a box and what stands in it."""
+LEAD = 0.2
+"""Length of a line with an arrow."""
+STUB = 0.1
+"""Length of a line without one."""
+SPACE = 0.12
+"""Between boxes above one another."""
+RADIUS = 0.07
+"""Of the circle where signals are summed."""
+ROWS = 0.22
+"""Between rows, twice: a line runs in the middle."""
+MARGIN = 0.06
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box with words and numbers below each other, from its upper edge on.
+
+    Parameters
+    ----------
+    x, y : float
+        Its left lower corner.
+    width, height : float
+    words, numbers : tuple of str
+        Lines of text.
+    whose : {"simulator", "added", "put in"}
+    """
+
+    x: float
+    y: float
+    width: float
+    height: float
+    words: tuple[str, ...]
+    numbers: tuple[str, ...]
+    whose: Whose
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line through points; with an arrow at its end or without."""
+
+    points: tuple[Point, ...]
+    arrow: bool = False
+
+
+@dataclass(frozen=True)
+class Sum:
+    """A circle where signals are summed.
+
+    With ``minus`` what comes from below is subtracted.
+    """
+
+    x: float
+    y: float
+    minus: bool = False
+
+
+@dataclass(frozen=True)
+class Label:
+    """Lines of text without a box, in the middle of a width."""
+
+    x: float
+    y: float
+    width: float
+    words: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What is drawn, anywhere."""
+
+    boxes: tuple[Box, ...] = ()
+    lines: tuple[Line, ...] = ()
+    sums: tuple[Sum, ...] = ()
+    labels: tuple[Label, ...] = ()
+
+    def moved(self, x: float, y: float) -> Drawn:
+        """Move all to the right and up."""
+        return Drawn(
+            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.boxes),
+            tuple(
+                replace(item, points=tuple((a + x, b + y) for a, b in item.points))
+                for item in self.lines
+            ),
+            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.sums),
+            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.labels),
+        )
+
+    def __add__(self, other: Drawn) -> Drawn:
+        """Draw both."""
+        return Drawn(
+            self.boxes + other.boxes,
+            self.lines + other.lines,
+            self.sums + other.sums,
+            self.labels + other.labels,
+        )
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """A whole diagram, in inches from its left lower corner."""
+
+    width: float
+    height: float
+    drawn: Drawn
+
+
+@dataclass(frozen=True)
+class _Group:
+    """A piece that the signal passes from (0, 0) to (width, 0).
+
+    ``up`` and ``down`` are how far it reaches; ``arrow`` is whether a line may end at
+    (0, 0) with an arrow: at the edge of a box it may, where lines part it may not.
+    """
+
+    width: float
+    up: float
+    down: float
+    drawn: Drawn
+    arrow: bool = True
+
+
+def layout(stages: Sequence[Stage], source: str, output: str, page: float) -> Diagram:
+    """Lay a diagram out: from left to right, in as many rows as its width asks for.
+
+    Parameters
+    ----------
+    stages : sequence of Stage
+    source, output : str
+        What stands where the signal comes in and goes out.
+    page : float
+        Width of the diagram, in inches.
+
+    Returns
+    -------
+    Diagram
+    """
+    groups = [_label(source), *map(_group, stages), _label(output)]
+    rows = _rows(groups, page - 2 * (MARGIN + STUB))
+    drawn, below = Drawn(), 0.0
+    ends: list[tuple[Point, Point, float]] = []
+    for k, row in enumerate(rows):
+        middle = below - (2 * ROWS if k else 0.0) - max(group.up for group in row)
+        # A single row stands in the middle of the page, several begin below another.
+        width = _width(row)
+        x = MARGIN + STUB if len(rows) > 1 else (page - width) / 2
+        drawn += _series(row).drawn.moved(x, middle)
+        ends.append(((x, middle), (x + width, middle), below - ROWS))
+        below = middle - max(group.down for group in row)
+    for ((_, last, _), (first, _, between)), row in zip(
+        pairwise(ends), rows[1:], strict=True
+    ):
+        way = (
+            last,
+            (last[0] + STUB, last[1]),
+            (last[0] + STUB, between),
+            (MARGIN, between),
+            (MARGIN, first[1]),
+            first,
+        )
+        drawn += Drawn(lines=(Line(way, row[0].arrow),))
+    height = 2 * MARGIN - below
+    return Diagram(page, height, drawn.moved(0.0, height - MARGIN))
+
+
+def text_width(text: str, size: float) -> float:
+    """Tell how wide a line of text is at most, in inches, for type of some points."""
+    letters = (
+        NARROW if letter in _NARROW else BROAD if letter in _BROAD else USUAL
+        for letter in text
+    )
+    return sum(letters) * size / 72
+
+
+def _rows(groups: Sequence[_Group], most: float) -> list[list[_Group]]:
+    """Fill rows from the left; a group that is wider than all has one to itself."""
+    rows: list[list[_Group]] = [[]]
+    for group in groups:
+        if rows[-1] and _width([*rows[-1], group]) > most:
+            rows.append([])
+        rows[-1].append(group)
+    return rows
+
+
+def _width(row: Sequence[_Group]) -> float:
+    return sum(group.width for group in row) + LEAD * (len(row) - 1)
+
+
+def _series(row: Sequence[_Group]) -> _Group:
+    """Put groups behind one another."""
+    drawn, x = row[0].drawn, row[0].width
+    for group in row[1:]:
+        way = Line(((x, 0.0), (x + LEAD, 0.0)), group.arrow)
+        drawn += Drawn(lines=(way,)) + group.drawn.moved(x + LEAD, 0.0)
+        x += LEAD + group.width
+    up, down = (max(getattr(group, key) for group in row) for key in ("up", "down"))
+    return _Group(x, up, down, drawn, row[0].arrow)
+
+
+def _group(stage: Stage) -> _Group:
+    """Lay out a block, then what is attached to it, from the inside out."""
+    group = _core(stage.core, stage.within)
+    if stage.spilt is not None:
+        group = _with_spill(group, stage.spilt, stage.caught)
+    for part in stage.around:
+        group = _with_frame(group, part)
+    if stage.fed_back:
+        group = _with_feedback(group, stage.fed_back)
+    return _with_beside(group, stage.beside) if stage.beside else group
+
+
+def _label(text: str) -> _Group:
+    words = _lines(text, NAME_LETTERS)
+    width = max(text_width(line, NAME) for line in words)
+    height = NAME_LINE * len(words)
+    label = Label(STUB / 2, -height / 2, width, words)
+    return _Group(width + STUB, height / 2, height / 2, Drawn(labels=(label,)))
+
+
+def _lines(text: str, letters: int) -> tuple[str, ...]:
+    return tuple(wrap(text, letters, break_on_hyphens=False)) or ("",)
+
+
+def _box(part: Part) -> Box:
+    """Give a part its box, its left lower corner at (0, 0)."""
+    words = _lines(part.words, NAME_LETTERS)
+    numbers = tuple(
+        line for text in part.numbers for line in _lines(text, NUMBER_LETTERS)
+    )
+    widths = [text_width(line, NAME) for line in words]
+    widths += [text_width(line, NUMBER) for line in numbers]
+    height = NAME_LINE * len(words) + NUMBER_LINE * len(numbers) + 2 * PAD
+    width = max(widths) + 2 * PAD
+    return Box(0.0, 0.0, width, height, words, numbers, part.whose)
+
+
+def _core(part: Part, within: Sequence[Part]) -> _Group:
+    """Put a block on the signal's way; effects that are its numbers stand in it."""
+    box, inner = _box(part), [_box(item) for item in within]
+    width = max([box.width, *(item.width + 2 * PAD for item in inner)])
+    height = box.height + sum(item.height + PAD for item in inner)
+    drawn = Drawn(boxes=(replace(box, width=width, height=height, y=-height / 2),))
+    top = height / 2 - box.height
+    for item in inner:
+        placed = replace(item, x=(width - item.width) / 2, y=top - item.height)
+        drawn += Drawn(boxes=(placed,))
+        top -= item.height + PAD
+    return _Group(width, height / 2, height / 2, drawn)
+
+
+def _with_frame(group: _Group, part: Part) -> _Group:
+    """Draw a box around a group, its words above what it holds."""
+    box = _box(part)
+    width = max(group.width + 2 * STUB, box.width)
+    left = (width - group.width) / 2
+    up, down = group.up + box.height, group.down + PAD
+    frame = replace(box, width=width, height=up + down, y=-down)
+    ways = (
+        Line(((0.0, 0.0), (left, 0.0)), group.arrow),
+        Line(((left + group.width, 0.0), (width, 0.0))),
+    )
+    drawn = Drawn(boxes=(frame,), lines=ways) + group.drawn.moved(left, 0.0)
+    return _Group(width, up, down, drawn, arrow=False)
+
+
+def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
+    """Draw a loop below a group: what it gives comes back and is subtracted."""
+    boxes = [_box(part) for part in parts]
+    # The loop is as wide as its boxes ask for; the group stands in its middle.
+    inner = max(group.width, LEAD + max(box.width for box in boxes))
+    start = RADIUS
+    left = start + RADIUS + LEAD + (inner - group.width) / 2
+    end = start + RADIUS + LEAD + inner + STUB
+    width = end + STUB
+    drawn = group.drawn.moved(left, 0.0) + Drawn(
+        lines=(
+            Line(((start + RADIUS, 0.0), (left, 0.0)), group.arrow),
+            Line(((left + group.width, 0.0), (width, 0.0))),
+        ),
+        sums=(Sum(start, 0.0, minus=True),),
+    )
+    y, before, last = -group.down, 0.0, len(boxes) - 1
+    for k, box in enumerate(boxes):
+        middle = y - SPACE - box.height / 2
+        x = (start + end - box.width) / 2
+        placed = replace(box, x=x, y=middle - box.height / 2)
+        foot = (start, before - RADIUS)
+        back: tuple[Line, ...] = (
+            Line(((end, before), (end, middle), (x + box.width, middle)), arrow=True),
+        )
+        if k == last:
+            back += (Line(((x, middle), (start, middle), foot), arrow=True),)
+        else:  # forces are summed on their way back
+            back += (
+                Line(((x, middle), (start + RADIUS, middle)), arrow=True),
+                Line(((start, middle + RADIUS), foot), arrow=True),
+            )
+            drawn += Drawn(sums=(Sum(start, middle),))
+        drawn += Drawn(boxes=(placed,), lines=back)
+        y, before = middle - box.height / 2, middle
+    return _Group(width, group.up, -y, drawn)
+
+
+def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
+    """Draw branches above a group: they have its input, and are added to its output."""
+    boxes = [_box(part) for part in parts]
+    inner = max(group.width, *(box.width for box in boxes))
+    left = STUB + LEAD + (inner - group.width) / 2
+    end = STUB + LEAD + inner + LEAD + RADIUS
+    width = end + RADIUS
+    drawn = group.drawn.moved(left, 0.0) + Drawn(
+        lines=(
+            Line(((0.0, 0.0), (left, 0.0)), group.arrow),
+            Line(((left + group.width, 0.0), (end - RADIUS, 0.0)), arrow=True),
+        ),
+        sums=(Sum(end, 0.0),),
+    )
+    y, before, last = group.up, 0.0, len(boxes) - 1
+    for k, box in enumerate(boxes):
+        middle = y + SPACE + box.height / 2
+        x = (STUB + end - box.width) / 2
+        placed = replace(box, x=x, y=middle - box.height / 2)
+        head = (end, before + RADIUS)
+        branch: tuple[Line, ...] = (
+            Line(((STUB, before), (STUB, middle), (x, middle)), arrow=True),
+        )
+        if k == last:
+            way = ((x + box.width, middle), (end, middle), head)
+            branch += (Line(way, arrow=True),)
+        else:
+            branch += (
+                Line(((x + box.width, middle), (end - RADIUS, middle)), arrow=True),
+                Line(((end, middle - RADIUS), head), arrow=True),
+            )
+            drawn += Drawn(sums=(Sum(end, middle),))
+        drawn += Drawn(boxes=(placed,), lines=branch)
+        y, before = middle + box.height / 2, middle
+    return _Group(width, y, group.down, drawn, arrow=False)
+
+
+def _with_spill(group: _Group, part: Part, caught: bool) -> _Group:
+    """Draw what leaves a full store above it; what is caught joins its output."""
+    box = _box(part)
+    inner = max(group.width, box.width)
+    left, x = (inner - group.width) / 2, (inner - box.width) / 2
+    foot = group.up + LEAD
+    middle = foot + box.height / 2
+    rise = Line(((inner / 2, group.up), (inner / 2, foot)), arrow=True)
+    drawn = group.drawn.moved(left, 0.0) + Drawn(
+        boxes=(replace(box, x=x, y=foot),), lines=(rise,)
+    )
+    if left:
+        drawn += Drawn(lines=(Line(((0.0, 0.0), (left, 0.0)), arrow=True),))
+    up, out = foot + box.height, left + group.width
+    if not caught:
+        drawn += Drawn(lines=(Line(((out, 0.0), (inner, 0.0))),) if left else ())
+        return _Group(inner, up, group.down, drawn, arrow=not left)
+    end = inner + LEAD + RADIUS
+    ways = (
+        Line(((out, 0.0), (end - RADIUS, 0.0)), arrow=True),
+        Line(((x + box.width, middle), (end, middle), (end, RADIUS)), arrow=True),
+    )
+    drawn += Drawn(lines=ways, sums=(Sum(end, 0.0),))
+    return _Group(end + RADIUS, up, group.down, drawn, arrow=not left)

@@ -1,0 +1,293 @@
+"""The parts of a model's block diagram: its blocks, each in its place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.base import Block, RandomBlock
+from hystbench.blocks.force import Force
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.parameter import HUGE
+from hystbench.blocks.simulator import Simulator
+from hystbench.blocks.store import Store
+from hystbench.blocks.wrapping import WrappingBlock
+from hystbench.device_kinds import behaviour_of
+from hystbench.figures.style import unit_text
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Effect
+from hystbench.model import Model
+
+Whose = Literal["simulator", "added", "put in"]
+
+#: Numbers of an effect that its box has.
+LEADING = 2
+_Number = tuple[object, str]
+"""A value, and its unit."""
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Part:
+    """What stands in one box, and who put it there.
+
+    Parameters
+    ----------
+    words : str
+        Name of the block, or of the effect that it stands for.
+    numbers : tuple of str
+        The first numbers of an effect, with units.
+    whose : {"simulator", "added", "put in"}
+        Of the simulator as it was given, added by the search, or put in by the user.
+    """
+
+    words: str
+    numbers: tuple[str, ...] = ()
+    whose: Whose = "simulator"
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A block that the signal passes, with what is attached to it.
+
+    Parameters
+    ----------
+    core : Part
+    within : tuple of Part
+        Effects that are numbers of the block itself.
+    around : tuple of Part
+        What changes the block, from the inside out.
+    fed_back : tuple of Part
+        Forces that act against its motion.
+    beside : tuple of Part
+        What has the same input, and is added to its output.
+    spilt : Part or None
+        What leaves it where it is full.
+    caught : bool
+        Whether a part of what is spilt goes on with its output.
+    """
+
+    core: Part
+    within: tuple[Part, ...] = ()
+    around: tuple[Part, ...] = ()
+    fed_back: tuple[Part, ...] = ()
+    beside: tuple[Part, ...] = ()
+    spilt: Part | None = None
+    caught: bool = False
+
+
+@dataclass(frozen=True)
+class _Owner:
+    """An effect that a block of the chain stands for, with its numbers there."""
+
+    effect: str
+    whose: Whose
+    numbers: Mapping[str, _Number]
+    """Value and unit of each, by parameter."""
+    of_block: bool
+    """Whether they are numbers of a block that is not the effect's own."""
+
+    @property
+    def part(self) -> Part:
+        """Its name and first numbers; those that are zero say nothing."""
+        told = [
+            number_words(name, value, unit)
+            for name, (value, unit) in self.numbers.items()
+            if isinstance(value, float | int) and value != 0
+        ]
+        return Part(behaviour_of(self.effect), tuple(told[:LEADING]), self.whose)
+
+
+def stages(model: Model, gap: Mapping[str, Any]) -> tuple[Stage, ...]:
+    """Give what the signal passes from input to output, noise left out.
+
+    The class of a block decides its place: what is attached to the block before it is
+    drawn around it, as feedback or beside it; every other block stands behind the last
+    one. A new block needs no entry here.
+
+    Parameters
+    ----------
+    model : Model
+        With its effects.
+    gap : mapping
+        What gap.json holds: its ``effects`` and ``built_in`` tell which blocks were
+        added, by the names and numbers of them.
+
+    Returns
+    -------
+    tuple of Stage
+    """
+    owners = _owners(model, gap)
+    found: list[Stage] = []
+    host: Block | None = None
+    for k, block in enumerate(model.chain):
+        own = owners.get(k, [])
+        part = next((x.part for x in own if not x.of_block), Part(_name(block)))
+        if isinstance(block, RandomBlock):
+            continue
+        if isinstance(block, AttachedBlock):
+            found[-1] = _attached(found[-1], block, host, part)
+            continue
+        host = block
+        found.append(_stage(block, part, [x for x in own if x.of_block]))
+    return tuple(found)
+
+
+def in_one_line(model: Model, found: Sequence[Stage]) -> str:
+    """Tell the diagram in words, for those who do not see it."""
+    return ", then ".join([model.input.name, *map(_told, found), model.output.name])
+
+
+def number_words(name: str, value: float, unit: str) -> str:
+    """Write a number of an effect: ``time_constant_s`` as ``time constant 0.025 s``.
+
+    No line breaks between the number and its unit.
+    """
+    label = name.removesuffix(f"_{unit.lower()}").replace("_", " ")
+    shown = f"{value:.3g}".replace("e+", "e")
+    if "e" in shown:
+        digits, power = shown.split("e")
+        shown = f"{digits}·10{str(int(power)).translate(_RAISED)}"
+    shown = shown.replace("-", "−")  # noqa: RUF001  (a minus sign, not a hyphen)
+    if unit not in ("", "-", "1"):
+        shown += f"\u00a0{unit_text(unit)}"
+    return f"{label} {shown}"
+
+
+def _name(block: Block) -> str:
+    if isinstance(block, Simulator):
+        return block.label
+    return block.name.replace("-", " ")
+
+
+def _stage(block: Block, part: Part, own: Sequence[_Owner]) -> Stage:
+    """Start a stage with a block; some of its numbers may be effects."""
+    if not isinstance(block, Store):
+        return Stage(part, within=tuple(x.part for x in own))
+    spills = [x.part for x in own if "height" in x.numbers]
+    if block.height < HUGE and not spills:
+        spills = [Part("overflow")]
+    return Stage(
+        part,
+        within=tuple(x.part for x in own if "height" not in x.numbers),
+        spilt=next(iter(spills), None),
+        caught=block.output == "outflow" and block.caught > 0,
+    )
+
+
+def _attached(stage: Stage, block: Block, host: Block | None, part: Part) -> Stage:
+    """Attach a block where its class says.
+
+    The force of an impedance is a part of its output; in a mechanism it acts against
+    the motion that it depends on.
+    """
+    if isinstance(block, WrappingBlock):
+        return replace(stage, around=(*stage.around, part))
+    if isinstance(block, Force) and not isinstance(host, Impedance):
+        return replace(stage, fed_back=(*stage.fed_back, part))
+    return replace(stage, beside=(*stage.beside, part))
+
+
+def _told(stage: Stage) -> str:
+    places = (
+        ("in it", stage.within),
+        ("around it", stage.around),
+        ("fed back", stage.fed_back),
+        ("beside it", stage.beside),
+        ("above it", (stage.spilt,) if stage.spilt else ()),
+    )
+    told = [
+        f"{' and '.join(part.words for part in parts)} {place}"
+        for place, parts in places
+        if parts
+    ]
+    return stage.core.words + (f" with {' and '.join(told)}" if told else "")
+
+
+def _owners(model: Model, gap: Mapping[str, Any]) -> dict[int, list[_Owner]]:
+    """Find the effects that each block of the chain stands for."""
+    put_in = (gap.get("built_in") or {"effects": []})["effects"]
+    found: dict[int, list[_Owner]] = {}
+    given: tuple[tuple[Whose, Any], ...] = (
+        ("added", gap["effects"]),
+        ("put in", put_in),
+    )
+    for whose, items in given:
+        for item in items:
+            effect = effects().get(item["name"])
+            of_block = bool(effect and effect.numbers)
+            taken = {k for k, own in found.items() if not all(x.of_block for x in own)}
+            again = whose == "put in"
+            for k, numbers in _blocks_of(item, model.chain, taken, again):
+                own = _Owner(item["name"], whose, numbers, of_block)
+                found.setdefault(k, []).append(own)
+    return found
+
+
+def _blocks_of(
+    item: Mapping[str, Any], chain: Sequence[Block], taken: set[int], again: bool
+) -> Iterator[tuple[int, dict[str, _Number]]]:
+    """Find the blocks of an effect: those that have its name and its numbers.
+
+    Where they were fitted ``again`` since their numbers were told, as those that the
+    user put in, the name alone decides.
+    """
+    effect = effects().get(item["name"])
+    told: dict[str, list[_Number]] = {}
+    for key, about in item["parameters"].items():
+        name = key.partition("#")[0]
+        told.setdefault(name, []).append((about["value"], about["unit"]))
+    if offsets := _offsets(effect, told):
+        yield from _gains(offsets, chain)
+        return
+    names = {item["name"], *(effect.laws if effect else ())}
+    named = [k for k, block in enumerate(chain) if block.name in names]
+    same = {k: _same_numbers(chain[k], told) for k in named if k not in taken}
+    if again and not any(same.values()):
+        same = {k: _numbers_now(chain[k], told) for k in same}
+    yield from ((k, numbers) for k, numbers in same.items() if numbers)
+
+
+def _same_numbers(
+    block: Block, told: Mapping[str, list[_Number]]
+) -> dict[str, _Number]:
+    """Give the numbers of a block that were told; none where one is another."""
+    found = {}
+    for name in told.keys() & block.parameters().keys():
+        value = block.parameters()[name].plain(getattr(block, name))
+        units = [unit for other, unit in told[name] if other == value]
+        if not units:
+            return {}
+        found[name] = (value, units[0])
+    return {name: found[name] for name in told if name in found}
+
+
+def _numbers_now(block: Block, told: Mapping[str, list[_Number]]) -> dict[str, _Number]:
+    known = block.parameters()
+    return {
+        name: (known[name].plain(getattr(block, name)), told[name][0][1])
+        for name in told
+        if name in known
+    }
+
+
+def _offsets(
+    effect: Effect | None, told: Mapping[str, list[_Number]]
+) -> dict[str, _Number]:
+    """Give the numbers of an effect whose blocks are plain gains with an offset."""
+    if effect is None:
+        return {}
+    labels = {label for form in effect.offsets.values() for label, _ in form}
+    return {name: told[name][0] for name in told} if {*told} <= labels else {}
+
+
+def _gains(
+    offsets: Mapping[str, _Number], chain: Sequence[Block]
+) -> Iterator[tuple[int, dict[str, _Number]]]:
+    for name, about in offsets.items():
+        for k, block in enumerate(chain):
+            if block.name == "gain" and getattr(block, "offset", None) == about[0]:
+                yield k, {name: about}
+                break
