@@ -31,8 +31,6 @@ RESOLUTION = 0.001
 PLAIN_NOISE = (0.01, 0.1)
 #: Streams of random numbers.
 PLANT, EFFECTS, EXCITATION, NOISE = 1, 2, 3, 4
-#: Effects that take the hysteresis itself away from the base.
-LOOPS = ("hysteresis", "hysteresis-shape")
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,7 +35,6 @@ TURNING = {
     "acceleration": "rad/s^2",
     "force": "N*m",
 }
-PART_FIELDS = {item.name for item in fields(Part)}
 
 Signals = list[tuple[FloatArray, FloatArray]]
 
