@@ -245,14 +245,18 @@ class Settings:
             **section,
             **self.signal_job(section["signal"]),
             "measure": self.measure_job,
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
         }
+
+    @property
+    def _filter_jobs(self) -> dict[str, Any]:
+        return {name: self.filter_job(name) for name in self.filters}
 
     @property
     def step_sweep_job(self) -> dict[str, Any]:
         """Settings of the sweep of step sizes."""
         return {
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
             "sweep": self.config["step_sweep"],
         }
 
@@ -263,7 +267,7 @@ class Settings:
         return {
             "signals": {name: self.signal_job(name) for name in self.signals},
             "measure": self.measure_job,
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
             **{key: section[key] for key in ("zero_errors", "constant_taps")},
             **self.compare_job,
         }
@@ -320,7 +324,7 @@ class Settings:
         return {
             "orders": sweep["orders"],
             "convergence_factor": sweep["convergence_factor"],
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
         }
 
     @property
