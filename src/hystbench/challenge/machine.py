@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.challenge.excitation import FAST, Excitation
 from hystbench.challenge.machine_records import filling, machine_records
-from hystbench.challenge.plant.hidden import Hidden, Reach
+from hystbench.challenge.plant.kind import Effect, Reach
 from hystbench.challenge.plant.machine import (
     FINE,
     Motion,
@@ -88,7 +88,7 @@ class Machine:
         count = (item.samples + TAIL) * FINE
         return self.size * item(np.arange(count) / (FAST * FINE))
 
-    def run(self, item: Excitation, hidden: Sequence[Hidden], reach: Reach) -> Motion:
+    def run(self, item: Excitation, hidden: Sequence[Effect], reach: Reach) -> Motion:
         """Give force and motion under a record, on the fine grid."""
         command = self.command(item)
         for effect in hidden:
@@ -97,7 +97,7 @@ class Machine:
         part = self.with_forces(hidden, reach)
         return move(part, command, self.dt, gains=self.gains)
 
-    def with_forces(self, hidden: Sequence[Hidden], reach: Reach) -> Part:
+    def with_forces(self, hidden: Sequence[Effect], reach: Reach) -> Part:
         """Give the part with what is hidden inside it."""
         assert self.part is not None  # noqa: S101  (for the type checker)
         part = self.part
@@ -106,12 +106,12 @@ class Machine:
                 part = replace(part, **effect.law.numbers(effect.parameters, reach))
         return part
 
-    def read(self, hidden: Sequence[Hidden], reach: Reach) -> Signals:
+    def read(self, hidden: Sequence[Effect], reach: Reach) -> Signals:
         """Give input and output of every record at its samples, without noise."""
         return [self._read(item, hidden, reach) for item in self.records]
 
     def _read(
-        self, item: Excitation, hidden: Sequence[Hidden], reach: Reach
+        self, item: Excitation, hidden: Sequence[Effect], reach: Reach
     ) -> tuple[FloatArray, FloatArray]:
         if self.part is None:
             u = self.command(item)
@@ -132,7 +132,7 @@ class Machine:
 
 
 def with_rims(
-    tanks: tuple[Tank, ...], hidden: Sequence[Hidden], reach: Reach
+    tanks: tuple[Tank, ...], hidden: Sequence[Effect], reach: Reach
 ) -> tuple[Tank, ...]:
     """Give the tanks with what is hidden in them.
 
