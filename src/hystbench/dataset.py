@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 from collections.abc import Mapping, Sequence
@@ -29,7 +28,7 @@ from hystbench.reading import (
 from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.schema import check_against_schema
 from hystbench.units import check_known, check_same_unit, plain, seconds
-from hystbench.written import reads
+from hystbench.written import reads, sha256
 from hystbench.yaml_files import load_yaml
 
 #: Names of records: they name results, and braces are Snakemake's own.
@@ -448,8 +447,7 @@ def _check_digest(about: Path, file: Path, entry: Mapping[str, Any]) -> None:
     if "sha256" not in entry:
         return
     try:
-        with file.open("rb") as stream:
-            found = hashlib.file_digest(stream, "sha256").hexdigest()
+        found = sha256(file)
     except OSError:
         return  # who reads it says so
     if found != entry["sha256"]:

@@ -13,7 +13,8 @@ from hystbench import options
 from hystbench.device_kinds import KINDS
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.inspection.draft import Draft, Given, draft
+from hystbench.inspection.columns import Given
+from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.writing import yaml_text
 from hystbench.written import writes
 
