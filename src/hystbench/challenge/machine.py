@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from hystbench.challenge.plant.machine import (
     Tank,
     decimated,
     fill,
+    low_pass,
     move,
     resist,
 )
@@ -85,8 +87,7 @@ class Machine:
 
     def command(self, item: Excitation) -> FloatArray:
         """Compute a record's command on the fine grid, in its unit."""
-        count = (item.samples + TAIL) * FINE
-        return self.size * item(np.arange(count) / (FAST * FINE))
+        return self.size * _on_fine_grid(item)
 
     def run(self, item: Excitation, hidden: Sequence[Effect], reach: Reach) -> Motion:
         """Give force and motion under a record, on the fine grid."""
@@ -129,6 +130,13 @@ class Machine:
             if effect.kind.place == "behind" and effect.law.curve:
                 y = effect.law.curve(y, effect.parameters, reach)
         return decimated(u)[: item.samples], decimated(y)[: item.samples]
+
+
+@lru_cache(maxsize=16)
+def _on_fine_grid(item: Excitation) -> FloatArray:
+    """Compute a record's command, which a case asks for many times."""
+    count = (item.samples + TAIL) * FINE
+    return item(np.arange(count) / (FAST * FINE))
 
 
 def with_rims(
@@ -312,7 +320,9 @@ def _between(u: FloatArray) -> FloatArray:
     from scipy.signal import resample_poly  # late: not needed for actuators
 
     padded = np.concatenate([u, np.full(TAIL, u[-1])])
-    return np.asarray(resample_poly(padded, COARSE, 1, padtype="line"))
+    return np.asarray(
+        resample_poly(padded, COARSE, 1, window=low_pass(COARSE), padtype="line")
+    )
 
 
 def _linear_impedance(machine: Machine, signals: Signals) -> Signals:
