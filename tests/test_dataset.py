@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.dataset import SCHEMA, load_dataset
+from hystbench.dataset import load_dataset
+from hystbench.dataset_schema import SCHEMA
 from hystbench.record import load_record
 from tests.conftest import csv_text
 from tests.messages import message

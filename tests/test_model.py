@@ -16,7 +16,8 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.sensor_noise import SensorNoise
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.errors import InputError
-from hystbench.model import Model, Provenance, load_model
+from hystbench.model import Model, load_model
+from hystbench.model_content import Provenance
 from hystbench.record import Channel
 
 from .blocks.examples import EXAMPLES

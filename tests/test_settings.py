@@ -4,7 +4,8 @@ import pytest
 import yaml
 
 from hystbench.errors import InputError
-from hystbench.settings import packaged_models, read_settings
+from hystbench.plants import packaged_models
+from hystbench.settings import read_settings
 from tests.conftest import ROOT
 
 SCHEMA = ROOT / "workflow" / "schemas" / "config.schema.yaml"

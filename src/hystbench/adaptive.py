@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope
 from hystbench.errors import InputError, nearest
-from hystbench.files import read_json
 from hystbench.filters import FILTERS, AdaptiveFilter, Result
 from hystbench.record import FloatArray, Record
 from hystbench.results import run_result
@@ -33,7 +31,7 @@ def make_filter(
     model: str,
     settings: Mapping[str, Any],
     record: Record,
-    identified: Path | Mapping[str, Any] | None = None,
+    identified: Mapping[str, Any] | None = None,
     order: int | None = None,
 ) -> AdaptiveFilter:
     """Make a filter for a record.
@@ -48,9 +46,8 @@ def make_filter(
         ``convergence_factor`` or ``fraction_of_bound``.
     record : Record
         Its input sets the bound, and the thresholds where no ``amplitude`` is set.
-    identified : Path or mapping, optional
-        Result of Algorithm 1, as its file or its content, for
-        ``envelopes: identified``.
+    identified : mapping, optional
+        Result of Algorithm 1, for ``envelopes: identified``.
     order : int, optional
         Another order than that of the settings.
 
@@ -79,11 +76,8 @@ def make_filter(
                 raise InputError(
                     "envelopes: identified; expected the option --identified FILE"
                 )
-            about = (
-                identified if isinstance(identified, Mapping) else read_json(identified)
-            )
-            options["envelope"] = Envelope.from_dict(about["envelope"])
-            options["amplitude"] = about["amplitude"]
+            options["envelope"] = Envelope.from_dict(identified["envelope"])
+            options["amplitude"] = identified["amplitude"]
         else:
             options["envelope"] = PUBLISHED_ENVELOPE
     if model == "backlash":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 from collections.abc import Mapping, Sequence
@@ -12,10 +11,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from hystbench.device_kinds import KINDS, Kind
+from hystbench.dataset_schema import SCHEMA
+from hystbench.device_kinds import Kind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
-from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
+from hystbench.quantities import Quantities, Quantity, quantity_of
 from hystbench.reading import (
     UNIFORM_TOLERANCE,
     check_moves,
@@ -29,107 +29,11 @@ from hystbench.reading import (
 from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.schema import check_against_schema
 from hystbench.units import check_known, check_same_unit, plain, seconds
-from hystbench.written import reads
+from hystbench.written import reads, sha256
 from hystbench.yaml_files import load_yaml
 
 #: Names of records: they name results, and braces are Snakemake's own.
 RECORD_NAME = re.compile(r"[^.\-\s{}*?\\\x00-\x1f][^{}*?\\\x00-\x1f]*")
-
-_CHANNEL = {
-    "type": "object",
-    "required": ["column", "unit"],
-    "additionalProperties": False,
-    "properties": {
-        "column": {"type": "string"},
-        "unit": {"type": "string"},
-        "name": {"type": "string"},
-        "meant": {"type": "boolean"},
-        "quantity": {"enum": list(QUANTITIES)},
-    },
-}
-
-SCHEMA: dict[str, Any] = {
-    "type": "object",
-    "required": ["name", "input", "output", "records"],
-    "additionalProperties": False,
-    "properties": {
-        "name": {"type": "string", "pattern": r"^[A-Za-z0-9][A-Za-z0-9._-]*$"},
-        "description": {"type": "string"},
-        "time": {
-            "type": "object",
-            "required": ["column", "unit"],
-            "additionalProperties": False,
-            "properties": {
-                "column": {"type": "string"},
-                "unit": {"type": "string"},
-                "tolerance": {"type": "number", "exclusiveMinimum": 0, "maximum": 0.5},
-                "meant": {"type": "boolean"},
-            },
-        },
-        "input": _CHANNEL
-        | {
-            "properties": {
-                **_CHANNEL["properties"],  # type: ignore[dict-item]
-                "hold": {"enum": ["zero-order", "linear", "band-limited"]},
-            }
-        },
-        "output": _CHANNEL,
-        "simulated": {
-            "type": "object",
-            "required": ["column", "unit"],
-            "additionalProperties": False,
-            "properties": {
-                "column": {"type": "string"},
-                "unit": {"type": "string"},
-                "meant": {"type": "boolean"},
-            },
-        },
-        "device": {
-            "type": "object",
-            "required": ["kind"],
-            "additionalProperties": False,
-            "properties": {"kind": {"enum": list(KINDS)}},
-        },
-        "sampling_frequency_hz": {"type": "number", "exclusiveMinimum": 0},
-        "noise_rms": {"type": "number", "exclusiveMinimum": 0},
-        "identification": {"type": "string"},
-        "records": {
-            "type": "array",
-            "minItems": 1,
-            "items": {
-                "type": "object",
-                "required": ["file"],
-                "additionalProperties": False,
-                "properties": {
-                    "file": {"type": "string"},
-                    "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
-                    "name": {"type": "string"},
-                    "group": {"type": "string"},
-                    "rows": {
-                        "type": "array",
-                        "items": {"type": "integer", "minimum": 1},
-                        "minItems": 2,
-                        "maxItems": 2,
-                    },
-                    "sampling_frequency_hz": {"type": "number", "exclusiveMinimum": 0},
-                    "missing": {"enum": ["interpolate"]},
-                    "use": {"enum": ["fit", "hold-out"]},
-                    "period_samples": {"type": "integer", "minimum": 2},
-                    "stands_still": {
-                        "type": "array",
-                        "items": {"enum": ["input", "output"]},
-                        "uniqueItems": True,
-                    },
-                    "meant": {
-                        "type": "array",
-                        "items": {"enum": ["copy", "amplitude"]},
-                        "uniqueItems": True,
-                    },
-                },
-            },
-        },
-    },
-}
 
 
 @dataclass(frozen=True)
@@ -448,8 +352,7 @@ def _check_digest(about: Path, file: Path, entry: Mapping[str, Any]) -> None:
     if "sha256" not in entry:
         return
     try:
-        with file.open("rb") as stream:
-            found = hashlib.file_digest(stream, "sha256").hexdigest()
+        found = sha256(file)
     except OSError:
         return  # who reads it says so
     if found != entry["sha256"]:

@@ -10,49 +10,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any
 
 import numpy as np
 
-from hystbench.blocks import registry
 from hystbench.blocks.attached import Simulated, attached
 from hystbench.blocks.base import Block, RandomBlock
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
 from hystbench.blocks.simulated_column import SimulatedColumn
-from hystbench.errors import InputError, nearest, short
+from hystbench.errors import InputError, nearest
 from hystbench.files import write_text
+from hystbench.model_content import Provenance, place_of, read_content
 from hystbench.record import Channel, FloatArray, Record
-from hystbench.units import check_known
 from hystbench.yaml_files import load_yaml
-
-Source = Literal["published", "derived", "calibrated"]
-SOURCES: tuple[str, ...] = get_args(Source)
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Where the value of a parameter comes from.
-
-    Parameters
-    ----------
-    source : {"published", "derived", "calibrated"}
-        Printed in a publication, worked out from what is printed, or fitted.
-    note : str
-        One sentence.
-    """
-
-    source: str
-    note: str
-
-    def __post_init__(self) -> None:
-        """Refuse a source that is none of the three."""
-        if self.source not in SOURCES:
-            raise InputError(
-                f"source: {self.source!r} is unknown; {nearest(self.source, SOURCES)}"
-            )
-        if not isinstance(self.note, str) or not self.note.strip():
-            raise InputError(f"note: expected a sentence, got {short(self.note)}")
 
 
 @dataclass(frozen=True)
@@ -243,7 +214,7 @@ class Model:
             try:
                 chain[position] = replace(chain[position], **change)
             except InputError as error:
-                place = _place(position, chain[position].name)
+                place = place_of(position, chain[position].name)
                 raise InputError(f"{place}{error}") from None
         return replace(self, chain=tuple(chain))
 
@@ -264,7 +235,7 @@ class Model:
             wrong type or out of bounds.
         """
         try:
-            return cls(**_read(content))
+            return cls(**read_content(content))
         except InputError as error:
             raise InputError(f"{place}: {error}") from None
 
@@ -340,107 +311,3 @@ def _shown(free: bool, name: str, value: Value) -> str:
     else:
         text = value if isinstance(value, str) else f"{value:.4g}"
     return f"{name} {text}{' (free)' if free else ''}"
-
-
-REQUIRED = ("name", "input", "output", "chain")
-KEYS = ("name", "input", "output", "free", "chain", "provenance")
-
-
-def _read(content: object) -> dict[str, Any]:
-    content = _mapping(content, "", required=REQUIRED, known=KEYS)
-    name = content["name"]
-    if not isinstance(name, str):
-        raise InputError(f"name: expected a word, got {short(name)}")
-    chain = content["chain"]
-    if not isinstance(chain, list):
-        raise InputError(f"chain: expected a list of blocks, got {short(chain)}")
-    free = content.get("free", [])
-    if not isinstance(free, list | dict):
-        raise InputError(
-            "free: expected a list of parameters, or a mapping of each to its "
-            f"tolerance, got {short(free)}"
-        )
-    shares = free if isinstance(free, dict) else {}
-    provenance = _mapping(content.get("provenance", {}), "provenance: ")
-    return {
-        "name": name,
-        "input": _channel(content["input"], "input: "),
-        "output": _channel(content["output"], "output: "),
-        "chain": tuple(_block(item, position) for position, item in enumerate(chain)),
-        "free": tuple(free),
-        "tolerances": {key: item for key, item in shares.items() if item is not None},
-        "provenance": {
-            key: _provenance(item, f"provenance: {key}: ")
-            for key, item in provenance.items()
-        },
-    }
-
-
-def _mapping(
-    content: object,
-    place: str,
-    required: tuple[str, ...] = (),
-    known: tuple[str, ...] = (),
-) -> dict[str, Any]:
-    if not isinstance(content, dict):
-        raise InputError(f"{place}expected a mapping of keys, got {short(content)}")
-    for key in content:
-        if known and key not in known:
-            raise InputError(f"{place}unknown key {key!r}; {nearest(key, known)}")
-    for key in required:
-        if key not in content:
-            raise InputError(f"{place}missing key {key!r}")
-    return content
-
-
-def _channel(content: object, place: str) -> Channel:
-    keys = ("name", "unit")
-    content = _mapping(content, place, required=keys, known=keys)
-    for key in keys:
-        if not isinstance(content[key], str):
-            raise InputError(
-                f"{place}{key}: expected a word, got {short(content[key])}"
-            )
-    check_known(f"{place}unit", content["unit"])
-    return Channel(**content)
-
-
-def _provenance(content: object, place: str) -> Provenance:
-    keys = ("source", "note")
-    content = _mapping(content, place, required=keys, known=keys)
-    try:
-        return Provenance(**content)
-    except InputError as error:
-        raise InputError(f"{place}{error}") from None
-
-
-def _place(position: int, name: str) -> str:
-    return f"chain: block {position + 1} ({name}): "
-
-
-_BLOCK = "one block and its parameters, such as '- gain: {value: 2.0}'"
-
-
-def _block(content: object, position: int) -> Block:
-    where = f"chain: block {position + 1}: "
-    known = registry()
-    if isinstance(content, str):
-        content = {content: None}  # a block without parameters may stand as a word
-    if not isinstance(content, dict) or not content:
-        raise InputError(f"{where}{short(content)}; expected {_BLOCK}")
-    first = next(iter(content))
-    if first not in known:
-        near = nearest(first, known)
-        raise InputError(f"{where}unknown block {short(first)}; {near}")
-    if len(content) > 1:
-        raise InputError(
-            f"{where}{len(content)} keys ({', '.join(map(str, content))}); expected "
-            f"{_BLOCK}: its parameters deeper than its name"
-        )
-    ((name, values),) = content.items()
-    place = _place(position, name)
-    values = _mapping({} if values is None else values, place)
-    try:
-        return known[name].from_mapping(values)
-    except InputError as error:
-        raise InputError(f"{place}{error}") from None

@@ -15,6 +15,7 @@ import click
 
 from hystbench import written
 from hystbench.errors import InputError
+from hystbench.files import read_json
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -232,8 +233,15 @@ out = click.option(
 out_folder = click.option(
     "--out", type=NEW_FOLDER, required=True, help="Folder to write."
 )
-identified = click.option(
+identified_file = click.option(
     "--identified", type=FILE, help="Identified envelope functions (JSON)."
+)
+#: The same, read.
+identified = click.option(
+    "--identified",
+    type=FILE,
+    callback=lambda _, __, file: None if file is None else read_json(file),
+    help="Identified envelope functions (JSON).",
 )
 arrays = click.option(
     "--arrays", type=NEW_FILE, required=True, help="Archive of output and error."

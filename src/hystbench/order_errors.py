@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from hystbench.adaptive import (
@@ -31,7 +30,7 @@ class OrderError:
 def filters_by_order(
     record: Record,
     settings: Mapping[str, Any],
-    identified: Path | Mapping[str, Any] | None = None,
+    identified: Mapping[str, Any] | None = None,
 ) -> list[AdaptiveFilter]:
     """Make each filter for a record at each order.
 
@@ -44,7 +43,7 @@ def filters_by_order(
     settings : mapping
         ``orders``, ``convergence_factor`` (how it follows the order) and
         ``filters``, each filter's own settings.
-    identified : Path or mapping, optional
+    identified : mapping, optional
         As for :func:`hystbench.adaptive.make_filter`.
     """
     same_fraction = settings["convergence_factor"] == "same-fraction-of-bound"

@@ -6,22 +6,17 @@ reruns what a changed setting changes and nothing else.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hystbench.dataset import Dataset, load_dataset
-from hystbench.doubts import doubts
-from hystbench.envelope import fewest_samples
+from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
-from hystbench.published import load
+from hystbench.plants import model_files
 from hystbench.published.split import CALIBRATION_SIGNALS
-from hystbench.schema import check_against_schema
-from hystbench.signals import Signal, highest_hz, make_signal
-from hystbench.units import plain
-from hystbench.yaml_files import load_yaml
+from hystbench.settings_checks import checked
+from hystbench.signals import highest_hz
 
 #: The four LMS filters, in the order of the paper's tables.
 FILTER_NAMES = ("gpo", "backlash", "volterra", "delayed")
@@ -145,7 +140,7 @@ class Settings:
     @property
     def model_file(self) -> str:
         """File of the twin's model: one of the package's by name, or a path."""
-        return _model_files(str(self.config["twin"]["model"]))[0]
+        return model_files(str(self.config["twin"]["model"]))[0]
 
     @property
     def twin_files(self) -> list[str]:
@@ -158,7 +153,7 @@ class Settings:
         return self._files_of(self.config["constants"]["twins"])
 
     def _files_of(self, names: Iterable[str]) -> list[str]:
-        files = [file for name in names for file in _model_files(name)]
+        files = [file for name in names for file in model_files(name)]
         return list(dict.fromkeys([self.model_file, *files]))
 
     def signal_job(self, name: str) -> dict[str, Any]:
@@ -245,14 +240,18 @@ class Settings:
             **section,
             **self.signal_job(section["signal"]),
             "measure": self.measure_job,
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
         }
+
+    @property
+    def _filter_jobs(self) -> dict[str, Any]:
+        return {name: self.filter_job(name) for name in self.filters}
 
     @property
     def step_sweep_job(self) -> dict[str, Any]:
         """Settings of the sweep of step sizes."""
         return {
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
             "sweep": self.config["step_sweep"],
         }
 
@@ -263,7 +262,7 @@ class Settings:
         return {
             "signals": {name: self.signal_job(name) for name in self.signals},
             "measure": self.measure_job,
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
             **{key: section[key] for key in ("zero_errors", "constant_taps")},
             **self.compare_job,
         }
@@ -320,7 +319,7 @@ class Settings:
         return {
             "orders": sweep["orders"],
             "convergence_factor": sweep["convergence_factor"],
-            "filters": {name: self.filter_job(name) for name in self.filters},
+            "filters": self._filter_jobs,
         }
 
     @property
@@ -394,146 +393,4 @@ def read_settings(
     InputError
         With the first mistake found.
     """
-    check_against_schema(config, load_yaml(schema_file), place)
-    # To make all signals costs less than to find out later that one cannot be made.
-    excitations = {
-        name: make_signal(name, definition, config["excitation"], place)
-        for name, definition in config["excitations"].items()
-    }
-    named = [
-        *(("signals", name) for name in config["signals"]),
-        ("identification: signal", config["identification"]["signal"]),
-        ("order_sweep: signal", config["order_sweep"]["signal"]),
-        ("random_sum: signal", config["random_sum"]["signal"]),
-        *(("rdgpi: fit_signals", name) for name in config["rdgpi"]["fit_signals"]),
-    ]
-    _check_limits(place, config)
-    if config["source"] == "twin":
-        _check_names(place, named, excitations)
-        # The calibration and the comparison take all signals of the tables.
-        for pair in load():
-            _check_names(place, [("excitations", pair.signal)], excitations)
-        _check_names(place, _gap_signals(place, config), excitations)
-        _check_lengths(place, config, excitations)
-        _check_model(place, "twin: model", config["twin"]["model"])
-        _check_twin(place, config)
-        for key in ("pressure", "constants"):
-            for name in config[key]["twins"]:
-                _check_model(place, f"{key}: twins", name)
-        return Settings(config, None)
-    if not Path(config["source"]).exists():
-        raise InputError(
-            f"{place}: source: no file {config['source']!r}; "
-            f"{nearest(config['source'], ['twin', 'path/to/dataset.yaml'])}"
-        )
-    dataset = load_dataset(config["source"])
-    known = [*dataset.record_files, *excitations]
-    _check_names(place, named[: len(config["signals"])], known)
-    records = [dataset.read(name) for name in dataset.record_files]
-    for record in records:
-        _check_length(
-            str(dataset.record_files[record.name]),
-            len(record),
-            config["filters"]["order"],
-        )
-    return Settings(config, dataset, doubts(dataset, records))
-
-
-def _gap_signals(place: str, config: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Name the signals of the gap's worked example; none may be in both roles."""
-    roles = {role: config["gap"]["twin"][role] for role in ("fit", "hold_out")}
-    for name in roles["hold_out"]:
-        if name in roles["fit"]:
-            raise InputError(
-                f"{place}: gap: twin: {name!r} is in fit and in hold_out; "
-                "expected it in one of them"
-            )
-    return [(f"gap: twin: {role}", name) for role in roles for name in roles[role]]
-
-
-def _check_limits(place: str, config: Mapping[str, Any]) -> None:
-    """Refuse limits of a next experiment between which nothing lies."""
-    about = config["gap"]
-    given = {f"datasets: {item['dataset']}": item for item in about["datasets"]}
-    for key, item in {"twin": about["twin"], **given}.items():
-        limits = item.get("limits", {})
-        low, high = limits.get("low"), limits.get("high")
-        if low is not None and high is not None and low >= high:
-            raise InputError(
-                f"{place}: gap: {key}: limits: low {low:g} and high {high:g}; "
-                "expected low < high"
-            )
-
-
-def packaged_models() -> dict[str, str]:
-    """Files of the package's own model files, by name."""
-    folder = Path(os.path.relpath(Path(__file__).parent / "plants"))
-    return {file.stem: str(file) for file in sorted(folder.glob("*.yaml"))}
-
-
-def _model_files(name: str) -> list[str]:
-    """Files of a model, one of the package's by name or a path, or of a folder."""
-    packaged = packaged_models()
-    if name in packaged:
-        return [packaged[name]]
-    plants = Path(os.path.relpath(Path(__file__).parent / "plants"))
-    for folder in (plants / name, Path(name)):
-        if folder.is_dir():
-            return [str(file) for file in sorted(folder.glob("*.yaml"))]
-    return [name]
-
-
-def _check_model(place: str, key: str, name: str) -> None:
-    files = _model_files(name)
-    if not files:
-        raise InputError(f"{place}: {key}: no model file in the folder {name!r}")
-    if not Path(files[0]).is_file():
-        raise InputError(
-            f"{place}: {key}: no model or file {name!r}; "
-            f"{nearest(name, packaged_models())}"
-        )
-
-
-def _check_names(
-    place: str, named: Iterable[tuple[str, str]], known: Iterable[str]
-) -> None:
-    known = list(known)
-    for key, name in named:
-        if name not in known:
-            raise InputError(
-                f"{place}: {key}: no signal {name!r}; {nearest(name, known)}"
-            )
-
-
-def _check_twin(place: str, config: Mapping[str, Any]) -> None:
-    """Read the twin's model file and hold its input against the signals' unit."""
-    from hystbench.model import load_model  # late: a measured dataset has no twin
-
-    for file in _model_files(config["twin"]["model"]):
-        unit = load_model(file).input.unit
-        if unit != plain(config["excitation"]["unit"]):
-            raise InputError(
-                f"{place}: excitation: unit: {config['excitation']['unit']!r}; "
-                f"expected {unit!r}, the input of {file}"
-            )
-
-
-def _check_lengths(
-    place: str, config: Mapping[str, Any], signals: Mapping[str, Signal]
-) -> None:
-    used = dict.fromkeys(config["signals"], config["filters"]["order"])
-    sweep = config["order_sweep"]
-    used[sweep["signal"]] = max([*sweep["orders"], used.get(sweep["signal"], 1)])
-    used[config["identification"]["signal"]] = config["filters"]["order"]
-    for name, order in used.items():
-        _check_length(f"{place}: excitations: {name}", len(signals[name].u), order)
-
-
-def _check_length(place: str, samples: int, order: int) -> None:
-    """Refuse a record that no filter or identification of an order can use."""
-    expected = fewest_samples(order)
-    if samples < expected:
-        raise InputError(
-            f"{place}: {samples} samples are too few for filters of order {order}; "
-            f"expected at least {expected}"
-        )
+    return Settings(config, *checked(config, schema_file, place))

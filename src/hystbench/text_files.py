@@ -26,20 +26,13 @@ def read_text(path: str | Path, expected: str) -> str:
     InputError
         If there is no such file, it cannot be read, or it is no text in UTF-8.
     """
-    path = Path(path)
     content = _content(path, expected)
-    if content.startswith(_UTF_16) or _looks_like_utf_16(content):
+    if _is_utf_16(content):
         raise InputError(
             f"{path}: text in UTF-16; expected text in UTF-8: save it as UTF-8 "
             "(spreadsheets call it 'CSV UTF-8')"
         )
-    if content.startswith(_ARCHIVE):
-        raise InputError(
-            f"{path}: a workbook or another archive; expected {expected} in UTF-8: "
-            "save the sheet as 'CSV UTF-8'"
-        )
-    if b"\0" in content[:_SOME]:
-        raise InputError(f"{path}: binary data; expected {expected}, text in UTF-8")
+    _refuse_binary(path, content, f"{expected}, text in UTF-8")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -71,9 +64,8 @@ def decoded(path: str | Path, expected: str) -> tuple[str, str]:
     InputError
         If there is no such file, it cannot be read, or it holds binary data.
     """
-    path = Path(path)
     content = _content(path, expected)
-    if content.startswith(_UTF_16) or _looks_like_utf_16(content):
+    if _is_utf_16(content):
         mark = content.startswith(_UTF_16)
         low_first = content[1::2][:_SOME].count(0) > content[::2][:_SOME].count(0)
         name = "utf-16" if mark else "utf-16-le" if low_first else "utf-16-be"
@@ -84,13 +76,7 @@ def decoded(path: str | Path, expected: str) -> tuple[str, str]:
                 f"{path}: begins as text in UTF-16 and is cut off or damaged at byte "
                 f"{error.start}; expected {expected}"
             ) from error
-    if content.startswith(_ARCHIVE):
-        raise InputError(
-            f"{path}: a workbook or another archive; expected {expected}: save the "
-            "sheet as 'CSV UTF-8'"
-        )
-    if b"\0" in content[:_SOME]:
-        raise InputError(f"{path}: binary data; expected {expected}")
+    _refuse_binary(path, content, expected)
     try:
         return content.decode("utf-8-sig"), "UTF-8"
     except UnicodeDecodeError:
@@ -98,8 +84,9 @@ def decoded(path: str | Path, expected: str) -> tuple[str, str]:
         return content.decode("cp1252", errors="replace"), "Windows-1252"
 
 
-def _content(path: Path, expected: str) -> bytes:
+def _content(place: str | Path, expected: str) -> bytes:
     """Read the bytes of a file, or say why not."""
+    path = Path(place)
     if path.is_dir():
         raise InputError(f"{path}: a folder; expected {expected}")
     try:
@@ -111,8 +98,20 @@ def _content(path: Path, expected: str) -> bytes:
         raise InputError(f"{path}: {said}; expected {expected}") from error
 
 
-def _looks_like_utf_16(content: bytes) -> bool:
-    """Tell whether every other byte of the start is zero, as in plain UTF-16."""
+def _refuse_binary(path: str | Path, content: bytes, expected: str) -> None:
+    if content.startswith(_ARCHIVE):
+        raise InputError(
+            f"{path}: a workbook or another archive; expected {expected}: save the "
+            "sheet as 'CSV UTF-8'"
+        )
+    if b"\0" in content[:_SOME]:
+        raise InputError(f"{path}: binary data; expected {expected}")
+
+
+def _is_utf_16(content: bytes) -> bool:
+    """Tell text in UTF-16 by its mark, or as every other byte of the start is zero."""
+    if content.startswith(_UTF_16):
+        return True
     some = content[:_SOME]
     half = len(some) // 2
     zeros = (some[::2].count(0), some[1::2].count(0))

@@ -61,7 +61,7 @@ def is_ours(path: str | Path) -> bool:
     if not _is_ordinary(path):
         return False
     described = _described(path)
-    return bool(described) and _digest(path) in described
+    return bool(described) and sha256(path) in described
 
 
 def will_write(path: Path, content: Path) -> None:
@@ -76,10 +76,10 @@ def will_write(path: Path, content: Path) -> None:
     """
     kept = _described(path)[-KEPT:]
     if is_ours(path):
-        kept.append(_digest(path))
+        kept.append(sha256(path))
     entry = entry_of(path)
     entry.parent.mkdir(parents=True, exist_ok=True)
-    lines = dict.fromkeys([*kept, _digest(content)])
+    lines = dict.fromkeys([*kept, sha256(content)])
     text = "".join(f"{line}  {path.name}\n" for line in lines)
     handle, name = tempfile.mkstemp(dir=entry.parent)
     try:
@@ -389,6 +389,7 @@ def _described(path: Path) -> list[str]:
     return found
 
 
-def _digest(path: Path) -> str:
+def sha256(path: Path) -> str:
+    """Compute the SHA-256 of a file, in hexadecimal digits."""
     with path.open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -14,13 +14,13 @@ from click.testing import CliRunner
 from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import KINDS
 from hystbench.challenge.spec import CaseSpec
-from hystbench.challenge.table import markdown_table, markdown_table_of_machines
 from hystbench.challenge.writing import write_case
 from hystbench.commands.hide import hide
 from hystbench.dataset import load_dataset
 from hystbench.errors import InputError
 from hystbench.model import load_model
 from hystbench.written import ENTRIES
+from tests.challenge.table import markdown_table, markdown_table_of_machines
 
 ROOT = Path(__file__).parents[2]
 SPEC = CaseSpec(11, "single", ("thermal-drift",), "gpi", 20.0)
@@ -196,7 +196,7 @@ def test_the_wall_holds_when_tried(tmp_path, file, line, broken):
 
 
 def test_the_page_holds_the_table_of_ranges():
-    # To write it: python -c 'from hystbench.challenge.table import *;
+    # To write it: python -c 'from tests.challenge.table import *;
     # print(markdown_table(), end="")' and paste it between the two comments.
     page = (ROOT / "docs" / "challenge.md").read_text(encoding="utf-8")
     assert f"<!-- ranges -->\n\n{markdown_table()}\n<!-- end of ranges -->" in page

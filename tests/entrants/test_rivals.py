@@ -14,7 +14,7 @@ from hystbench.entrants import gaussian_process, naive, random_namer
 from hystbench.entrants.black_box import best, kept
 from hystbench.entrants.environment import begun_by, missing
 from hystbench.entrants.sindy import simulate
-from hystbench.entrants.task import Given, read, write
+from hystbench.entrants.task import Answer, Given, read, write
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
 from hystbench.record import Channel, Record
@@ -38,7 +38,8 @@ def folder(case, tmp_path_factory):
 
 
 def solved(module, folder, out):
-    module.solve(folder / "dataset", folder / "model.yaml", out)
+    given = read(folder / "dataset", folder / "model.yaml")
+    write(given, module.answer(given), out)
     gap = read_json(out / "gap.json")
     check_against_schema(gap, SCHEMA, "gap.json")
     return gap
@@ -97,7 +98,7 @@ def test_a_rival_that_runs_away_has_closed_nothing(folder, tmp_path, beyond):
     def predict(record):
         return np.where(record.time > 0.1, beyond, 0.0)
 
-    write(given, [], "unnamed", "no reason", predict, tmp_path)
+    write(given, Answer(predict), tmp_path)
     gap = read_json(tmp_path / "gap.json")
     check_against_schema(gap, SCHEMA, "gap.json")
     assert (gap["gap"]["after"], gap["gap"]["explained"]) == (None, 0.0)

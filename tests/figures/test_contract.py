@@ -28,18 +28,29 @@ def name(request):
     return request.param
 
 
-@pytest.fixture(scope="module")
-def drawn(name, inputs):
-    """A figure, laid out."""
+def saved(name, inputs, path):
+    """A figure, and the bytes of its SVG file."""
     with style.in_style():
         figure = drawer(name)(**inputs.of(name))
-        style.plain_ticks(figure)
-        FigureCanvasAgg(figure).draw()
-    return figure
+        style.save(figure, path)
+    return figure, path.read_bytes()
 
 
-def texts_of(figure, monkeypatch):
-    """All texts that are drawn, ticks beyond the limits left out."""
+@pytest.fixture(scope="module")
+def made(name, inputs, tmp_path_factory):
+    """A figure, laid out and drawn; the bytes of its file; and the texts in it."""
+    folder = tmp_path_factory.mktemp("figure")
+    figure, content = saved(name, inputs, folder / "figure.svg")
+    return figure, content, texts_of(figure)
+
+
+@pytest.fixture
+def drawn(made):
+    return made[0]
+
+
+def texts_of(figure):
+    """Draw; give all texts that are drawn, ticks beyond the limits left out."""
     found = []
     draw = Text.draw
 
@@ -48,10 +59,16 @@ def texts_of(figure, monkeypatch):
             found.append(self)
         return draw(self, renderer)
 
-    with monkeypatch.context() as patch, style.in_style():
+    with pytest.MonkeyPatch.context() as patch, style.in_style():
         patch.setattr(Text, "draw", record)
-        figure.canvas.draw()
+        FigureCanvasAgg(figure).draw()
     return found
+
+
+def test_a_file_is_small_and_the_same_bytes_each_time(name, made, inputs, tmp_path):
+    _, content = saved(name, inputs, tmp_path / "again.svg")
+    assert content == made[1]
+    assert len(content) < 500_000
 
 
 def quantity(axes, of):
@@ -80,8 +97,8 @@ def test_legend_names_something_and_hides_no_data(drawn):
         assert not legend.get_window_extent().overlaps(axes.get_window_extent())
 
 
-def test_texts_are_legible_apart_and_inside(drawn, monkeypatch):
-    texts = texts_of(drawn, monkeypatch)
+def test_texts_are_legible_apart_and_inside(made):
+    drawn, _, texts = made
     assert len(texts) > 5
     # A pixel of three hundred an inch may touch.
     boxes = [(text.get_text(), text.get_window_extent().padded(-1)) for text in texts]
@@ -97,12 +114,11 @@ def test_texts_are_legible_apart_and_inside(drawn, monkeypatch):
         assert page.containsy(box.y1), text
 
 
-def test_the_check_for_overlap_sees_one(monkeypatch):
+def test_the_check_for_overlap_sees_one():
     figure = mpl.figure.Figure()
-    FigureCanvasAgg(figure)
     figure.text(0.5, 0.5, "one")
     figure.text(0.51, 0.5, "other")
-    one, other = (t.get_window_extent() for t in texts_of(figure, monkeypatch))
+    one, other = (t.get_window_extent() for t in texts_of(figure))
     assert Bbox.overlaps(one, other)
 
 

@@ -21,7 +21,8 @@ from hystbench.gap.start import start_state
 from hystbench.gap.state import Added
 from hystbench.gap.told import base_parameters, effect_mapping, ranking_rows
 from hystbench.gap.verdict import Left
-from hystbench.model import Model, Provenance, load_model
+from hystbench.model import Model, load_model
+from hystbench.model_content import Provenance
 from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import MODE, block, hysteresis, measured, state_of

@@ -236,7 +236,7 @@ def test_a_filter_that_diverges_is_a_visible_entry(workflow, config):
     config["filters"]["convergence_factor"]["delayed"]["mu"] = 50.0
     config["models"] = ["delayed"]
     workflow.configure(config)
-    workflow.run()
+    workflow.run("tables")
     results = workflow.folder / "results"
     run = load(results / "filters" / "sine-100hz" / "delayed.json")
     assert run["status"] == "diverged"

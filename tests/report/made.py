@@ -9,7 +9,8 @@ from hystbench.compare.comparison import compare, held_out_signals
 from hystbench.compare.measured import compare_measured
 from hystbench.figures import drawer, style
 from hystbench.published.split import CALIBRATION_SIGNALS
-from hystbench.report.reproduction import write_page
+from hystbench.report.reproduction.page import page
+from hystbench.report.reproduction.read import read_content
 from tests.conftest import ROOT
 from tests.figures.inputs import MODELS, a_record, save_a_run
 
@@ -67,7 +68,10 @@ def make_measured(folder: Path) -> list[Path]:
 
 def make_page(folder: Path, figures: list[Path], tables=(), **settings) -> Path:
     out = folder / "report.html"
-    write_page(out, folder / "compare", figures, tables, CAPTIONS, SETTINGS | settings)
+    content = read_content(
+        out.parent, folder / "compare", figures, tables, CAPTIONS, SETTINGS | settings
+    )
+    out.write_text(page(content), encoding="utf-8")
     return out
 
 

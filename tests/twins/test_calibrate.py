@@ -250,30 +250,31 @@ def test_descent_finds_a_twin_that_made_the_targets():
             assert found.mse[aim.signal][model] == pytest.approx(mse, rel=0.1)
 
 
-def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
-    calls = []
+def test_the_best_of_several_starts_goes_on(monkeypatch):
+    costs = iter([9.0, 3.0, 9.0, 1.0, 9.0, 2.0])  # near and tuned, of three starts
+    begun = []
 
-    def count(problem, aims, start, evaluations):
-        calls.append(evaluations)
-        if len(calls) == 5:
-            raise KeyboardInterrupt
-        return Fit(dict(START), cost=1.0 / len(calls))
+    def near(problem, aims, start, evaluations):
+        begun.append(dict(start))
+        return Fit(dict(START) | {"gain": float(len(begun))}, next(costs, 0.5))
 
-    monkeypatch.setattr(fitting, "nearest_twin", count)
+    monkeypatch.setattr(fitting, "nearest_twin", near)
     monkeypatch.setattr(fitting, "tune_steps", lambda problem, aims, values: values)
-    problem, state = objective(), tmp_path / "state.json"
-    options = {"starts": 3, "seed": 1, "state": state}
-    with pytest.raises(KeyboardInterrupt):
-        calibrate(problem, (), **options)
+    monkeypatch.setattr(Objective, "excesses", lambda *_: {})
     told = []
-    calibrate(problem, (), **options, tell=told.append)
-    # Two a start; the third start breaks off, is repeated, and the best goes on.
-    assert len(calls) == 4 + 1 + 2 + 1
-    assert told[0] == "start 1 of 3: cost 0.5"
-    calibrate(problem, (), **options)
-    assert len(calls) == 8
-    calibrate(dataclasses.replace(problem, seed=2), (), **options)
-    assert len(calls) == 8 + 7  # other noise: nothing of the state counts
+    best = calibrate(objective(), (), starts=3, seed=1, tell=told.append)
+    assert told == [
+        "start 1 of 3: cost 3",
+        "start 2 of 3: cost 1",
+        "start 3 of 3: cost 2",
+        "finished: cost 0.5",
+    ]
+    assert begun[0] == pytest.approx(
+        {item.name: item.start for item in UNKNOWNS}
+    )  # the stated start, and others around it
+    assert begun[2] != pytest.approx(begun[0])
+    assert begun[-1]["gain"] == 4.0  # where the second start's tuned descent ended
+    assert best.cost == 0.5
 
 
 def test_a_twin_that_breaks_a_constraint_is_refused(monkeypatch):

@@ -15,7 +15,6 @@ from hystbench.settings import read_settings
 from hystbench.twins import calibrate as fitting
 from hystbench.twins.calibrate import nearest_twin
 from hystbench.twins.plant import UNKNOWNS, make_twin, values_of
-from hystbench.written import ENTRIES
 from tests.conftest import ROOT, run_hystbench, shorten
 
 
@@ -62,44 +61,21 @@ def call(job, out):
     return CliRunner().invoke(calibrate, words)
 
 
-def test_an_interrupted_run_ends_as_an_uninterrupted_one(
-    job, starts, tmp_path, monkeypatch
+def test_a_calibration_writes_the_twin_and_prints_what_the_config_needs(
+    job, starts, tmp_path
 ):
-    whole = call(job, tmp_path / "whole")
-    assert whole.exit_code == 0, whole.output
-    assert len(starts) == 2 * 2 + 1
-    steps = read_json(tmp_path / "whole" / "report.json")["convergence_factor"]
-    mu = steps["gpo"]["mu"]
+    done = call(job, tmp_path)
+    assert done.exit_code == 0, done.output
+    assert len(starts) == 2 * 2 + 1  # two descents a start, and the best one's last
+    report = read_json(tmp_path / "report.json")
+    mu = report["convergence_factor"]["gpo"]["mu"]
     assert f"config.yaml: filters: convergence_factor: gpo: mu: {mu:.6g}\n" in (
-        whole.stdout
+        done.stdout
     )
-    report = read_json(tmp_path / "whole" / "report.json")
     for key in ("input_zero_error", "input_noise"):
-        assert f"config.yaml: twin: {key}: {report[key]:.6g}\n" in whole.stdout
-
-    with monkeypatch.context() as patch:
-        tune = fitting.tune_steps
-
-        def interrupt(problem, aims, values):
-            if len(starts) > 5 + 2:
-                raise KeyboardInterrupt
-            return tune(problem, aims, values)
-
-        patch.setattr(fitting, "tune_steps", interrupt)
-        assert call(job, tmp_path / "parts").exit_code == 1
-    there = {file.name for file in (tmp_path / "parts").iterdir()}
-    assert there == {"state.json", ENTRIES}
-    del starts[:]
-    parts = call(job, tmp_path / "parts")
-    assert parts.exit_code == 0, parts.output
-    # The first start is done: both descents of the second, and the last one.
-    assert len(starts) == 2 + 1
-    assert parts.stdout == whole.stdout
-    for name in ("gma.yaml", "uncertainty/gma-02.yaml", "report.json"):
-        texts = [(tmp_path / run / name).read_text() for run in ("whole", "parts")]
-        assert texts[0] == texts[1]
-    assert not (tmp_path / "parts" / "state.json").exists()
-    assert load_model(tmp_path / "parts" / "gma.yaml").name == "gma"
+        assert f"config.yaml: twin: {key}: {report[key]:.6g}\n" in done.stdout
+    assert load_model(tmp_path / "gma.yaml").name == "gma"
+    assert load_model(tmp_path / "uncertainty" / "gma-02.yaml").name == "gma-02"
 
 
 def test_a_held_out_signal_is_refused_in_one_line(job, tmp_path):

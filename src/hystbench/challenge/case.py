@@ -24,15 +24,12 @@ from hystbench.record import FloatArray, Record
 #: of another family its own error is 1 or 2 % of the output: an effect is to be larger.
 SMALLEST_EFFECT = {"gpi": 0.012, "preisach": 0.03, "jiles-atherton": 0.03}
 LARGEST_EFFECT = 0.12
-RESIZINGS = 6
 #: Smallest step of what is written down, in um: a 16-bit converter over 65 um.
 RESOLUTION = 0.001
 #: Where nothing is hidden the noise is drawn from this interval, in um.
 PLAIN_NOISE = (0.01, 0.1)
 #: Streams of random numbers.
 PLANT, EFFECTS, EXCITATION, NOISE = 1, 2, 3, 4
-#: Effects that take the hysteresis itself away from the base.
-LOOPS = ("hysteresis", "hysteresis-shape")
 
 
 @dataclass(frozen=True)
@@ -90,10 +87,10 @@ def make_case(spec: CaseSpec) -> Case:
     """
     excitations = CAMPAIGNS[spec.campaign](spec.random(EXCITATION))
     fit = tuple(item for item in excitations if item.use == "fit")
-    plant, effects = _draw(spec, excitations)
+    plant, drawn = _draw(spec, excitations)
     bare = Readings(plant.actuator(()), excitations)
     size = _rms(bare.of(fit))
-    effects, resized = _resized(plant, effects, bare, fit, size)
+    effects = tuple(_resized(plant, effect, bare, fit, size) for effect in drawn)
     full = Readings(plant.actuator(effects), excitations)
     without = [
         bare
@@ -118,7 +115,7 @@ def make_case(spec: CaseSpec) -> Case:
         truth["effects"].append(
             _effect_told(effect)
             | {
-                "resized": resized[k],
+                "resized": effect is not drawn[k],
                 "rms": sizes[k],
                 "ratio_db": _decibel(sizes[k], noise),
                 "ratio_retuned_db": _decibel(
@@ -233,31 +230,19 @@ def _other_loop(
 
 def _resized(
     plant: Plant,
-    effects: tuple[Effect, ...],
+    effect: Effect,
     bare: Readings,
     fit: tuple[Excitation, ...],
     size: float,
-) -> tuple[tuple[Effect, ...], list[bool]]:
-    """Change the size of effects that drown, or drown the rest."""
-    out, changed = [], []
-    least = SMALLEST_EFFECT[plant.loop.family]
-    for effect in effects:
-        kept, was_changed = effect, False
-        for _ in range(RESIZINGS):
-            readings = Readings(plant.actuator((kept,)), bare.excitations)
-            share = _rms(readings.minus(bare, fit)) / size
-            wanted = float(np.clip(share, 1.1 * least, 0.9 * LARGEST_EFFECT))
-            if least <= share <= LARGEST_EFFECT:
-                break
-            # nothing at all: one step of a power of two, whatever the law
-            factor = float(np.clip(wanted / max(share, 1e-12), 1.0 / 16.0, 16.0))
-            other = kept.scaled(factor)
-            if dict(other.parameters) == dict(kept.parameters):
-                break
-            kept, was_changed = other, True
-        out.append(kept)
-        changed.append(was_changed)
-    return tuple(out), changed
+) -> Effect:
+    """Change the size of an effect that drowns, or drowns the rest."""
+
+    def share(changed: Effect) -> float:
+        readings = Readings(plant.actuator((changed,)), bare.excitations)
+        return _rms(readings.minus(bare, fit)) / size
+
+    within = SMALLEST_EFFECT[plant.loop.family], LARGEST_EFFECT
+    return effect.resized(share, within, margin=0.1, most=16.0)
 
 
 def _record(
@@ -290,7 +275,7 @@ def _told(spec: CaseSpec, plant: Plant, noise: float, size: float) -> dict[str, 
 
 
 def _effect_told(effect: Effect) -> dict[str, Any]:
-    form = effect.kind.forms[effect.form]
+    form = effect.law
     return {
         "name": effect.kind.name,
         "form": effect.form,

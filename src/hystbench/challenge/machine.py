@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from hystbench.challenge.excitation import FAST, Excitation
 from hystbench.challenge.machine_records import filling, machine_records
-from hystbench.challenge.plant.hidden import Hidden, Reach
+from hystbench.challenge.plant.kind import Effect, Reach
 from hystbench.challenge.plant.machine import (
     FINE,
     Motion,
@@ -17,6 +18,7 @@ from hystbench.challenge.plant.machine import (
     Tank,
     decimated,
     fill,
+    low_pass,
     move,
     resist,
 )
@@ -35,7 +37,6 @@ TURNING = {
     "acceleration": "rad/s^2",
     "force": "N*m",
 }
-PART_FIELDS = {item.name for item in fields(Part)}
 
 Signals = list[tuple[FloatArray, FloatArray]]
 
@@ -86,10 +87,9 @@ class Machine:
 
     def command(self, item: Excitation) -> FloatArray:
         """Compute a record's command on the fine grid, in its unit."""
-        count = (item.samples + TAIL) * FINE
-        return self.size * item(np.arange(count) / (FAST * FINE))
+        return self.size * _on_fine_grid(item)
 
-    def run(self, item: Excitation, hidden: Sequence[Hidden], reach: Reach) -> Motion:
+    def run(self, item: Excitation, hidden: Sequence[Effect], reach: Reach) -> Motion:
         """Give force and motion under a record, on the fine grid."""
         command = self.command(item)
         for effect in hidden:
@@ -98,7 +98,7 @@ class Machine:
         part = self.with_forces(hidden, reach)
         return move(part, command, self.dt, gains=self.gains)
 
-    def with_forces(self, hidden: Sequence[Hidden], reach: Reach) -> Part:
+    def with_forces(self, hidden: Sequence[Effect], reach: Reach) -> Part:
         """Give the part with what is hidden inside it."""
         assert self.part is not None  # noqa: S101  (for the type checker)
         part = self.part
@@ -107,12 +107,12 @@ class Machine:
                 part = replace(part, **effect.law.numbers(effect.parameters, reach))
         return part
 
-    def read(self, hidden: Sequence[Hidden], reach: Reach) -> Signals:
+    def read(self, hidden: Sequence[Effect], reach: Reach) -> Signals:
         """Give input and output of every record at its samples, without noise."""
         return [self._read(item, hidden, reach) for item in self.records]
 
     def _read(
-        self, item: Excitation, hidden: Sequence[Hidden], reach: Reach
+        self, item: Excitation, hidden: Sequence[Effect], reach: Reach
     ) -> tuple[FloatArray, FloatArray]:
         if self.part is None:
             u = self.command(item)
@@ -132,8 +132,15 @@ class Machine:
         return decimated(u)[: item.samples], decimated(y)[: item.samples]
 
 
+@lru_cache(maxsize=16)
+def _on_fine_grid(item: Excitation) -> FloatArray:
+    """Compute a record's command, which a case asks for many times."""
+    count = (item.samples + TAIL) * FINE
+    return item(np.arange(count) / (FAST * FINE))
+
+
 def with_rims(
-    tanks: tuple[Tank, ...], hidden: Sequence[Hidden], reach: Reach
+    tanks: tuple[Tank, ...], hidden: Sequence[Effect], reach: Reach
 ) -> tuple[Tank, ...]:
     """Give the tanks with what is hidden in them.
 
@@ -313,7 +320,9 @@ def _between(u: FloatArray) -> FloatArray:
     from scipy.signal import resample_poly  # late: not needed for actuators
 
     padded = np.concatenate([u, np.full(TAIL, u[-1])])
-    return np.asarray(resample_poly(padded, COARSE, 1, padtype="line"))
+    return np.asarray(
+        resample_poly(padded, COARSE, 1, window=low_pass(COARSE), padtype="line")
+    )
 
 
 def _linear_impedance(machine: Machine, signals: Signals) -> Signals:

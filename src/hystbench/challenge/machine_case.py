@@ -14,16 +14,15 @@ from hystbench.challenge.machine import (
     linear_parts,
     reach_of,
 )
-from hystbench.challenge.plant.hidden import Hidden, Reach, draw
 from hystbench.challenge.plant.inside import EFFECTS
+from hystbench.challenge.plant.kind import Effect, Reach, draw
 from hystbench.challenge.spec import CaseSpec
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
 #: An effect is to be within these shares of the output's rms on the fit records;
 #: outside, its size is changed.
-SMALLEST, LARGEST = 0.04, 0.4
-RESIZINGS = 6
+WITHIN = (0.04, 0.4)
 #: Where nothing is hidden the noise is drawn from this interval of shares.
 PLAIN_NOISE = (0.002, 0.02)
 #: Steps of the converter over both signs of the largest output, and a half more.
@@ -105,25 +104,19 @@ def make_machine_case(spec: CaseSpec) -> Case:
     return Case(tuple(records), periods, model, truth)
 
 
-def _resized(machine: Machine, effect: Hidden, reach: Reach) -> Hidden:
+def _resized(machine: Machine, effect: Effect, reach: Reach) -> Effect:
     """Change the size of an effect that a linear machine hides, or that is all."""
-    for _ in range(RESIZINGS):
-        signals = _fit(machine, machine.read((effect,), reach))
+
+    def share(changed: Effect) -> float:
+        signals = _fit(machine, machine.read((changed,), reach))
         output = _rms([y - y.mean() for _, y in signals])
-        share = _size(machine, signals, (), reach) / output
-        if SMALLEST <= share <= LARGEST:
-            break
-        wanted = float(np.clip(share, 1.2 * SMALLEST, 0.8 * LARGEST))
-        factor = float(np.clip(wanted / max(share, 1e-12), 1.0 / 8.0, 8.0))
-        other = effect.scaled(factor)
-        if dict(other.parameters) == dict(effect.parameters):
-            break
-        effect = other
-    return effect
+        return _size(machine, signals, (), reach) / output
+
+    return effect.resized(share, WITHIN, margin=0.2, most=8.0)
 
 
 def _size(
-    machine: Machine, full: Signals, others: tuple[Hidden, ...], reach: Reach
+    machine: Machine, full: Signals, others: tuple[Effect, ...], reach: Reach
 ) -> float:
     """Measure how much an effect changes the output of the fit records.
 
@@ -190,7 +183,7 @@ def _linear(machine: Machine) -> dict[str, Any]:
     }
 
 
-def _told(effect: Hidden, size: float, noise: float, reach: Reach) -> dict[str, Any]:
+def _told(effect: Effect, size: float, noise: float, reach: Reach) -> dict[str, Any]:
     law = effect.law
     ratio = float(20.0 * np.log10(max(size, 1e-12 * noise) / noise))
     return {

@@ -5,14 +5,16 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
 from hystbench import options
-from hystbench.device_kinds import KINDS, Kind
+from hystbench.device_kinds import KINDS
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.inspection.draft import Draft, Given, draft
+from hystbench.inspection.columns import Given
+from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.writing import yaml_text
 from hystbench.written import writes
 
@@ -21,14 +23,15 @@ PLACE = "dataset.yaml"
 
 @click.command()
 @click.argument("files", type=options.FILE, nargs=-1, required=True)
-@click.option("--input", "input_", help="Column of the input.")
+@click.option("--input", help="Column of the input.")
 @click.option("--output", help="Column of the output.")
-@click.option("--time", "time_", help="Column of time.")
+@click.option("--time", help="Column of time.")
 @click.option("--input-unit", help="Its unit, such as A; '-' for none.")
 @click.option("--output-unit", help="Its unit, such as um; '-' for none.")
 @click.option("--time-unit", help="Its unit; seconds where the file tells none.")
 @click.option(
     "--sampling-frequency",
+    "sampling_frequency_hz",
     type=float,
     help="In Hz, where no column is time.",
 )
@@ -45,21 +48,7 @@ PLACE = "dataset.yaml"
     type=options.NEW_FILE,
     help="The dataset.yaml to write; by default beside the first file.",
 )
-def init(
-    files: Sequence[Path],
-    input_: str | None,
-    output: str | None,
-    time_: str | None,
-    input_unit: str | None,
-    output_unit: str | None,
-    time_unit: str | None,
-    sampling_frequency: float | None,
-    hold_out: tuple[str, ...],
-    missing: str | None,
-    device: Kind | None,
-    name: str | None,
-    out: Path | None,
-) -> None:
+def init(files: Sequence[Path], out: Path | None, **given: Any) -> None:
     """Propose a dataset.yaml for FILES: CSV, MATLAB, HDF5, Parquet, TDMS, .npz, WAV.
 
     Columns, units, periods and roles are found; what cannot be found is asked, or has
@@ -68,20 +57,7 @@ def init(
     place = out or files[0].parent / PLACE
     if out is None:
         writes(place)  # refuses, before work is paid
-    given = Given(
-        name,
-        time_,
-        input_,
-        output,
-        time_unit,
-        input_unit,
-        output_unit,
-        sampling_frequency,
-        hold_out,
-        missing,
-        device,
-    )
-    found = draft(files, place, given, _asker())
+    found = draft(files, place, Given(**given), _asker())
     write_text(place, yaml_text(found.dataset.about))
     for line in _said(place, found):
         click.echo(line)

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from hystbench import options
+from hystbench.entrants.task import read, write
 from hystbench.errors import InputError, nearest
 from hystbench.written import writes
 
@@ -35,6 +36,6 @@ def rival(name: str, dataset: Path, model: Path, out: Path) -> None:
     if name not in RIVALS:
         raise InputError(f"rival: no {name!r}; {nearest(name, RIVALS)}")
     writes(out / "gap.json")
-    importlib.import_module(f"hystbench.entrants.{RIVALS[name]}").solve(
-        dataset, model, out
-    )
+    rival = importlib.import_module(f"hystbench.entrants.{RIVALS[name]}")
+    given = read(dataset, model)
+    write(given, rival.answer(given), out)

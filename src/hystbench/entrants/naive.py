@@ -9,12 +9,11 @@ reshaped and every sample counts: what a careful beginner would do.
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from hystbench.entrants.task import Named, noise_rms, read, write
+from hystbench.entrants.task import Answer, Given, Named, noise_rms
 from hystbench.record import FloatArray, Record
 from hystbench.refit import Fitted, Task, effects, fit
 
@@ -29,15 +28,8 @@ class Taken(NamedTuple):
     fitted: Fitted
 
 
-def solve(dataset: Path, model: Path, out: Path) -> None:
-    """Name effects of the least criterion, one after the other, while it falls.
-
-    Parameters
-    ----------
-    dataset, model, out : Path
-        As every solver's.
-    """
-    given = read(dataset, model)
+def answer(given: Given) -> Answer:
+    """Name effects of the least criterion, one after the other, while it falls."""
     task, noise = Task(given.model, given.fit), noise_rms(given)
     taken: list[Taken] = []
     while len(taken) < MOST:
@@ -51,10 +43,10 @@ def solve(dataset: Path, model: Path, out: Path) -> None:
         base = given.base(record)
         return base + sum(item.fitted.predict(record) - base for item in taken)
 
-    verdict, reason = (
-        ("named", "Least criterion.") if taken else ("no-gap", "No effect pays.")
-    )
-    write(given, [item.named for item in taken], verdict, reason, predict, out)
+    if not taken:
+        return Answer(predict, "no-gap", "No effect pays.")
+    named = [item.named for item in taken]
+    return Answer(predict, "named", "Least criterion.", named)
 
 
 def best(task: Task, noise: float, known: set[str]) -> Taken | None:

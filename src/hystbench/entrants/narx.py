@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
 from hystbench.entrants.black_box import best, kept, residual
-from hystbench.entrants.task import Given, Predict, read, write
+from hystbench.entrants.task import Answer, Given, Predict
 from hystbench.record import FloatArray, Record
 
 DEGREES, LAG, TERMS = (1, 2, 3), 2, 20
@@ -21,27 +20,19 @@ KINDS = ("NARMAX", "NFIR")
 SAMPLES = 1500
 
 
-def solve(dataset: Path, model: Path, out: Path) -> None:
+def answer(given: Given) -> Answer:
     """Fit the residual from its own past, the input and the base; let it run free.
 
     Lags are samples, whatever the record's rate, as is usual. Of several degrees, with
     and without the residual's past, the one is taken that predicts best.
-
-    Parameters
-    ----------
-    dataset, model, out : Path
-        As every solver's.
 
     References
     ----------
     .. [1] S. A. Billings, Nonlinear System Identification: NARMAX Methods in the Time,
        Frequency, and Spatio-Temporal Domains, Wiley, 2013.
     """
-    given = read(dataset, model)
-    predict = best(
-        given, [partial(_learn, given, *way) for way in product(KINDS, DEGREES)]
-    )
-    write(given, [], "unnamed", "A black box names nothing.", predict, out)
+    ways = [partial(_learn, given, *way) for way in product(KINDS, DEGREES)]
+    return Answer(best(given, ways))
 
 
 def _learn(given: Given, kind: str, degree: int, records: Sequence[Record]) -> Predict:

@@ -6,12 +6,11 @@ import math
 from collections.abc import Sequence
 from functools import partial
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
 from hystbench.entrants.black_box import best, features, kept, residual
-from hystbench.entrants.task import Given, Predict, read, write
+from hystbench.entrants.task import Answer, Given, Predict
 from hystbench.record import FloatArray, Record
 
 #: Degrees of the libraries, and smallest coefficients that are kept, for signals scaled
@@ -19,17 +18,12 @@ from hystbench.record import FloatArray, Record
 DYNAMIC_DEGREES, STATIC_DEGREES, THRESHOLDS = (1, 2), (1, 2, 3), (0.02, 0.2)
 
 
-def solve(dataset: Path, model: Path, out: Path) -> None:
+def answer(given: Given) -> Answer:
     """Fit ``dr/dt = f(r, x)`` and ``r = f(x)``, and take what predicts best.
 
     ``r`` is the residual, ``x`` the input and the base's output with their rates, and
     ``f`` a sparse polynomial. Noise in the derivative of ``r`` biases its dynamics, so
     that an effect without memory is better found without them.
-
-    Parameters
-    ----------
-    dataset, model, out : Path
-        As every solver's.
 
     References
     ----------
@@ -39,7 +33,6 @@ def solve(dataset: Path, model: Path, out: Path) -> None:
     .. [2] K. Kaheman et al., "Learning discrepancy models from experimental data",
        arXiv:1909.08574, 2019.
     """
-    given = read(dataset, model)
     ways = [
         *(
             partial(_dynamics, given, *way)
@@ -47,8 +40,7 @@ def solve(dataset: Path, model: Path, out: Path) -> None:
         ),
         *(partial(_static, given, *way) for way in product(STATIC_DEGREES, THRESHOLDS)),
     ]
-    predict = best(given, ways)
-    write(given, [], "unnamed", "A black box names nothing.", predict, out)
+    return Answer(best(given, ways))
 
 
 def _dynamics(

@@ -29,6 +29,8 @@ class Given:
     fit, hold_out : tuple of Record
     periods : mapping of str to int
         Samples a period, of periodic records.
+    model_file : Path
+        Where the model was read.
     """
 
     name: str
@@ -36,6 +38,7 @@ class Given:
     fit: tuple[Record, ...]
     hold_out: tuple[Record, ...]
     periods: dict[str, int]
+    model_file: Path = Path()
 
     def base(self, record: Record) -> FloatArray:
         """Give the base's output."""
@@ -49,6 +52,26 @@ class Named:
     name: str
     confidence: float
     cannot_be_told_from: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a rival says of a dataset.
+
+    Parameters
+    ----------
+    predict : callable
+        The model that is to close the gap, for the hold-out records.
+    verdict : {"named", "no-gap", "unnamed"}
+    reason : str
+    named : sequence of Named
+        In their order.
+    """
+
+    predict: Predict
+    verdict: str = "unnamed"
+    reason: str = "A black box names nothing."
+    named: Sequence[Named] = ()
 
 
 def read(dataset: Path, model: Path) -> Given:
@@ -73,6 +96,7 @@ def read(dataset: Path, model: Path) -> Given:
         tuple(record for record in records if record.use == "fit"),
         tuple(record for record in records if record.use == "hold-out"),
         periods,
+        model,
     )
 
 
@@ -92,31 +116,11 @@ def noise_rms(given: Given) -> float:
     return _rms([record.y - given.base(record) for record in given.fit])
 
 
-def write(
-    given: Given,
-    named: Sequence[Named],
-    verdict: str,
-    reason: str,
-    predict: Predict,
-    out: Path,
-) -> None:
-    """Write gap.json.
-
-    Parameters
-    ----------
-    given : Given
-    named : sequence of Named
-        In their order.
-    verdict : {"named", "no-gap", "unnamed"}
-    reason : str
-    predict : callable
-        The model that is to close the gap, for the hold-out records.
-    out : Path
-        Folder.
-    """
+def write(given: Given, answer: Answer, out: Path) -> None:
+    """Write gap.json into a folder."""
     before = _rms([record.y - given.base(record) for record in given.hold_out])
     with np.errstate(over="ignore", invalid="ignore"):
-        left = _rms([record.y - predict(record) for record in given.hold_out])
+        left = _rms([record.y - answer.predict(record) for record in given.hold_out])
     floor = noise_rms(given)
     above = before**2 - floor**2
     # A model that runs away on a record closes nothing.
@@ -132,14 +136,14 @@ def write(
             "confidence": item.confidence,
             "cannot_be_told_from": list(item.cannot_be_told_from),
         }
-        for item in named
+        for item in answer.named
     ]
     content: dict[str, Any] = {
         "dataset": given.name,
         "model": given.model.name,
         "unit": given.model.output.unit,
-        "verdict": verdict,
-        "reason": reason,
+        "verdict": answer.verdict,
+        "reason": answer.reason,
         "effects": effects,
         "where": [],
         "gap": {

@@ -1,4 +1,4 @@
-"""Errors in rows of marks: of every record, and of the contest of step sizes.
+"""Errors of every record, a row of marks each.
 
 Marks, not bars: a bar on a logarithmic scale has no honest foot. A diverged run is a
 cross right of the scale.
@@ -11,14 +11,14 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from hystbench.compare.evidence import read_run
 from hystbench.figures import style
 
-_COLUMNS = ("twin", "family", "algorithm", "protocol", "signal", "model", "mse")
 # How much of a row its marks take.
-_SPREAD, _SPREAD_BY_RECORD = 0.6, 0.7
+_SPREAD = 0.7
+# Where a cross stands; 1 is the end of the scale.
+_BEYOND = 1.03
 
 
 def draw_by_record(*, runs: Sequence[Path]) -> Figure:
@@ -29,40 +29,26 @@ def draw_by_record(*, runs: Sequence[Path]) -> Figure:
     figure = Figure(figsize=(5.0, 1.2 + 0.4 * len(signals)))
     axes = figure.subplots()
     for run in read:
-        row = style.in_row(models.index(run.model), len(models), _SPREAD_BY_RECORD)
+        row = style.in_row(models.index(run.model), len(models), _SPREAD)
         y = signals.index(run.signal) + row
-        _mark(axes, run.re, y, run.model, beyond=1.03)
+        _mark(axes, run.re, y, run.model)
     style.logarithmic(axes, (1.0, 2.0, 5.0))
     style.name_rows(axes, [*map(style.signal_title, signals)])
     axes.set(xlabel="relative error RE (-)", ylabel=f"record ({read[0].origin})")
     diverged = any(run.diverged for run in read)
-    style.legend_above(figure, _handles(models, diverged), columns=3)
+    handles = style.handles(models, marked=True, diverged=diverged)
+    for handle in handles:
+        handle.set_linestyle("none")
+    style.legend_above(figure, handles, columns=3)
     return figure
 
 
-def _mark(
-    axes: Axes,
-    error: float | None,
-    y: float,
-    model: str,
-    *,
-    beyond: float,
-    filled: bool = True,
-) -> None:
-    """Mark an error, or right of the scale (1 is its end) that there is none."""
+def _mark(axes: Axes, error: float | None, y: float, model: str) -> None:
+    """Mark an error, or right of the scale that there is none."""
     look = style.look(model)
     if error is None:
         across = axes.get_yaxis_transform()
         mark = {**style.DIVERGED, "transform": across, "clip_on": False}
-        axes.plot([beyond], [y], color=look.color, **mark)
+        axes.plot([_BEYOND], [y], color=look.color, **mark)
         return
-    face = look.color if filled else "none"
-    mark = {"marker": look.marker, "linestyle": "none", "markerfacecolor": face}
-    axes.plot([error], [y], color=look.color, **mark)
-
-
-def _handles(models: Sequence[str], diverged: bool) -> list[Line2D]:
-    handles = style.handles(models, marked=True, diverged=diverged)
-    for handle in handles:
-        handle.set_linestyle("none")
-    return handles
+    axes.plot([error], [y], color=look.color, marker=look.marker, linestyle="none")

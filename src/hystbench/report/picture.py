@@ -11,10 +11,8 @@ from markupsafe import Markup
 
 from hystbench.errors import InputError
 
-_SIZE = re.compile(r'<svg[^>]*?\swidth="([\d.]+)pt"[^>]*?\sheight="([\d.]+)pt"', re.S)
-_SIZE_TURNED = re.compile(
-    r'<svg[^>]*?\sheight="([\d.]+)pt"[^>]*?\swidth="([\d.]+)pt"', re.S
-)
+_TAG = re.compile(r"<svg[^>]*>", re.S)
+_SIZE = re.compile(r'\s(width|height)="([\d.]+)pt"')
 
 #: A column of a journal is 3.5 inches wide, a page 7.2 (CSS pixels, 96 an inch).
 WIDE = 500
@@ -76,11 +74,9 @@ def embedded(
     except OSError as error:
         raise InputError(f"{path}: not readable ({error.strerror})") from error
     head = content[:2000].decode("utf-8", "replace")
-    if found := _SIZE.search(head):
-        width, height = found.groups()
-    elif found := _SIZE_TURNED.search(head):
-        height, width = found.groups()
-    else:
+    tag = _TAG.search(head)
+    size = dict(_SIZE.findall(tag[0])) if tag else {}
+    if len(size) < 2:
         raise InputError(f"{path}: expected an SVG picture with a size in points")
     text = base64.b64encode(content).decode("ascii")
     return Picture(
@@ -88,7 +84,7 @@ def embedded(
         source=f"data:image/svg+xml;base64,{text}",
         alt=alt,
         caption=caption,
-        width=round(float(width) * 4 / 3),
-        height=round(float(height) * 4 / 3),
+        width=round(float(size["width"]) * 4 / 3),
+        height=round(float(size["height"]) * 4 / 3),
         files=files,
     )

@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
-from dataclasses import asdict
-from pathlib import Path
-
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.files import read_json, write_json
 from hystbench.record import FloatArray
 from hystbench.twins.objective import Objective
 from hystbench.twins.plant import STEP_NAMES, UNKNOWNS
@@ -32,14 +26,12 @@ def calibrate(
     *,
     starts: int,
     seed: int,
-    state: Path | None = None,
     tell: Tell = lambda line: None,
 ) -> Fit:
     """Find the nearest twin from several starts.
 
     The first start is the stated one, the others are drawn around it. Each descends a
-    little; the best goes on to the end. With a state file an interrupted run goes on
-    where it stopped; a state of other targets or settings is put aside.
+    little; the best goes on to the end.
 
     Parameters
     ----------
@@ -47,8 +39,6 @@ def calibrate(
     targets : tuple of Target
     starts, seed : int
         How many starts, and what draws them.
-    state : Path, optional
-        File for what is done so far.
     tell : callable
         Told one line after each descent.
 
@@ -57,24 +47,18 @@ def calibrate(
     InputError
         If the best twin violates a constraint: which one and by how much.
     """
-    key = _key(objective, targets, starts, seed)
-    done = _read_state(state, key)
     rng = np.random.default_rng(seed)
     centre = to_point(UNKNOWNS, {item.name: item.start for item in UNKNOWNS})
+    found = []
     for number in range(starts):
         spread = 0.1 * rng.standard_normal(len(centre)) * (number > 0)
-        if number >= len(done):
-            start = to_values(UNKNOWNS, np.clip(centre + spread, 0.02, 0.98))
-            near = nearest_twin(objective, targets, start, 8)
-            tuned = tune_steps(objective, targets, near.values)
-            done.append(nearest_twin(objective, targets, tuned, 10))
-            _write_state(state, key, done)
-        tell(f"start {number + 1} of {starts}: cost {done[number].cost:.4g}")
-    best = min(done[:starts], key=lambda fit: fit.cost)
-    if len(done) == starts:
-        done.append(nearest_twin(objective, targets, best.values, 40))
-        _write_state(state, key, done)
-    final = done[-1]
+        start = to_values(UNKNOWNS, np.clip(centre + spread, 0.02, 0.98))
+        near = nearest_twin(objective, targets, start, 8)
+        tuned = tune_steps(objective, targets, near.values)
+        found.append(nearest_twin(objective, targets, tuned, 10))
+        tell(f"start {number + 1} of {starts}: cost {found[number].cost:.4g}")
+    best = min(found, key=lambda fit: fit.cost)
+    final = nearest_twin(objective, targets, best.values, 40)
     tell(f"finished: cost {final.cost:.4g}")
     for name, excess in objective.excesses(final.values, targets).items():
         if excess > MET:
@@ -160,37 +144,3 @@ def jacobian(
         after = objective.step_residuals(values(moved), targets, model)
         columns[rows, k] = (after - now[rows]) / h
     return columns
-
-
-def _key(
-    objective: Objective, targets: tuple[Target, ...], starts: int, seed: int
-) -> str:
-    sources = sorted(Path(__file__).parent.glob("*.py"))
-    about = {
-        # An edited module is another calibration: what was done counts no more.
-        "sources": [hashlib.sha256(file.read_bytes()).hexdigest() for file in sources],
-        "targets": [asdict(item) for item in targets],
-        "filters": {name: dict(job) for name, job in objective.filters.items()},
-        "signals": {
-            name: hashlib.sha256(signal.u.tobytes()).hexdigest()
-            for name, signal in objective.signals.items()
-        },
-        "noise": objective.seed,
-        "starts": starts,
-        "seed": seed,
-    }
-    return hashlib.sha256(json.dumps(about, sort_keys=True).encode()).hexdigest()
-
-
-def _read_state(state: Path | None, key: str) -> list[Fit]:
-    if state is None or not state.exists():
-        return []
-    content = read_json(state)
-    if content["key"] != key:
-        return []
-    return [Fit(**item) for item in content["done"]]
-
-
-def _write_state(state: Path | None, key: str, done: list[Fit]) -> None:
-    if state is not None:
-        write_json(state, {"key": key, "done": [asdict(item) for item in done]})

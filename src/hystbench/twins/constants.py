@@ -32,7 +32,7 @@ Errors = Mapping[Cell, float]
 def vary_constants(
     twin: Twin,
     settings: Settings,
-    identified: Mapping[str, Any],
+    identified: Mapping[str, Any] | None,
     published: Errors,
 ) -> Iterator[Row]:
     """Run the filters with each zero error, and with each constant tap.
@@ -43,7 +43,7 @@ def vary_constants(
     settings : mapping
         ``signals`` (definitions), ``measure``, ``filters``, ``zero_errors``,
         ``constant_taps`` and ``calibrated``, the signals of one half of the pairs.
-    identified : mapping
+    identified : mapping or None
         Result of Algorithm 1, for identified envelopes.
     published : mapping
         The paper's MSE (um^2) by signal and filter.

@@ -38,7 +38,7 @@ READING_COLUMNS = (
 def run_draws(
     twin: Twin,
     settings: Settings,
-    identified: Mapping[str, Any],
+    identified: Mapping[str, Any] | None,
     rdgpi: RateDependentGPI | None,
 ) -> list[Draw]:
     """Run all models on each draw of the random sum, for each number of sines.
@@ -49,7 +49,7 @@ def run_draws(
     settings : mapping
         ``signal`` (its name), ``definition`` and ``common`` as of ``hystbench
         signal``, ``measure``, ``filters``, ``draws`` (how many) and ``other_sines``.
-    identified : mapping
+    identified : mapping or None
         Result of Algorithm 1, for identified envelopes.
     rdgpi : RateDependentGPI or None
         The identified RDGPI model.

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.model import Model, Provenance
+from hystbench.model import Model
+from hystbench.model_content import Provenance
 from hystbench.record import FloatArray
 from hystbench.twins.families import ASYMMETRY, OFFSET, THINNING, Family, Task
 from hystbench.twins.search import Tell, Values, descend, to_point

@@ -34,8 +34,6 @@ COLUMNS = (
 def run_calibration(
     job: Mapping[str, Any],
     out: Path,
-    *,
-    state: Path | None = None,
     tell: Tell = lambda line: None,
 ) -> Fit:
     """Calibrate the twin and write it, equally good ones and what was reached.
@@ -50,8 +48,6 @@ def run_calibration(
         Folder for ``gma.yaml``; ``uncertainty/`` with the equally good twins; and
         ``report.json`` with values, step sizes, zero error and noise of the recorded
         input, cost, cells and the turns of the chirp.
-    state : Path, optional
-        Where an interrupted search goes on.
     tell : callable
         Told one line of progress at a time.
 
@@ -74,7 +70,6 @@ def run_calibration(
         aims,
         starts=job["starts"],
         seed=job["search_seed"],
-        state=state,
         tell=tell,
     )
     twin = make_twin(best.values)

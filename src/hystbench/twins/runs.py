@@ -58,7 +58,7 @@ def run_records(
     model: str,
     job: Settings,
     records: Mapping[str, Record],
-    identified: Settings,
+    identified: Settings | None,
 ) -> dict[Cell, Run]:
     """Run a filter on records; ``identified`` is the result of Algorithm 1."""
     filters = [make_filter(model, job, r, identified) for r in records.values()]

@@ -131,7 +131,7 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
     )
 
     def told(among: pd.DataFrame, figure: str) -> dict[str, Any]:
-        return shares(among, figure).to_mapping()
+        return shares(among, figure)._asdict()
 
     return {
         "cases": len(cases),
@@ -162,7 +162,7 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
         "brier": brier(cases),
         "calibration_error": calibration_error(cases),
         "parameter_error_median": middle(hidden, "parameter_error"),
-        "coverage": coverage(hidden).to_mapping(),
+        "coverage": coverage(hidden)._asdict(),
         "without_interval": int((hidden["parameters"] - hidden["intervals"]).sum()),
         "seconds_per_case": middle(cases, "cpu_seconds"),
         "clock_seconds_per_case": middle(cases, "seconds"),
@@ -243,7 +243,7 @@ def _by_ratio(cases: pd.DataFrame, figure: str) -> dict[str, Any]:
 def _by_family(cases: pd.DataFrame, figure: str) -> dict[str, Any]:
     groups = {name: cases[cases["family"].isin(f)] for name, f in FAMILIES.items()}
     return {
-        name: shares(group, figure).to_mapping()
+        name: shares(group, figure)._asdict()
         for name, group in groups.items()
         if len(group)
     }

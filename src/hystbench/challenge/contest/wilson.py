@@ -15,10 +15,6 @@ class Share(NamedTuple):
     high: float | None
     cases: int
 
-    def to_mapping(self) -> dict[str, float | int | None]:
-        """Give what summary.json holds."""
-        return self._asdict()
-
 
 def wilson(hits: int, cases: int) -> Share:
     """Compute a share and its 95 % score interval.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,18 @@ class Place(NamedTuple):
     u: FloatArray
     dt: float
     record: int
+
+
+@lru_cache(maxsize=16)
+def _grid(
+    excitation: Excitation, count: int, dt: float
+) -> tuple[FloatArray, FloatArray]:
+    """Compute time and command, which a case asks for once a plant that it tries."""
+    time: FloatArray = np.arange(count, dtype=np.float64) * dt
+    u = excitation(time)
+    for array in (time, u):
+        array.setflags(write=False)
+    return time, u
 
 
 @dataclass(frozen=True)
@@ -102,8 +115,7 @@ class Actuator:
         # some samples more, so that a clock that is off still finds a reading
         count = (samples + 8) * step
         fine = dt / step
-        time: FloatArray = np.arange(count, dtype=np.float64) * fine
-        u = excitation(time)
+        time, u = _grid(excitation, count, fine)
 
         def act(stage: Stage, signal: FloatArray) -> FloatArray:
             return self._act(stage, signal, Place(time, u, fine, record))

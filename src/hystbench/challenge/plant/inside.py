@@ -8,8 +8,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from hystbench.challenge.plant.hidden import Hideable, Law, Numbers, Reach
-from hystbench.challenge.plant.kind import Parameters, Range
+from hystbench.challenge.plant.kind import (
+    Curve,
+    Form,
+    Inside,
+    Kind,
+    Numbers,
+    Parameters,
+    Range,
+    Reach,
+)
 from hystbench.record import FloatArray
 
 
@@ -110,21 +118,37 @@ def _bent(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     return np.asarray(y * (1.0 + p["quadratic"] * z + p["cubic"] * z**2))
 
 
+def _law(
+    ranges: dict[str, Range],
+    size: str,
+    numbers: Inside | None = None,
+    curve: Curve | None = None,
+    power: float = 1.0,
+) -> Form:
+    return Form(ranges=ranges, size=size, power=power, numbers=numbers, curve=curve)
+
+
+def _kind(
+    name: str, place: str, families: tuple[str, ...], forms: dict[str, Form]
+) -> Kind:
+    return Kind(name, place, forms=forms, families=families)
+
+
 _FORCE = _share(0.04, 0.25, "force", 0.5)
 _BEND = _share(0.1, 0.6, "linear spring", 6.0)
 _CLEARANCE = _share(0.3, 0.7, "reach", 0.95)
 _MOVED = ("mass-spring", "impedance")
 
-EFFECTS: dict[str, Hideable] = {
+EFFECTS: dict[str, Kind] = {
     kind.name: kind
     for kind in (
-        Hideable(
+        _kind(
             "friction",
             "inside",
             ("mass-spring", "free-mass", "pendulum", "impedance"),
             {
-                "coulomb": Law({"coulomb": _FORCE}, "coulomb", _coulomb),
-                "stribeck": Law(
+                "coulomb": _law({"coulomb": _FORCE}, "coulomb", _coulomb),
+                "stribeck": _law(
                     {
                         "coulomb": _FORCE,
                         "surplus": _share(0.3, 1.0, "sliding friction", 2.0),
@@ -133,7 +157,7 @@ EFFECTS: dict[str, Hideable] = {
                     "coulomb",
                     _stribeck,
                 ),
-                "presliding": Law(
+                "presliding": _law(
                     {
                         "coulomb": _FORCE,
                         "distance": _share(0.005, 0.04, "reach", 0.1),
@@ -143,30 +167,30 @@ EFFECTS: dict[str, Hideable] = {
                 ),
             },
         ),
-        Hideable(
+        _kind(
             "stiffness-hardening",
             "inside",
             _MOVED,
             {
-                "cubic": Law({"share": _BEND}, "share", _cubic),
-                "quadratic": Law(
+                "cubic": _law({"share": _BEND}, "share", _cubic),
+                "quadratic": _law(
                     {"share": _share(0.1, 0.3, "linear spring", 0.35, sign=True)},
                     "share",
                     _quadratic,
                 ),
-                "sinh": Law(
+                "sinh": _law(
                     {"share": _BEND, "reach": _share(0.3, 0.6, "reach", 1.0)},
                     "share",
                     _sinh,
                 ),
             },
         ),
-        Hideable(
+        _kind(
             "stop",
             "inside",
             _MOVED,
             {
-                form: Law(
+                form: _law(
                     {
                         "clearance": _CLEARANCE,
                         "stiffness": _share(2.0, 15.0, "linear spring", 40.0),
@@ -177,12 +201,12 @@ EFFECTS: dict[str, Hideable] = {
                 for form, numbers in (("one-sided", _wall), ("both-sides", _walls))
             },
         ),
-        Hideable(
+        _kind(
             "slider-with-gap",
             "inside",
             _MOVED,
             {
-                "slider": Law(
+                "slider": _law(
                     {
                         "slip": _share(0.15, 0.4, "reach", 0.6),
                         "clearance": _share(0.2, 0.6, "slip", 0.8),
@@ -193,18 +217,18 @@ EFFECTS: dict[str, Hideable] = {
                 )
             },
         ),
-        Hideable(
+        _kind(
             "drag",
             "inside",
             ("mass-spring", "free-mass", "pendulum", "impedance"),
-            {"square": Law({"share": _share(0.1, 0.6, "force", 4.0)}, "share", _drag)},
+            {"square": _law({"share": _share(0.1, 0.6, "force", 4.0)}, "share", _drag)},
         ),
-        Hideable(
+        _kind(
             "hysteretic-force",
             "inside",
             _MOVED,
             {
-                "bouc-wen": Law(
+                "bouc-wen": _law(
                     {
                         "share": _share(0.1, 0.4, "force", 1.0),
                         "distance": _share(0.08, 0.4, "reach", 0.6),
@@ -216,36 +240,36 @@ EFFECTS: dict[str, Hideable] = {
                 )
             },
         ),
-        Hideable(
+        _kind(
             "gravity",
             "inside",
             ("pendulum",),
             {
-                "sine": Law(
+                "sine": _law(
                     {"share": _share(0.6, 1.0, "linear spring", 1.0)},
                     "share",
                     _pendulum,
                 )
             },
         ),
-        Hideable(
+        _kind(
             "outflow",
             "inside",
             ("tank",),
             {
-                "root": Law(
+                "root": _law(
                     {"exponent": _share(0.4999, 0.5001, "exponent", 0.5)},
                     "exponent",
                     _root,
                 )
             },
         ),
-        Hideable(
+        _kind(
             "overflow",
             "inside",
             ("tank",),
             {
-                "rim": Law(
+                "rim": _law(
                     {
                         "level": _share(0.55, 0.85, "largest level", 0.97),
                         "caught": _share(0.1, 1.0, "water spilt", 1.0),
@@ -256,24 +280,24 @@ EFFECTS: dict[str, Hideable] = {
                 )
             },
         ),
-        Hideable(
+        _kind(
             "dead-zone",
             "before",
             ("mass-spring",),
             {
-                "crossover": Law(
+                "crossover": _law(
                     {"half_width": _share(0.04, 0.15, "force", 0.3)},
                     "half_width",
                     curve=_dead_zone,
                 )
             },
         ),
-        Hideable(
+        _kind(
             "drive-saturation",
             "before",
             ("mass-spring",),
             {
-                "clip": Law(
+                "clip": _law(
                     {"limit": _share(0.4, 0.8, "force", 0.95)},
                     "limit",
                     curve=_limit,
@@ -281,12 +305,12 @@ EFFECTS: dict[str, Hideable] = {
                 )
             },
         ),
-        Hideable(
+        _kind(
             "sensor-nonlinearity",
             "behind",
             ("mass-spring",),
             {
-                "polynomial": Law(
+                "polynomial": _law(
                     {
                         "quadratic": _share(0.05, 0.3, "output", 0.4, sign=True),
                         "cubic": _share(0.05, 0.2, "output", 0.3, sign=True),

@@ -1,9 +1,12 @@
-"""What an effect is: its place, its forms and the ranges its parameters come from."""
+"""What an effect is: its place, its forms and the ranges its parameters come from.
+
+Of an actuator and of a machine alike; what a form does there is another function.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -36,6 +39,9 @@ Stage = Literal[
 ]
 
 Parameters = Mapping[str, float]
+
+#: Steps in which the size of an effect is changed, at most.
+RESIZINGS = 6
 
 
 @dataclass(frozen=True)
@@ -97,7 +103,34 @@ class Range:
         return float(np.copysign(np.clip(abs(value), self.least, self.most), value))
 
 
+@dataclass(frozen=True)
+class Reach:
+    """The largest values of the linear machine on its fit records.
+
+    Parameters
+    ----------
+    position, velocity, force, output : float
+        Of a tank ``position`` is the level of each, so far as they are alike.
+    stiffness : float
+        That of the linear spring; where there is none, force over position.
+    """
+
+    position: float
+    velocity: float
+    force: float
+    output: float
+    stiffness: float
+
+
 Act = Callable[[FloatArray, Run, Parameters], FloatArray]
+Numbers = dict[str, float]
+Inside = Callable[[Parameters, Reach], Numbers]
+Curve = Callable[[FloatArray, Parameters, Reach], FloatArray]
+
+
+def nothing(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
+    """Leave the signal: the hysteresis itself is another, or a machine is."""
+    return z
 
 
 def _same(parameters: Parameters) -> dict[str, Any]:
@@ -111,7 +144,8 @@ class Form:
     Parameters
     ----------
     act : callable
-        Takes the signal, the run and the parameters and gives the signal.
+        In an actuator: takes the signal, the run and the parameters and gives the
+        signal.
     ranges : mapping of str to Range
         By parameter.
     size : str
@@ -123,26 +157,49 @@ class Form:
         Where this form acts, if not where its kind does.
     told : callable
         Gives the parameters under the vocabulary's names.
+    numbers : callable, optional
+        Inside a machine: gives the numbers of its part or of each tank.
+    curve : callable, optional
+        Before or behind a machine: gives the signal.
     """
 
-    act: Act
+    act: Act = nothing
     ranges: Mapping[str, Range] = field(default_factory=dict)
     size: str = ""
     power: float = 1.0
     stage: Stage | None = None
     told: Callable[[Parameters], dict[str, Any]] = _same
+    numbers: Inside | None = None
+    curve: Curve | None = None
 
 
 @dataclass(frozen=True)
 class Kind:
-    """A physical effect: where it acts, where it shows, how it may be written."""
+    """A physical effect: where it acts, where it shows, how it may be written.
+
+    Parameters
+    ----------
+    name : str
+    place : str
+        In an actuator ``drive``, ``material``, ``mechanics`` or ``sensor``; in a
+        machine ``before``, ``inside`` or ``behind``.
+    stage : str
+        Where in the chain of an actuator it acts.
+    views : tuple of str
+        Where in an actuator it shows.
+    forms : mapping of str to Form
+    use : {"vocabulary", "development", "transfer"}
+    families : tuple of str
+        Machines that it may be in.
+    """
 
     name: str
     place: str
-    stage: Stage
-    views: tuple[View, ...]
-    forms: Mapping[str, Form]
+    stage: Stage = "mechanics"
+    views: tuple[View, ...] = ()
+    forms: Mapping[str, Form] = field(default_factory=dict)
     use: Literal["vocabulary", "development", "transfer"] = "vocabulary"
+    families: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -154,28 +211,70 @@ class Effect:
     parameters: Parameters
 
     @property
+    def law(self) -> Form:
+        """Its form, which tells what it does."""
+        return self.kind.forms[self.form]
+
+    @property
     def stage(self) -> Stage:
-        """Where in the chain it acts."""
-        return self.kind.forms[self.form].stage or self.kind.stage
+        """Where in the chain of an actuator it acts."""
+        return self.law.stage or self.kind.stage
 
     def act(self, signal: FloatArray, run: Run) -> FloatArray:
         """Compute what the effect makes of a signal."""
-        return self.kind.forms[self.form].act(signal, run, self.parameters)
+        return self.law.act(signal, run, self.parameters)
 
     def scaled(self, factor: float) -> Effect:
         """Make its difference about so many times as large, as far as it may be."""
-        form = self.kind.forms[self.form]
-        if not form.size:
+        law = self.law
+        if not law.size:
             return self
-        wanted = self.parameters[form.size] * factor ** (1.0 / form.power)
-        value = form.ranges[form.size].clip(wanted)
-        return Effect(self.kind, self.form, {**self.parameters, form.size: value})
+        wanted = self.parameters[law.size] * factor ** (1.0 / law.power)
+        value = law.ranges[law.size].clip(wanted)
+        return replace(self, parameters={**self.parameters, law.size: value})
+
+    def resized(
+        self,
+        share: Callable[[Effect], float],
+        within: tuple[float, float],
+        margin: float,
+        most: float,
+    ) -> Effect:
+        """Change its size until it neither drowns nor drowns the rest.
+
+        Parameters
+        ----------
+        share : callable
+            Gives how large an effect is, as a share of the output.
+        within : (float, float)
+            Least and largest share; what is outside is aimed inside by ``margin``.
+        margin : float
+        most : float
+            Factor on its size in one step, where it shows nothing at all.
+        """
+        effect = self
+        for _ in range(RESIZINGS):
+            now = share(effect)
+            if within[0] <= now <= within[1]:
+                break
+            ends = (1.0 + margin) * within[0], (1.0 - margin) * within[1]
+            wanted = float(np.clip(now, *ends))
+            factor = float(np.clip(wanted / max(now, 1e-12), 1.0 / most, most))
+            other = effect.scaled(factor)
+            if dict(other.parameters) == dict(effect.parameters):
+                break
+            effect = other
+        return effect
 
 
 def draw(
-    kind: Kind, random: np.random.Generator, spread: float, allowed: tuple[str, ...]
+    kind: Kind,
+    random: np.random.Generator,
+    spread: float,
+    allowed: tuple[str, ...] = (),
 ) -> Effect:
-    """Draw an effect's form, of those allowed, and its parameters."""
+    """Draw an effect's form, of those allowed or of all, and its parameters."""
+    allowed = allowed or tuple(kind.forms)
     form = allowed[int(random.integers(len(allowed)))]
     ranges = kind.forms[form].ranges
     values = {name: item.draw(random, spread) for name, item in ranges.items()}

@@ -8,6 +8,7 @@ record's.
 from __future__ import annotations
 
 from dataclasses import astuple, dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -74,7 +75,7 @@ class Part:
     @property
     def numbers(self) -> FloatArray:
         """All of them in the order that the kernel has them in."""
-        return np.array(astuple(self), dtype=np.float64)
+        return np.array(list(vars(self).values()), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -172,4 +173,13 @@ def decimated(fine: FloatArray, steps: int = FINE) -> FloatArray:
     """
     from scipy.signal import resample_poly  # late: not needed for actuators
 
-    return np.asarray(resample_poly(fine, 1, steps), dtype=np.float64)
+    y = resample_poly(fine, 1, steps, window=low_pass(steps))
+    return np.asarray(y, dtype=np.float64)
+
+
+@lru_cache
+def low_pass(rate: int) -> FloatArray:
+    """Give the filter that ``resample_poly`` would design anew at each call."""
+    from scipy.signal import firwin  # late: not needed for actuators
+
+    return np.asarray(firwin(20 * rate + 1, 1.0 / rate, window=("kaiser", 5.0)))

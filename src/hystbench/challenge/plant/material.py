@@ -42,25 +42,20 @@ def algebraic(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return z / (1.0 + ratio) ** (1.0 / p["sharpness"])
 
 
-def nothing(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
-    """Leave the signal: the hysteresis itself is another."""
-    return z
-
-
 _LEVEL = Range(25.0, 70.0, "um", shifts=False, least=12.0, most=200.0)
 _EXPONENT = Range(0.5, 1.0, "-", shifts=False)
 
 KINDS = (
-    Kind("hysteresis", "material", "material", ("branch",), {"loop": Form(nothing)}),
+    Kind("hysteresis", "material", "material", ("branch",), {"loop": Form()}),
     Kind(
         "hysteresis-shape",
         "material",
         "material",
         ("branch", "amplitude"),
         {
-            "preisach": Form(nothing),
-            "jiles-atherton": Form(nothing),
-            "other-gpi": Form(nothing),
+            "preisach": Form(),
+            "jiles-atherton": Form(),
+            "other-gpi": Form(),
         },
     ),
     Kind(

@@ -11,7 +11,6 @@ from hystbench import options
 from hystbench.files import whole_folder
 from hystbench.twins.plant import step_sizes
 from hystbench.twins.run import run_calibration
-from hystbench.written import check_free, remove
 
 WRITTEN = ("gma.yaml", "report.json", "uncertainty/gma-*.yaml")
 
@@ -23,18 +22,10 @@ def calibrate(settings: dict[str, Any], out: Path) -> None:
     """Fit the twin and one step size a filter to the calibration signals' errors.
 
     Writes ``gma.yaml``, ``uncertainty/`` with equally good twins and ``report.json``,
-    and prints what belongs into config.yaml. While it runs ``state.json`` keeps the
-    finished descents: an interrupted run goes on after the last of them.
+    and prints what belongs into config.yaml.
     """
-    state = out / "state.json"
-    check_free(state)
     with whole_folder(out, WRITTEN) as fresh:
-        best = run_calibration(
-            settings,
-            fresh,
-            state=state,
-            tell=lambda line: click.echo(line, err=True),
-        )
+        best = run_calibration(settings, fresh, lambda line: click.echo(line, err=True))
     for model, steps in step_sizes(best.values).items():
         for key, value in steps.items():
             click.echo(
@@ -42,5 +33,3 @@ def calibrate(settings: dict[str, Any], out: Path) -> None:
             )
     click.echo(f"config.yaml: twin: input_zero_error: {best.values['input zero']:.6g}")
     click.echo(f"config.yaml: twin: input_noise: {best.values['input noise']:.6g}")
-    # Done: another run shall calculate, not remember.
-    remove(state)

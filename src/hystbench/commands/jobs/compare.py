@@ -23,7 +23,7 @@ from hystbench.files import whole_folder
 @click.option("--draws", type=options.FILE, help="Draws of the random sum (CSV).")
 @click.option("--edges", type=options.FILE, help="Edges of the step sizes (CSV).")
 @click.option("--constants", type=options.FILE, help="Ranking by constant (CSV).")
-@options.identified
+@options.identified_file
 @options.settings
 @options.out_folder
 def compare(

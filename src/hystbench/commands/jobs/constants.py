@@ -9,7 +9,6 @@ import click
 
 from hystbench import options
 from hystbench.compare.constants import write_constants
-from hystbench.files import read_json
 from hystbench.published import load
 from hystbench.twins.constants import vary_constants
 from hystbench.twins.read import read_twins
@@ -22,16 +21,15 @@ from hystbench.twins.read import read_twins
 @options.out
 def constants(
     twins: tuple[Path, ...],
-    identified: Path | None,
+    identified: dict[str, Any] | None,
     settings: dict[str, Any],
     out: Path,
 ) -> None:
     """Rank the filters on TWINS with other zero errors and with a constant tap."""
-    envelopes = {} if identified is None else read_json(identified)
     published = {(p.signal, p.model): p.mse.value for p in load()}
     rows = [
         row
         for twin in read_twins(twins)
-        for row in vary_constants(twin, settings, envelopes, published)
+        for row in vary_constants(twin, settings, identified, published)
     ]
     write_constants(rows, out)

@@ -22,7 +22,7 @@ COLUMNS = ["signal", "envelopes", "mse", "re", "status"]
 @options.out
 def envelopes(
     records: tuple[Path, ...],
-    identified: Path | None,
+    identified: dict[str, Any] | None,
     settings: dict[str, Any],
     out: Path,
 ) -> None:

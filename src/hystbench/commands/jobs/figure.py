@@ -20,7 +20,7 @@ from hystbench.figures import drawer
     "--run", "runs", multiple=True, type=options.FILE, help="Run, its arrays beside it."
 )
 @click.option("--table", type=options.FILE, help="Table (CSV).")
-@options.identified
+@options.identified_file
 @click.option(
     "--out",
     "outs",

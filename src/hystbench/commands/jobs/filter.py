@@ -23,7 +23,7 @@ from hystbench.results import save_run
 def filter(  # noqa: A001  (the command's name)
     record: Path,
     model: str,
-    identified: Path | None,
+    identified: dict[str, Any] | None,
     settings: dict[str, Any],
     out: Path,
     arrays: Path,

@@ -32,7 +32,7 @@ OTHER = {
 )
 def order_sweep(
     record: Path,
-    identified: Path | None,
+    identified: dict[str, Any] | None,
     settings: dict[str, Any],
     threads: int,
     out: Path,

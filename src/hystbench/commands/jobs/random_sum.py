@@ -27,7 +27,7 @@ from hystbench.twins.read import read_twins
 @click.option("--readings", "told", type=options.NEW_FILE, required=True, help="CSV.")
 def random_sum(
     twin: Path,
-    identified: Path | None,
+    identified: dict[str, Any] | None,
     rdgpi: Path | None,
     settings: dict[str, Any],
     draws: Path,
@@ -37,8 +37,7 @@ def random_sum(
     fitted = None
     if rdgpi is not None:
         fitted = RateDependentGPI.from_dict(read_json(rdgpi)["parameters"])
-    envelopes = {} if identified is None else read_json(identified)
-    found = run_draws(read_twins([twin])[0], settings, envelopes, fitted)
+    found = run_draws(read_twins([twin])[0], settings, identified, fitted)
     signal = settings["signal"]
     write_draws(signal, found, draws)
     published = {p.model: p.mse.value for p in load() if p.signal == signal}

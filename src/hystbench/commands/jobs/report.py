@@ -8,7 +8,9 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.report.reproduction import write_page
+from hystbench.files import write_text
+from hystbench.report.reproduction.page import page
+from hystbench.report.reproduction.read import read_content
 
 FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
 
@@ -29,4 +31,5 @@ def report(
     out: Path,
 ) -> None:
     """Write one page on what a comparison left in the folder COMPARE."""
-    write_page(out, compare, figures, tables, captions, settings)
+    content = read_content(out.parent, compare, figures, tables, captions, settings)
+    write_text(out, page(content))

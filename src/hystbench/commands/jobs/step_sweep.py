@@ -11,7 +11,7 @@ import click
 
 from hystbench import options
 from hystbench.compare.edges import write_edges
-from hystbench.files import read_json, write_csv
+from hystbench.files import write_csv
 from hystbench.record import load_record
 from hystbench.twins.edges import Point, sweep
 
@@ -24,15 +24,14 @@ from hystbench.twins.edges import Point, sweep
 @click.option("--points", type=options.NEW_FILE, required=True, help="CSV to write.")
 def step_sweep(
     records: tuple[Path, ...],
-    identified: Path | None,
+    identified: dict[str, Any] | None,
     settings: dict[str, Any],
     edges: Path,
     points: Path,
 ) -> None:
     """Raise each filter's step sizes on RECORDS up to their edge."""
     read = {record.name: record for record in map(load_record, records)}
-    envelopes = {} if identified is None else read_json(identified)
-    found, run = sweep(read, settings, envelopes)
+    found, run = sweep(read, settings, identified)
     write_edges(found, edges)
     rows = (
         [

@@ -19,7 +19,7 @@ _HEADINGS = {"mse": "MSE", "re": "RE", "error_kind": "error"}
 
 
 def page(content: Content) -> str:
-    """Make the page of what was read."""
+    """Make the page, of the reproduction or of a measured dataset."""
     found = content.found
     figures = {figure.name: figure for figure in content.figures}
     headline = figures.pop(HEADLINE, None)

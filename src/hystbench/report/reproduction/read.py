@@ -76,7 +76,30 @@ def read_content(
     captions: Path,
     settings: Mapping[str, Any],
 ) -> Content:
-    """Read what the page shows; see ``write_page``."""
+    """Read what the page shows.
+
+    Parameters
+    ----------
+    base : Path
+        Folder of the page: links are relative to it.
+    compare : Path
+        Folder that ``hystbench job compare`` or ``compare-measured`` wrote.
+    figures : sequence of Path
+        SVG files; the stem is the figure's name. A PNG lies beside each.
+    tables : sequence of Path
+        Further CSV files to show.
+    captions : Path
+        Folder with ``<name>.rst`` for each figure and table.
+    settings : mapping
+        ``dataset``, the name of the measured dataset or None for the twin;
+        ``order_sweep`` with its ``signal`` and ``convergence_factor``, of which the
+        caption of Figure 7 speaks.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or not as it should be.
+    """
 
     def told(name: str) -> str:
         return caption(captions, name, settings)

@@ -54,7 +54,7 @@ def markdown_table_of_machines() -> str:
     rows = []
     for kind in EFFECTS.values():
         first = [f"`{kind.name}`", kind.place, ", ".join(kind.families)]
-        for form, law in kind.laws.items():
+        for form, law in kind.forms.items():
             second = form
             for name, item in law.ranges.items():
                 sign = "±" if item.sign else ""

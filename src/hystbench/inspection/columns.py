@@ -1,0 +1,308 @@
+"""Columns of files: which belong together, and which are time, input and output."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from hystbench.device_kinds import Kind
+from hystbench.errors import InputError, nearest
+from hystbench.formats import Column, Table
+from hystbench.inspection.clocks import clock_of
+from hystbench.inspection.names import choose, is_simulated, is_time, split_unit
+from hystbench.record import FloatArray
+from hystbench.units import NONE, check_known, plain
+
+LEAST = 20
+"""Samples of a signal; fewer are a table of something else."""
+
+_OF_MATRIX = re.compile(r"(?P<stem>.+)(?P<place>\(:,\d+\))")
+
+
+class Ask(Protocol):
+    """Asks the user, or refuses where nobody is there."""
+
+    def __call__(self, question: str, choices: Sequence[str], flag: str) -> str:
+        """Give one of the choices; without choices, any text."""
+
+
+@dataclass(frozen=True)
+class Given:
+    """What flags say already.
+
+    Parameters
+    ----------
+    name : str, optional
+        Of the dataset.
+    time, input, output : str, optional
+        Names of columns.
+    time_unit, input_unit, output_unit : str, optional
+    sampling_frequency_hz : float, optional
+    hold_out : tuple of str
+        Names of records to hold out.
+    missing : {"interpolate", "split"}, optional
+        What to do where samples are missing.
+    device : str, optional
+        Kind of the device.
+    """
+
+    name: str | None = None
+    time: str | None = None
+    input: str | None = None
+    output: str | None = None
+    time_unit: str | None = None
+    input_unit: str | None = None
+    output_unit: str | None = None
+    sampling_frequency_hz: float | None = None
+    hold_out: tuple[str, ...] = ()
+    missing: str | None = None
+    device: Kind | None = None
+
+
+@dataclass(frozen=True)
+class Part:
+    """One record to be: a group of columns of one length in a file.
+
+    Parameters
+    ----------
+    table : Table
+    group : str
+        Where the columns lie in the file; empty at the top.
+    columns : mapping of str to Column
+        By the name that they have in every record.
+    """
+
+    table: Table
+    group: str
+    columns: Mapping[str, Column]
+
+    @property
+    def where(self) -> str:
+        """The file, and the group where there is one."""
+        return f"{self.table.path}{f': {self.group}' if self.group else ''}"
+
+
+@dataclass
+class Signals:
+    """Which columns are what, and their units."""
+
+    time: str | None
+    time_unit: str
+    input: str
+    output: str
+    units: dict[str, str]
+    simulated: str | None = None
+    notes: list[str] = field(default_factory=list)
+
+
+def parts_of(table: Table) -> list[Part]:
+    """Give the parts of a file that may be records.
+
+    Columns of one group and one length belong together, with those of that length at
+    the top of the file beside them. Of matrices alike the columns of one number do.
+    """
+    long = [column for column in table.columns if len(column.values) >= LEAST]
+    top = [column for column in long if not column.group]
+    groups: dict[str, list[Column]] = {}
+    for column in long:
+        groups.setdefault(column.group, []).append(column)
+    parts = []
+    for group, columns in groups.items():
+        if not group and (runs := _runs(columns)):
+            places = {place for stem in runs.values() for place in stem}
+            for place in sorted(places, key=lambda text: int(text[3:-1])):
+                own = {stem: by[place] for stem, by in runs.items() if place in by}
+                shared = [c for c in columns if not _OF_MATRIX.fullmatch(c.name)]
+                parts.append(_part(table, place, [*shared, *own.values()], own))
+            continue
+        shared = top if group else []
+        parts.append(_part(table, group, [*columns, *shared], {}))
+    return [part for part in parts if len(part.columns) > 1]
+
+
+def _runs(columns: Sequence[Column]) -> dict[str, dict[str, Column]]:
+    """Give matrices of one width by stem and place; none where one stands alone."""
+    stems: dict[str, dict[str, Column]] = {}
+    for column in columns:
+        found = _OF_MATRIX.fullmatch(column.name)
+        if found:
+            stems.setdefault(found["stem"], {})[found["place"]] = column
+    widths = Counter(len(by) for by in stems.values())
+    alike = [stem for stem, by in stems.items() if widths[len(by)] > 1]
+    return {stem: stems[stem] for stem in alike}
+
+
+def _part(
+    table: Table, group: str, columns: Sequence[Column], named: Mapping[str, Column]
+) -> Part:
+    """Make a part of the columns of the most common length."""
+    length = Counter(len(column.values) for column in columns).most_common(1)[0][0]
+    names = {id(column): name for name, column in named.items()}
+    return Part(
+        table,
+        group,
+        {
+            names.get(id(column), column.short): column
+            for column in columns
+            if len(column.values) == length
+        },
+    )
+
+
+def signals_of(parts: Sequence[Part], given: Given, ask: Ask) -> Signals:
+    """Find which columns are time, input and output, of most parts."""
+    common = _common(parts)
+    first = next(part for part in parts if set(common) <= set(part.columns))
+    told = {name: _told(name, first.columns[name]) for name in common}
+    time = _time(first, told, given)
+    rest = [
+        name
+        for name in common
+        if name != time and not (is_time(*told[name]) and name not in _asked(given))
+    ]
+    simulated = [n for n in rest if is_simulated(told[n][0]) and n not in _asked(given)]
+    rest = [name for name in rest if name not in simulated]
+    for name in _asked(given):
+        if name not in common:
+            raise InputError(
+                f"{first.where}: no column {name!r} in all records; "
+                f"{nearest(name, common)}"
+            )
+    chosen = _channels(first, rest, told, given, ask)
+    units, notes = {}, []
+    for key, name in (("input", chosen[0]), ("output", chosen[1])):
+        asked = getattr(given, f"{key}_unit")
+        unit = asked if asked is not None else told[name][1]
+        if unit is None:
+            unit = ask(
+                f"Unit of the {key} {name!r} ('-' for none)", (), f"--{key}-unit"
+            )
+        check_known(f"--{key}-unit", unit)
+        if unit in NONE and asked is None:
+            notes.append(
+                f"{key} {name!r}: no unit is told; '-' is written (--{key}-unit)"
+            )
+        units[key] = plain(unit) or "-"
+    unit_of_time = given.time_unit or (told[time][1] if time else None)
+    if time is not None and unit_of_time is None:
+        clock = clock_of(first.columns[time].values)
+        unit_of_time = clock.unit if clock else "s"
+        taken = clock.words if clock else "seconds"
+        notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
+    return Signals(
+        time,
+        plain(unit_of_time or "s"),
+        *chosen,
+        units,
+        simulated[0] if len(simulated) == 1 else None,
+        notes,
+    )
+
+
+def _common(parts: Sequence[Part]) -> list[str]:
+    """Give the names of columns that most parts share, in the order of the first."""
+    sets = Counter(tuple(part.columns) for part in parts)
+    names = max(sets, key=lambda names: (sets[names], -len(names)))
+    alike = [set(part.columns) for part in parts]
+    wide = [n for n in names if sum(n in each for each in alike) > len(parts) / 2]
+    return wide if len(wide) > 1 else list(names)
+
+
+def _told(name: str, column: Column) -> tuple[str, str | None]:
+    """Give a column's name without its unit, and its unit, if one is told and known."""
+    words, unit = split_unit(name)
+    own = column.unit
+    if own is not None:
+        try:
+            check_known("", own)
+        except InputError:
+            return words, unit
+        return words, plain(own)
+    return words, unit
+
+
+def _asked(given: Given) -> list[str]:
+    return [name for name in (given.time, given.input, given.output) if name]
+
+
+def _time(
+    part: Part, told: Mapping[str, tuple[str, str | None]], given: Given
+) -> str | None:
+    """Name the column of time: the one asked for, or one that is called so."""
+    if given.time is not None:
+        return given.time
+    if given.sampling_frequency_hz is not None:
+        return None
+    called = [name for name in told if is_time(*told[name])]
+    rising = [name for name in told if _rises(part.columns[name].values)]
+    likely = [name for name in called if name in rising]
+    if not likely and not called and part.table.sampling_frequency() is None:
+        # A column that rises evenly can be nothing else, if it is the only one.
+        own = {c.sampling_frequency_hz for c in part.columns.values()}
+        likely = [n for n in rising if n not in _asked(given)] if own == {None} else []
+        likely = likely if len(likely) == 1 else []
+    return likely[0] if likely else None
+
+
+def _rises(values: FloatArray) -> bool:
+    """Tell whether a column rises evenly, as a clock does."""
+    steps = np.diff(values)
+    if not np.isfinite(steps).all() or not (steps >= 0).all() or not steps.any():
+        return False
+    n = len(values)
+    line = values[0] + (values[-1] - values[0]) * np.arange(n) / (n - 1)
+    return bool(np.abs(values - line).max() < 0.1 * (values[-1] - values[0]))
+
+
+def _channels(
+    part: Part,
+    names: Sequence[str],
+    told: Mapping[str, tuple[str, str | None]],
+    given: Given,
+    ask: Ask,
+) -> tuple[str, str]:
+    """Name input and output: asked for, told by names and units, or asked."""
+    moving = [
+        n for n in names if n in _asked(given) or np.ptp(_finite(part.columns[n])) > 0
+    ]
+    if len(moving) < 2:
+        raise InputError(
+            f"{part.where}: {len(moving)} columns that move beside time "
+            f"({', '.join(names) or 'none'}); expected an input and an output"
+        )
+    left = [name for name in moving if name not in (given.input, given.output)]
+    likely = choose([told[name] for name in left])
+    found = [given.input, given.output]
+    for k, place in enumerate(likely):
+        if found[k] is None and place is not None:
+            found[k] = left[place]
+    for k, key in enumerate(("input", "output")):
+        if found[k] is None:
+            open_ = [name for name in left if name not in found]
+            alone = len(open_) == 1 and found[1 - k] is not None
+            asked = f"Which column is the {key}"
+            found[k] = open_[0] if alone else ask(asked, open_, f"--{key}")
+    one, two = found
+    if one is None or two is None or one == two:
+        raise InputError(
+            f"{part.where}: {one!r} is both input and output; expected one column each"
+        )
+    return one, two
+
+
+def _finite(column: Column) -> FloatArray:
+    values = column.values[np.isfinite(column.values)]
+    return values if len(values) else np.zeros(1)
+
+
+def fits(part: Part, signals: Signals) -> bool:
+    """Tell whether a part has the columns."""
+    wanted = {signals.input, signals.output}
+    if signals.time is not None:
+        wanted.add(signals.time)
+    return wanted <= set(part.columns)
