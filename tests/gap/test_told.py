@@ -18,8 +18,8 @@ from hystbench.gap.name import Named
 from hystbench.gap.rounds import Candidate, Look, Round, in_order
 from hystbench.gap.schema import RANK
 from hystbench.gap.start import start_state
-from hystbench.gap.state import Added
-from hystbench.gap.told import base_parameters, effect_mapping, ranking_rows
+from hystbench.gap.state import Added, Free
+from hystbench.gap.told import at_ends, base_parameters, effect_mapping, ranking_rows
 from hystbench.gap.verdict import Left
 from hystbench.model import Model, load_model
 from hystbench.model_content import Provenance
@@ -327,3 +327,18 @@ def test_the_augmented_model_keeps_limits_and_where_numbers_came_from():
     model = augmented(base, hard)
     assert dict(model.tolerances) == {"gain.value": 0.1}
     assert set(model.provenance) == {"gain.value", "gain.offset"}
+
+
+@pytest.mark.parametrize(("tau", "told"), [(0.002, True), (0.0021, False)])
+def test_a_number_at_the_end_of_its_range_is_told(tau, told):
+    lag = block("sensor-lag", time_constant_s=tau)
+    added = Added("sensor-lag", "sensor", "", (1,), {"time_constant_s": tau}, 1)
+    chain = (block("gain", value=12.0), lag)
+    free = (Free(1, "time_constant_s", low=1e-4, high=0.002), Free(0, "value"))
+    state = state_of(chain, measured(chain, NOISE), free=free, added=(added,))
+    sentence = at_ends(state)
+    wanted = (
+        "time_constant_s of sensor-lag, 0.002 s, lies at the end of the range that was "
+        "searched"
+    )
+    assert sentence == (wanted if told else "")

@@ -35,6 +35,7 @@ from hystbench.gap.state import State
 from hystbench.gap.steps import floor_with_steps, step_error
 from hystbench.gap.tell_apart import tell_apart
 from hystbench.gap.told import (
+    at_ends,
     base_parameters,
     effect_mapping,
     not_tried,
@@ -231,6 +232,8 @@ def decide(
     )
     untried = not_tried(named)
     reason += _untried(untried) if state.added else ""
+    ends = at_ends(state)
+    reason += f"; {ends}" if ends else ""
     used_up = _used_up(current())
     reason += f"; beside {own.words} of some records' own" if own.records else ""
     findings = new_in_every_record(state, left) if verdict == "named" else []

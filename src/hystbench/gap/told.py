@@ -187,6 +187,10 @@ def parameters_of(
     return found
 
 
+AT_END = 1e-3
+"""Share of a number by which it may be off the end of its range and be at it."""
+
+
 def _unit(unit: str, place: int, state: State) -> str:
     of_input, behind = state.records[0].input.unit, unit_behind(place, state)
     return unit_at(unit, state.chain, place, of_input, behind)
@@ -204,6 +208,28 @@ def _errors_of(
         each = [own.get(k) for k in range(len(value))]
         return each if any(x is not None for x in each) else None
     return own.get(None)
+
+
+def at_ends(state: State) -> str:
+    """Tell which numbers of effects lie at an end of the range that was searched.
+
+    There the range may have shut a better number out.
+    """
+    told = []
+    for free in state.free:
+        value = state.value(free)
+        named = next((x.effect for x in state.added if free.block in x.blocks), None)
+        ends = [end for end in (free.low, free.high) if np.isfinite(end)]
+        if named and any(np.isclose(value, end, rtol=AT_END, atol=0) for end in ends):
+            unit = state.chain[free.block].parameters()[free.parameter].unit
+            told.append(
+                f"{free.parameter} of {named}, {value:.3g} "
+                f"{_unit(unit, free.block, state)},"
+            )
+    if not told:
+        return ""
+    lies = "lies" if len(told) == 1 else "lie"
+    return f"{' and '.join(told)} {lies} at the end of the range that was searched"
 
 
 def not_tried(named: Named) -> list[str]:
