@@ -91,3 +91,20 @@ def test_records_that_a_model_runs_away_on_and_those_that_refuse_it_are_told_apa
         "the model runs away on a and c; the model cannot be run on b"
         in (found["sentence"])
     )
+
+
+@pytest.mark.parametrize(
+    ("count", "told"),
+    [
+        (1, "pulse-0 lies outside the fit records in rate"),
+        (2, "pulse-0 and pulse-1 lie outside the fit records in rate"),
+        (8, "8 records lie outside the fit records in rate"),
+    ],
+)
+def test_records_that_lie_outside_alike_are_told_in_one_clause(count, told):
+    given = content()
+    given["black_box"]["records"] = [
+        {"name": f"pulse-{k}", "outside": ["rate"]} for k in range(count)
+    ]
+    assert told in shortfall(given)["sentence"]
+    assert shortfall(given)["sentence"].count("outside") == 1

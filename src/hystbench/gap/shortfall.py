@@ -59,6 +59,8 @@ def _less(
     return f"{sentence}."
 
 
+SPELLED = 3
+"""Records that are told by name, at most."""
 SHOWS = 1.01
 """RMS over that of the step before, from which a step up is worth a sentence."""
 
@@ -103,9 +105,14 @@ def _is_beside(effect: Effect | None) -> bool:
 
 def _outside(content: Mapping[str, Any]) -> list[str]:
     records = (content.get("black_box") or {}).get("records", [])
+    alike: dict[str, list[str]] = {}
+    for item in records:
+        if item["outside"]:
+            alike.setdefault(" and ".join(item["outside"]), []).append(item["name"])
     return [
-        f"{item['name']} lies outside the fit records in "
-        f"{' and '.join(item['outside'])}"
-        for item in records
-        if item["outside"]
+        f"{' and '.join(names)} {'lies' if len(names) == 1 else 'lie'} outside the fit "
+        f"records in {how}"
+        if len(names) <= SPELLED
+        else f"{len(names)} records lie outside the fit records in {how}"
+        for how, names in alike.items()
     ]
