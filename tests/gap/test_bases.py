@@ -10,8 +10,11 @@ from scipy.signal import lsim, lti
 
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
+from hystbench.gap import bases
 from hystbench.gap.bases import identified_gpi, identified_linear, load_base
+from hystbench.gap.bases.linear import Linear
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.scene import Scene
@@ -493,3 +496,18 @@ def test_where_five_poles_do_not_do_modes_are_added_one_by_one():
     found = identified_linear(evidence(*records))
     assert len(dynamics(found.model).denominator) == 9
     assert found.fold_rms < 1.5 * 0.02
+
+
+def test_of_many_poles_the_denominator_is_not_free(monkeypatch):
+    known = record(steady(multisine(1)), steady(multisine(1)))
+    down = np.poly([-10.0, -20.0, -30.0, -40.0, -50.0, -60.0, -70.0])
+
+    def identified(evidence):
+        block = TransferFunction(numerator=(1.0,), denominator=tuple(down.tolist()))
+        chain = (block, Gain(value=1.0, offset=0.0))
+        return Linear(Model("linear", known.input, known.output, chain), "", 0.0, 0.0)
+
+    monkeypatch.setattr(bases, "identified_linear", identified)
+    model, _ = load_base("linear", evidence(known))
+    assert "transfer-function.numerator" in model.free
+    assert "transfer-function.denominator" not in model.free

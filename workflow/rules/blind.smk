@@ -129,7 +129,8 @@ BLIND_FIGURES = {
     "blind-effects": "effects",
     "blind-power": "power",
     "blind-reliability": "reliability",
-    "blind-where": "effects",
+    # Of machines no view is judged.
+    **({} if OF_MACHINES else {"blind-where": "effects"}),
 }
 
 for NAME, TABLE in BLIND_FIGURES.items():

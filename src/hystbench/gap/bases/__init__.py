@@ -20,7 +20,7 @@ from hystbench.errors import InputError
 from hystbench.gap.asked import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
-from hystbench.gap.bases.linear import Linear, identified_linear
+from hystbench.gap.bases.linear import HIGHEST, Linear, identified_linear
 from hystbench.gap.evidence import Evidence, check_units
 from hystbench.gap.remembered import records_digest, remembered
 from hystbench.gap.scene import Scene
@@ -95,11 +95,15 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
     if word == "gpi":
         return identified_gpi(evidence)
     found = identified_linear(evidence)
-    # It was fitted with the gap in it: what is added may take its part back.
+    # It was fitted with the gap in it: what is added may take its part back. Of many
+    # poles, a small step of one coefficient alone may make the model unstable.
     numbers = [
         name
         for name in found.model.parameter_names()
-        if not isinstance(found.model.value(name), str)
+        if not isinstance(value := found.model.value(name), str)
+        and not (
+            name.endswith(".denominator") and len(np.atleast_1d(value)) > HIGHEST + 1
+        )
     ]
     return replace(found.model, free=tuple(numbers)), found.note
 
