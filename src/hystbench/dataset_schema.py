@@ -7,17 +7,25 @@ from typing import Any
 from hystbench.device_kinds import KINDS
 from hystbench.quantities import QUANTITIES
 
-_CHANNEL = {
-    "type": "object",
-    "required": ["column", "unit"],
-    "additionalProperties": False,
-    "properties": {
-        "column": {"type": "string"},
-        "unit": {"type": "string"},
-        "name": {"type": "string"},
-        "meant": {"type": "boolean"},
-        "quantity": {"enum": list(QUANTITIES)},
-    },
+
+def _column(**more: dict[str, Any]) -> dict[str, Any]:
+    """Describe a column of the records: name, unit, and what else it may say."""
+    return {
+        "type": "object",
+        "required": ["column", "unit"],
+        "additionalProperties": False,
+        "properties": {
+            "column": {"type": "string"},
+            "unit": {"type": "string"},
+            "meant": {"type": "boolean"},
+            **more,
+        },
+    }
+
+
+_CHANNEL: dict[str, Any] = {
+    "name": {"type": "string"},
+    "quantity": {"enum": list(QUANTITIES)},
 }
 
 SCHEMA: dict[str, Any] = {
@@ -27,35 +35,14 @@ SCHEMA: dict[str, Any] = {
     "properties": {
         "name": {"type": "string", "pattern": r"^[A-Za-z0-9][A-Za-z0-9._-]*$"},
         "description": {"type": "string"},
-        "time": {
-            "type": "object",
-            "required": ["column", "unit"],
-            "additionalProperties": False,
-            "properties": {
-                "column": {"type": "string"},
-                "unit": {"type": "string"},
-                "tolerance": {"type": "number", "exclusiveMinimum": 0, "maximum": 0.5},
-                "meant": {"type": "boolean"},
-            },
-        },
-        "input": _CHANNEL
-        | {
-            "properties": {
-                **_CHANNEL["properties"],  # type: ignore[dict-item]
-                "hold": {"enum": ["zero-order", "linear", "band-limited"]},
-            }
-        },
-        "output": _CHANNEL,
-        "simulated": {
-            "type": "object",
-            "required": ["column", "unit"],
-            "additionalProperties": False,
-            "properties": {
-                "column": {"type": "string"},
-                "unit": {"type": "string"},
-                "meant": {"type": "boolean"},
-            },
-        },
+        "time": _column(
+            tolerance={"type": "number", "exclusiveMinimum": 0, "maximum": 0.5}
+        ),
+        "input": _column(
+            **_CHANNEL, hold={"enum": ["zero-order", "linear", "band-limited"]}
+        ),
+        "output": _column(**_CHANNEL),
+        "simulated": _column(),
         "device": {
             "type": "object",
             "required": ["kind"],

@@ -123,9 +123,9 @@ class OutputError:
     def _triangle(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
         """Triangle of the derivatives, and of the error as its last column."""
         triangles = []
-        simulated = self.simulate(ratio)
-        for record, y, mask in zip(self.records, simulated, masks, strict=True):
-            columns = [*self._derivatives(ratio, record), record.y - y]
+        left = self.left(ratio)
+        for record, rest, mask in zip(self.records, left, masks, strict=True):
+            columns = [*self._derivatives(ratio, record), rest]
             own = np.column_stack(columns)[mask]
             triangles.append(triangle_of(own))
         return triangle_of(np.vstack(triangles))

@@ -190,8 +190,8 @@ def with_a_mode(
     order = len(ratio.a) + 2
     problem = _Problem(spectra, order, order)
     for s in _peaks(spectra, left, count):
-        pair = [s**2, 2 * damping_ratio * s, 1.0]
-        a = np.polymul(np.append(ratio.a, 1.0)[::-1], pair[::-1])[:0:-1]
+        pair = [1.0, 2 * damping_ratio * s, s**2]
+        a = np.polymul(np.append(ratio.a, 1.0)[::-1], pair)[:0:-1]
         yield problem.solved(np.asarray(a))
 
 

@@ -73,7 +73,7 @@ def laws_for(
         Effects that may be named; all by default.
     """
     every: dict[str, tuple[Law | Changed, ...]]
-    if any(isinstance(block, Store) for block in host.state.chain):
+    if of_stores(host):
         filled = how_it_fills(host.state)
         every = {name: tuple(x.stored(filled)) for name, x in among(offered).items()}
     else:
@@ -104,20 +104,20 @@ def together(
     for keep in (PAIRS, 1):
         if not may_gain(min(every, key=lambda item: item.score), score):
             break
-        if not of_stores(found[0]):
+        if not of_stores(found[0].fitted):
             carried = [item for item in carried if item.score < alone]
         carried = _one_more(carried, offer, score, keep, alone, say)
         every += carried
     return best_of_each(every)
 
 
-def of_stores(item: Hypothesis) -> bool:
-    """Tell whether a hypothesis is of stores: all their laws are tried with each other.
+def of_stores(item: Fitted) -> bool:
+    """Tell whether a model is of stores: all their laws are tried with each other.
 
     They are few, and the root of the level, which may be worse than a linear outflow
     alone, may be better than any other law with an overflow.
     """
-    return any(isinstance(block, Store) for block in item.fitted.state.chain)
+    return any(isinstance(block, Store) for block in item.state.chain)
 
 
 def best_of_each(found: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -147,7 +147,7 @@ def _one_more(
         if name not in before.effects
         for further in starts(before, name, own, score)
     ]
-    if any(of_stores(item) for item in carried):
+    if any(of_stores(item.fitted) for item in carried):
         best_first = fitted_each(begun, score)
     else:
         best_first = fitted_likely(begun, score, keep)
@@ -223,12 +223,7 @@ def fitted_likely(
         ]
         rough.append(min(tried, key=lambda item: item.score))
     rough.sort(key=lambda item: item.score)
-    done = [
-        replace(item, fitted=fitted(item.fitted.state, score)) for item in rough[:count]
-    ]
-    return sorted(
-        (item for item in done if np.isfinite(item.score)), key=lambda item: item.score
-    )
+    return _to_the_end(rough[:count], score)
 
 
 def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
@@ -237,10 +232,12 @@ def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
     for item in sorted(begun, key=lambda item: item.score):
         law = tuple(sorted(map(" ".join, zip(item.effects, item.forms, strict=True))))
         likely.setdefault(law, item)
-    done = [
-        replace(item, fitted=fitted(item.fitted.state, score))
-        for item in likely.values()
-    ]
+    return _to_the_end(likely.values(), score)
+
+
+def _to_the_end(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
+    """Fit hypotheses to the end; the least score first, none that runs away."""
+    done = [replace(item, fitted=fitted(item.fitted.state, score)) for item in begun]
     return sorted(
         (item for item in done if np.isfinite(item.score)), key=lambda item: item.score
     )
