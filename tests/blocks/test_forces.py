@@ -1,5 +1,6 @@
 """Forces inside a mechanism: their laws, their memory, and that they only dissipate."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -263,3 +264,25 @@ def test_dry_friction_turns_with_the_motion_within_a_step():
     force = FrictionForce(coulomb=friction, presliding_distance=1e-9)
     moved = host.driven(np.zeros(count), step, (force,))
     assert np.abs(moved - exact).max() < 3e-4
+
+
+def test_the_friction_of_a_band_limited_motion_is_sampled_without_aliasing():
+    """Its jumps lie between samples: what is recorded is below half the rate."""
+    fine, n = 64, 400
+    t = np.arange((n - 1) * fine + 1) / fine
+    q = np.sin(2 * np.pi * t / 33.3)
+    jumps = np.sign(np.cos(2 * np.pi * t / 33.3))
+    # An ideal low-pass filter leaves the harmonics of the square wave below its edge.
+    harmonics = np.arange(1, 17, 2)
+    shares = 4 / np.pi * (-1.0) ** ((harmonics - 1) // 2) / harmonics
+    wanted = shares @ np.cos(2 * np.pi * np.outer(harmonics, t[::fine] / 33.3))
+    friction = force("friction-force", coulomb=1.0, presliding_distance=1e-6)
+    off = {
+        hold: friction.attach(replace(BARE, hold=hold)).simulate(q[::fine], None, 1.0)
+        for hold in ("linear", "band-limited")
+    }
+    part = slice(40, -40)  # at its ends a record is continued as if turned about them
+    aliased, right = (np.std((off[hold] - wanted)[part]) for hold in off)
+    assert np.std((jumps[::fine] - wanted)[part]) > 0.15
+    assert aliased > 0.15
+    assert right < 0.05

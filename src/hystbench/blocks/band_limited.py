@@ -128,6 +128,22 @@ def interpolate(v: FloatArray, factor: int) -> FloatArray:
     return series.line(count, 0.0, factor) + series.sines(count, 1.0, factor)
 
 
+def coarser(v: FloatArray, factor: int) -> FloatArray:
+    """Sample a signal ``factor`` times coarser, as behind an ideal low-pass filter.
+
+    What is above half of the coarse sampling rate is left out: for a signal that has
+    nothing there this undoes :func:`interpolate`.
+
+    Returns
+    -------
+    ndarray, shape ((n - 1) // factor + 1,)
+    """
+    series = _sine_series(v)
+    kept = np.where(np.arange(series.half + 1) * factor < series.half, 1.0, 0.0)
+    signal: FloatArray = series.line(len(v)) + series.sines(len(v), kept)
+    return signal[::factor].copy()
+
+
 def finer(v: FloatArray, factor: int) -> FloatArray:
     """Do what :func:`interpolate` does, once for a signal that cannot be written to.
 

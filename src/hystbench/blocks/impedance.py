@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import partial
+from math import factorial
+from typing import Any, ClassVar
 
 import numpy as np
 
-from hystbench.blocks.base import Block
+from hystbench.blocks.band_limited import coarser, finer
 from hystbench.blocks.force import Force, Motion, against, exported
+from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
-from hystbench.blocks.step import Sampling, Step, about_sample, foretold
+from hystbench.blocks.step import (
+    Sampling,
+    Step,
+    about_sample,
+    foretold,
+    smooth_curve,
+    through_samples,
+)
 from hystbench.record import FloatArray
 
 INPUTS = ("position", "velocity")
@@ -31,17 +41,22 @@ CURVATURE = (
     / 12
 )
 """The same for the second derivative."""
+FINER = 8
+"""Steps in a sampling interval of a band-limited motion: friction reverses between
+samples, and what of its jump is below half the sampling rate is right to a percent."""
 
 
 @dataclass(frozen=True)
-class Impedance(Block):
+class Impedance(HeldBlock):
     """Force of a device that is moved: ``y = m q'' + c q' + k q + F(q, q') + bias``.
 
     F is the sum of the forces that follow it in the chain. The input is the position q,
     or the velocity, which is then integrated by the trapezoidal rule. Rates are
     taken from five samples, to the fourth order in the sampling interval [2]_: second
     differences of three make the force of a mass too small by 1 % at 18 samples a
-    period, which looks like another force.
+    period, which looks like another force. A band-limited motion is taken eight times
+    finer, and of F what passes a low-pass filter at half the sampling rate: what an
+    instrument records that samples without aliasing. ``zero-order`` is as ``linear``.
 
     References
     ----------
@@ -61,6 +76,17 @@ class Impedance(Block):
     stiffness: float = number("Y/U", "k", -HUGE, HUGE)
     bias: float = number("Y", "constant force", -HUGE, HUGE, 0.0)
     input: str = choice("what the input is", INPUTS, "position")
+
+    @classmethod
+    def parts(cls, moved: str, hold: str = "default") -> dict[str, Impedance]:
+        """Give a block for each number, with that at one and the others at zero.
+
+        The force of any impedance is the sum of theirs, times its numbers.
+        """
+        names = ("mass", "damping", "stiffness", "bias")
+        zero: dict[str, Any] = dict.fromkeys(names, 0.0)
+        zero |= {"input": moved, "hold": hold}
+        return {name: cls(**{**zero, name: 1.0}) for name in names}
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the force without one that is not linear."""
@@ -97,42 +123,71 @@ class Impedance(Block):
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Do so with forces inside."""
         points, ahead, dt = sampling.curve_points, sampling.ahead, sampling.dt
+        if self.holding == "band-limited":
+            rate, curvature = (
+                np.tile(through_samples(points, partial(_derivative, k), -ahead), 3)
+                for k in (1, 2)
+            )
+            way = through_samples(points, lambda m: (-1.0) ** m / (m + 1), -ahead)
+            told = smooth_curve(points, ahead)
+            told += "" if ahead > 1 else f"; {foretold(RATE[-1], points, ahead)}"
+            if forces:
+                told += "; takes its forces at samples alone, without a low-pass filter"
+        else:
+            rate, curvature = (
+                np.ravel([about_sample(row, points, ahead) for row in rows])
+                for rows in (RATE, CURVATURE)
+            )
+            way = np.zeros(points)
+            way[ahead : ahead + 2] = 0.5
+            told = foretold(RATE[-1], points, ahead)
         constants = {
             "mass": self.mass,
             "damping": self.damping,
             "stiffness": self.stiffness,
             "bias": self.bias,
             "velocity": int(self.input == "velocity"),
-            "dt": dt,
             "points": points,
             "ahead": ahead,
-            "rate": np.ravel([about_sample(row, points, ahead) for row in RATE]) / dt,
-            "curvature": np.ravel(
-                [about_sample(row, points, ahead) for row in CURVATURE]
-            )
-            / dt**2,
+            "rate": rate / dt,
+            "curvature": curvature / dt**2,
+            "way": way * dt,
             **exported(forces),
         }
         memory = max(len(forces), 1)
-        states = {"place": 2, "memory": memory, "history": 1 + points}
+        states = {"place": 1, "memory": memory, "history": 1 + points}
         return Step(
             "impedance",
             constants,
             states,
             forward=True,
             rates=2,
-            differs=foretold(RATE[-1], points, ahead),
+            differs=told,
         )
 
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Give the motion and the forces that it meets, as for :meth:`driven`."""
-        q = v = np.ascontiguousarray(z, dtype=np.float64)
+        fine = FINER if self.holding == "band-limited" and len(z) > 2 else 1
+        x = finer(z, fine) if fine > 1 else np.ascontiguousarray(z, dtype=np.float64)
+        dt /= fine
         if self.input == "position":
-            v = _rate(q, dt)
-        elif len(z):
-            q = np.concatenate([[0.0], np.cumsum((z[1:] + z[:-1]) / 2 * dt)])
-        curved = _curvature(q, dt) if self.input == "position" else _rate(v, dt)
-        return Motion(q, v, curved, against(forces, q, v))
+            q, v, curved = x, _rate(x, dt), _curvature(x, dt)
+        else:
+            way = np.cumsum((x[1:] + x[:-1]) / 2 * dt)
+            q, v, curved = (
+                np.concatenate([np.zeros(min(len(x), 1)), way]),
+                x,
+                _rate(x, dt),
+            )
+        force = against(forces, q, v)
+        if fine > 1:
+            force = coarser(force, fine) if forces else force[::fine]
+        return Motion(q[::fine], v[::fine], curved[::fine], force)
+
+
+def _derivative(order: int, power: int) -> float:
+    """Give a derivative of ``t^power`` at zero."""
+    return float(factorial(order)) if power == order else 0.0
 
 
 def _rate(x: FloatArray, dt: float) -> FloatArray:

@@ -39,10 +39,10 @@ static double hb_mechanism(double gain, double bias, int segments, int points,
 
 /* The force that a motion takes; rate and curvature take samples on both sides. */
 static double hb_impedance(double mass, double damping, double stiffness, double bias,
-                           int velocity, double dt, int points, int ahead,
-                           const double *rate, const double *curvature, int count,
-                           const double *forces, double *place, double *memory,
-                           double *history, double z)
+                           int velocity, int points, int ahead,
+                           const double *rate, const double *curvature,
+                           const double *way, int count, const double *forces,
+                           double *place, double *memory, double *history, double z)
 {
     const int moves = history[0] > ahead;
     hb_remember(points, history, z);
@@ -54,14 +54,13 @@ static double hb_impedance(double mass, double damping, double stiffness, double
     const double slope = hb_weighted(points, rate + row, history + 1);
     double q = z, v = slope, a = slope;
     if (velocity) {
-        q = moves ? before + (z + place[1]) / 2 * dt : 0;
+        q = moves ? before + hb_weighted(points, way, history + 1) : 0;
         v = z;
     } else {
         a = hb_weighted(points, curvature + row, history + 1);
     }
     place[0] = q;
-    place[1] = z;
-    const double way = moves ? q - before : 0;
-    const double force = hb_all_forces(count, forces, q, v, way, memory);
+    const double moved = moves ? q - before : 0;
+    const double force = hb_all_forces(count, forces, q, v, moved, memory);
     return mass * a + damping * v + stiffness * q + force + bias;
 }

@@ -305,11 +305,11 @@ def impedance(
     stiffness,
     bias,
     velocity,
-    dt,
     points,
     ahead,
     rate,
     curvature,
+    way,
     count,
     forces,
     place,
@@ -326,11 +326,11 @@ def impedance(
     row = min(int(history[0]) - 1 - ahead, 2) * points  # of the first, second, others
     v = rate[row : row + points] @ history[1:]
     if velocity:
-        q = before + (z + place[1]) / 2 * dt if moves else 0.0
+        q = before + way @ history[1:] if moves else 0.0
         v, a = z, v
     else:
         q, a = z, curvature[row : row + points] @ history[1:]
-    place[:] = q, z
-    way = q - before if moves else 0.0
-    force = all_forces(count, forces, q, v, way, memory)
+    place[0] = q
+    moved = q - before if moves else 0.0
+    force = all_forces(count, forces, q, v, moved, memory)
     return mass * a + damping * v + stiffness * q + force + bias

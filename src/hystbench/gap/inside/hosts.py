@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -160,16 +161,16 @@ def one_coordinate(
 
 def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> State:
     """Give the impedance that fits best: its force is linear in its numbers."""
-    names = ("mass", "damping", "stiffness", "bias")
-    sample = Sample.of(records)
-    columns = []
-    for name in names:
-        one = Impedance(**{**dict.fromkeys(names, 0.0), name: 1.0}, input=moved)
-        columns.append(sample.take([one.simulate(r.u, r.u, r.dt) for r in records]))
+    sample, parts = Sample.of(records), Impedance.parts(moved, hold)
+    columns = [
+        sample.take([part.simulate(r.u, r.u, r.dt) for r in records])
+        for part in parts.values()
+    ]
     wanted = sample.take([record.y for record in records])
     values = _solved(np.column_stack(columns), wanted)
-    block = Impedance(**dict(zip(names, values.tolist(), strict=True)), input=moved)
-    return _state((block,), records, hold, {0: names})
+    numbers: dict[str, Any] = dict(zip(parts, values.tolist(), strict=True))
+    block = Impedance(**numbers, input=moved, hold=hold)
+    return _state((block,), records, hold, {0: tuple(parts)})
 
 
 def masses(records: tuple[Record, ...], output: str, hold: Hold) -> Iterator[State]:
