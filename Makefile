@@ -18,12 +18,12 @@ help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
 	@echo "make docs       fill the tables of README.md and docs/ from results/ (after test-slurm)"
-	@echo "make site       write README.md and docs/ as web pages into site/"
+	@echo "make site       set up .venv-site, write docs/ as web pages into build/site"
 	@echo "make bench      measure kernels and pipeline beside their peers, fill docs/speed.md"
 	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
 	@echo "make slurm      set up .venv-slurm, from which the pipeline runs on a cluster"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
-	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm, .venv-site, site and what was written to results"
+	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm, .venv-site, build/site and what was written to results"
 
 # Each of hundreds of jobs would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -111,4 +111,4 @@ requirements:
 clean:
 	@test ! -e results || test -x $(BIN)/hystbench || { echo "results: stays, as without $(VENV) nobody tells what hystbench wrote there; run 'make $(READY)' first, or remove it by hand" >&2; exit 1; }
 	test ! -e results || $(BIN)/hystbench clean results
-	rm -rf $(VENV) .venv-rivals .venv-slurm .venv-site site .snakemake
+	rm -rf $(VENV) .venv-rivals .venv-slurm .venv-site build/site .snakemake
