@@ -73,8 +73,12 @@ def test_a_force_without_memory_is_its_formula(name):
     values, law = LAWS[name]
     q = motion()
     found = against(force(name.split()[0], **values), q)
-    wanted = law(q, np.gradient(q, DT))
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12 * np.ptp(wanted))
+    # The motion is closed: the derivative of its Fourier series is its velocity.
+    waves = 2j * np.pi * np.fft.rfftfreq(len(q) - 1, DT)
+    v = np.fft.irfft(waves * np.fft.rfft(q[:-1]))
+    wanted = law(q, np.append(v, v[0]))
+    off = np.abs(found - wanted)[2:-2].max()  # samples lack at the ends, for a rate
+    assert off < 1e-8 * np.ptp(wanted)
 
 
 def test_friction_gives_way_and_slides():

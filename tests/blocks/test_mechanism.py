@@ -268,6 +268,28 @@ def test_an_impedance_takes_the_motion_that_a_mechanism_makes():
         assert off < 2e-3 * np.ptp(drive(t))
 
 
+@pytest.mark.parametrize("given", ["position", "velocity"])
+def test_the_force_of_a_mass_is_of_fourth_order_in_the_interval(given):
+    """At the ends of a record it is of lower order: samples lack there."""
+    ends, inner = [], []
+    for count in (200, 400):
+        t = np.linspace(0, 1, count + 1)
+        q, v, a = (
+            np.sin(40 * t + 1),
+            40 * np.cos(40 * t + 1),
+            -1600 * np.sin(40 * t + 1),
+        )
+        block = Impedance(mass=1.0, damping=0.0, stiffness=0.0, input=given)
+        off = np.abs(block.simulate(q if given == "position" else v, t, t[1]) - a)
+        inner.append(off[2:-2].max())
+        ends.append(off.max())
+    # sin(w t): (w h)^4 / 30 of a rate, (w h)^4 / 90 of a second derivative.
+    part = 30 if given == "velocity" else 90
+    assert inner[0] == pytest.approx(1600 * (40 / 200) ** 4 / part, rel=0.05)
+    assert inner[0] / inner[1] == pytest.approx(16, rel=0.05)
+    assert ends[0] / ends[1] > 1.9
+
+
 def test_gain_bias_and_start_are_those_of_the_equation():
     forces, law = SMOOTH["cubic"]
     t = np.linspace(0, 2, 801)

@@ -227,8 +227,8 @@ def judge(y, wanted, differences):
     first, share = (FIRST, 1e-6) if told else (0, 1e-9)
     last = None
     if "foretells" in told:
-        # Behind the last sample of a record there is none: a rate is one-sided there.
-        first, last = ROUND, -1
+        # Behind the last samples of a record there is none: a rate is one-sided there.
+        first, last = ROUND, -2
     off = np.abs(y - wanted)[first:last].max() / np.ptp(wanted)
     assert off <= share, f"{off:.2g} of the range"
 

@@ -591,3 +591,20 @@ def test_a_light_mode_between_the_points_of_the_grid_is_looked_for():
     (variant,) = effects()["resonance"].variants(state.scene)
     near = np.abs(np.log(variant.grids["frequency_hz"] / hertz))
     assert near.min() < 0.02
+
+
+@pytest.mark.parametrize("share", [0.03, 0.1, 0.3, 0.6, 0.84, 0.97])
+def test_some_rate_of_the_grid_explains_half_of_any_slew_limit(share):
+    """Of the gap's power: else an effect that fits worse is searched further."""
+    t = np.arange(1000) / 1000
+    u = np.sin(2 * np.pi * 9 * t)
+    one = record(u, y=u, dt=1e-3)
+    state = state_of((block("gain", value=1.0),), (one,))
+    (variant,) = effects()["slew-limit"].variants(state.scene)
+
+    def limited(rate):
+        return block("slew-limit", rate=rate).simulate(u, u, 1e-3)
+
+    real = limited(share * state.scene.fastest())
+    left = [np.mean((real - limited(x)) ** 2) for x in variant.grids["rate"]]
+    assert min(left) < 0.5 * np.mean((real - u) ** 2)

@@ -40,7 +40,7 @@ def test_the_verdict_is_told_with_its_reason(folder):
 
 def test_where_there_is_no_gap_the_reason_is_in_the_sentence():
     gap = {"verdict": "no-gap", "reason": "it is the noise", "effects": []}
-    gap |= {"findings": [], "withdrawn": None, "asked": None}
+    gap |= {"withdrawn": None, "asked": None}
     assert verdict_text(gap) == "**There is no gap: it is the noise.**\n"
 
 

@@ -195,7 +195,7 @@ def test_halves_are_those_of_every_record():
     assert (np.count_nonzero(parts, axis=0) == 50).all()
 
 
-PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None, "findings": []}
+PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None}
 
 
 @pytest.mark.parametrize("sort", SORTS)

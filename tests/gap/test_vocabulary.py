@@ -115,7 +115,6 @@ def about(**more):
         "reason": "",
         "effects": [effect],
         "withdrawn": None,
-        "findings": [],
         "unnamed": None,
         "ranking": [row],
         "asked": None,

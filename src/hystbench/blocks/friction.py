@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import Sampling, Step, foretold, sample_rate
+from hystbench.blocks.step import CENTRAL, Sampling, Step, about_sample, foretold
 from hystbench.record import FloatArray
 
 
@@ -50,7 +50,7 @@ class Friction(Block):
             "coulomb": self.coulomb,
             "velocity_scale": self.velocity_scale,
             "points": points,
-            "rate": sample_rate(points, sampling.late) / sampling.dt,
+            "rate": about_sample(CENTRAL, points, sampling.late) / sampling.dt,
         }
         history = {"history": 1 + points}
         return Step(
@@ -59,6 +59,6 @@ class Friction(Block):
             history,
             watches=True,
             forward=True,
-            rates=True,
-            differs=foretold(points, sampling.late),
+            rates=1,
+            differs=foretold(CENTRAL, points, sampling.late),
         )

@@ -12,6 +12,7 @@ from hystbench.blocks.band_limited import finer
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import (
+    CENTRAL,
     Sampling,
     Step,
     central_difference,
@@ -135,7 +136,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         function = "rate_dependent_hysteresis"
         told = [smooth_curve(points, ahead)] if fine > 1 else []
         if self.form != "acting-field":
-            told.append(foretold(points, ahead))
+            told.append(foretold(CENTRAL, points, ahead))
         return Step(
             function,
             constants,
@@ -143,6 +144,6 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
             grows=True,
             drives=fine,
             forward=bool(told),
-            rates=self.form != "acting-field",
+            rates=int(self.form != "acting-field"),
             differs="; ".join(filter(None, told)),
         )

@@ -9,11 +9,12 @@ import numpy as np
 
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import (
+    CENTRAL,
     PASSED,
     Sampling,
     Step,
+    about_sample,
     foretold,
-    sample_rate,
 )
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
@@ -80,7 +81,7 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
             "envelope_offset": self.envelope_offset,
             "points": points,
             "ahead": ahead,
-            "rate": sample_rate(points, ahead) / sampling.dt,
+            "rate": about_sample(CENTRAL, points, ahead) / sampling.dt,
             "count": count,
         }
         states = {"history": 1 + points, "w": count}
@@ -89,7 +90,7 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
             constants,
             states,
             forward=True,
-            rates=True,
+            rates=1,
             past=PASSED if self.start == "settled" else "",
-            differs=foretold(points, ahead),
+            differs=foretold(CENTRAL, points, ahead),
         )

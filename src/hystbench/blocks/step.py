@@ -18,6 +18,8 @@ from hystbench.record import FloatArray
 
 LARGEST_POINTS = 8
 """Samples that a curve goes through at most where none to come is known."""
+CENTRAL = np.array([-0.5, 0.0, 0.5])
+"""Weights of a sample and its neighbours for the central difference, per sample."""
 LARGEST_AHEAD = 15
 """Samples to come that a block gains by at most: a curve through so many on both sides
 is within a millionth of a sine's amplitude up to a fifth of the sampling rate."""
@@ -74,8 +76,8 @@ class Step:
         many samples as the constant ``points`` says, before anything else is done.
     forward : bool
         Whether the step is nearer to the simulation where samples to come are known.
-    rates : bool
-        Whether it takes a central difference, which the next sample makes exact.
+    rates : int
+        Samples to come that make a rate which it takes exact; none where it takes none.
     grows : bool
         Whether it takes a factor on its thresholds.
     drives : int
@@ -97,7 +99,7 @@ class Step:
     states: Mapping[str, int] = field(default_factory=dict)
     watches: bool = False
     forward: bool = False
-    rates: bool = False
+    rates: int = 0
     grows: bool = False
     drives: int = 0
     undoes: bool = False
@@ -145,28 +147,30 @@ def value_at(points: int, place: float) -> FloatArray:
     return through_samples(points, lambda m: float(m == 0), place)
 
 
-def sample_rate(points: int, ahead: int) -> FloatArray:
-    """Weights of the samples for the central difference at a sample, per sample.
+def about_sample(weights: FloatArray, points: int, ahead: int) -> FloatArray:
+    """Weights of the newest samples for a difference about one of them.
 
-    Where the next sample is known it is that of the two neighbours alone.
+    Where the samples that it takes are known it is that of these alone.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (2 k + 1,)
+        Of the sample, the k before it and the k after it, the oldest first.
+    points, ahead : int
+        Samples that a curve goes through; so many of them are later.
+
+    Returns
+    -------
+    ndarray, shape (points,)
+        The newest first.
     """
-    if not ahead:
-        return central_difference(points, 0.0, 1.0)
-    weights = np.zeros(points)
-    weights[[ahead - 1, ahead + 1]] = 0.5, -0.5
-    return weights
-
-
-def sample_curvature(points: int, ahead: int) -> FloatArray:
-    """Weights of the samples for the second difference at a sample.
-
-    Where the next sample is known it is that of three neighbours alone.
-    """
-    if not ahead:
-        return through_samples(points, lambda m: 1.0 + (-1.0) ** m - 2 * 0.0**m)
-    weights = np.zeros(points)
-    weights[ahead - 1 : ahead + 2] = 1.0, -2.0, 1.0
-    return weights
+    reach = len(weights) // 2
+    if ahead < reach:
+        around = np.arange(-reach, reach + 1.0)
+        return through_samples(points, lambda m: float(weights @ around**m), -ahead)
+    taken = np.zeros(points)
+    taken[ahead - reach : ahead + reach + 1] = weights[::-1]
+    return taken
 
 
 def central_difference(points: int, place: float, half_width: float) -> FloatArray:
@@ -227,15 +231,24 @@ def smooth_curve(points: int, ahead: int = 0) -> str:
     )
 
 
-def foretold(points: int, ahead: int = 0) -> str:
-    """Say what becomes of a central difference; nothing where it knows both sides."""
-    if ahead:
+def foretold(weights: FloatArray, points: int, ahead: int) -> str:
+    """Say what becomes of a rate; nothing where it knows the samples on both sides.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (2 k + 1,)
+        Of the samples that it takes, per sample, as for :func:`about_sample`.
+    points, ahead : int
+    """
+    needed = len(weights) // 2
+    if ahead >= needed:
         return ""
-    weights = central_difference(points, 0.0, 1.0)
+    noise = noise_of_rate(about_sample(weights, points, ahead)) / noise_of_rate(weights)
+    missing = needed - ahead
     return (
-        f"foretells the next sample by the polynomial through the newest {points}, for "
-        f"its rate, in which noise is {noise_of_rate(weights):.2g} times as large as "
-        "with --delay 1"
+        f"foretells the next {'sample' if missing == 1 else f'{missing} samples'} by "
+        f"the polynomial through the newest {points}, for its rate, in which noise is "
+        f"{noise:.2g} times as large as with --delay {needed}"
     )
 
 
@@ -247,7 +260,7 @@ def noise_of_rate(weights: FloatArray) -> float:
     weights : ndarray, shape (n,)
         Of the samples, for the rate per sample.
     """
-    return float(np.sqrt(np.sum(weights**2) / 0.5))
+    return float(np.sqrt(np.sum(weights**2) / np.sum(CENTRAL**2)))
 
 
 PASSED, TURNED = "passed", "turned"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import keyword
 import re
 import sys
@@ -208,8 +209,8 @@ Maker = Callable[[Sampling], Piece]
 def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
     """Divide a delay among the pieces that gain by it.
 
-    The rest goes to those that take a rate, which one sample makes exact, and then to
-    the first ones. What looks at the model's input itself gains by the delay of a piece
+    Those that take a rate get the samples that make it exact first; the rest goes
+    round. What looks at the model's input itself gains by the delay of a piece
     before it, and gets none of its own then.
 
     Raises
@@ -231,11 +232,10 @@ def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
         raise InputError(
             f"--delay: {delay}; expected at most {LARGEST_AHEAD * len(gain)}{each}"
         )
-    gain.sort(key=lambda place: not pieces[place].step.rates)
-    shares = [0] * len(pieces)
-    for k in range(delay):
-        shares[gain[k % len(gain)]] += 1
-    return shares
+    rounds = itertools.product(range(LARGEST_AHEAD), gain)
+    first = sorted(rounds, key=lambda turn: turn[0] >= pieces[turn[1]].step.rates)
+    taken = [place for _, place in first[:delay]]
+    return [taken.count(place) for place in range(len(pieces))]
 
 
 def describe(model: Model, sampling: Sampling) -> Described:

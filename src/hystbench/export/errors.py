@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hystbench.blocks import step
-from hystbench.blocks.step import LARGEST_AHEAD, Sampling, sample_rate
+from hystbench.blocks.step import CENTRAL, LARGEST_AHEAD, Sampling, about_sample
 from hystbench.export import python
 from hystbench.export.described import describe
 from hystbench.model import Model
@@ -90,7 +90,7 @@ def error(case: Case, points: int, delay: int) -> float:
 
 def noise_of_rate(points: int, delay: int) -> float:
     """Give how noisy a rate is, of white noise, over that of a central difference."""
-    return step.noise_of_rate(sample_rate(max(points, delay + 2), delay))
+    return step.noise_of_rate(about_sample(CENTRAL, max(points, delay + 2), delay))
 
 
 def table(cases: Sequence[Case] = CASES) -> list[dict[str, str]]:

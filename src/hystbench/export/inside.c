@@ -48,16 +48,17 @@ static double hb_impedance(double mass, double damping, double stiffness, double
     hb_remember(points, history, z);
     if (history[0] <= ahead) return 0;
     z = history[1 + ahead];
-    const int known = history[0] > 1;
+    const int nth = (int)history[0] - 1 - ahead; /* weights of the first, second, others */
+    const int row = (nth < 2 ? nth : 2) * points;
     const double before = place[0];
-    double q = z, v = z, a = 0;
-    if (velocity)
+    const double slope = hb_weighted(points, rate + row, history + 1);
+    double q = z, v = slope, a = slope;
+    if (velocity) {
         q = moves ? before + (z + place[1]) / 2 * dt : 0;
-    else
-        v = known ? hb_weighted(points, rate, history + 1) : 0;
-    if (known) a = hb_weighted(points, velocity ? rate : curvature, history + 1);
-    if (!moves && !velocity && ahead > 1) /* at its start that of the sample after it */
-        a = hb_weighted(points - 1, curvature + 1, history + 1);
+        v = z;
+    } else {
+        a = hb_weighted(points, curvature + row, history + 1);
+    }
     place[0] = q;
     place[1] = z;
     const double way = moves ? q - before : 0;

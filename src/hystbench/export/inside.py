@@ -322,15 +322,14 @@ def impedance(
     remember(points, history, z)
     if history[0] <= ahead:
         return 0.0
-    z, known = history[1 + ahead], history[0] > 1
-    v = rate @ history[1:] if known else 0.0
+    z = history[1 + ahead]
+    row = min(int(history[0]) - 1 - ahead, 2) * points  # of the first, second, others
+    v = rate[row : row + points] @ history[1:]
     if velocity:
         q = before + (z + place[1]) / 2 * dt if moves else 0.0
         v, a = z, v
     else:
-        q, a = z, curvature @ history[1:] if known else 0.0
-        if not moves and ahead > 1:  # at its start that of the sample after it
-            a = curvature[1:] @ history[1:-1]
+        q, a = z, curvature[row : row + points] @ history[1:]
     place[:] = q, z
     way = q - before if moves else 0.0
     force = all_forces(count, forces, q, v, way, memory)

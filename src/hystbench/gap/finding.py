@@ -236,10 +236,7 @@ def decide(
     reason += f"; {ends}" if ends else ""
     used_up = _used_up(current())
     reason += f"; beside {own.words} of some records' own" if own.records else ""
-    findings = new_in_every_record(state, left) if verdict == "named" else []
-    if findings:
-        verdict = "unnamed"
-        reason = "; ".join(item["sentence"] for item in findings)
+    reason += _predicts_nothing(state)
     reason += f"; {used_up}" if used_up else ""
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
@@ -273,7 +270,6 @@ def decide(
         "unnamed": unnamed.mapping(unnamed_share),
         "where": [view.to_mapping() for view in views],
         "ranking": ranking_rows(named),
-        "findings": findings,
         "record_values": own.mapping(records[0].output.unit),
         "not_tried": untried,
         "taken_out": [item._asdict() for item in named.gone],
@@ -301,23 +297,15 @@ def decide(
     )
 
 
-def new_in_every_record(state: State, left: Left) -> list[dict[str, str]]:
-    """Tell of what accounts for a gap and yet is no name, if that is all there is.
+def _predicts_nothing(state: State) -> str:
+    """Say which effects have no number in common to the records: a path of drift.
 
-    A signal beside the chain that has no number in common to the records, such as a
-    path of drift, predicts nothing of another record. A tone does: its frequency.
+    A tone has one, its frequency.
     """
-    alone = {beside.effect for beside, values in state.beside if not values}
-    if {item.effect for item in state.added} != alone:
-        return []
-    return [
-        {
-            "name": name,
-            "sentence": f"a {name} of its own in every record is all that pays, and "
-            f"it predicts no other record, so it is no name: {left.stays} beside it",
-        }
-        for name in sorted(alone)
-    ]
+    names = sorted({beside.effect for beside, values in state.beside if not values})
+    if not names:
+        return ""
+    return f"; {' and '.join(names)} of each record's own predicts no other record"
 
 
 def _untried(names: Sequence[str]) -> str:

@@ -100,7 +100,6 @@ def without_names(
         "verdict": "no-gap" if no_gap else "unnamed",
         "reason": content["reason"] if no_gap else taken["why"],
         "effects": [],
-        "findings": [],
         "withdrawn": dict(taken),
         "base_parameters": numbers,
     }

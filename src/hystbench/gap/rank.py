@@ -22,8 +22,10 @@ from hystbench.gap.score import Score
 from hystbench.gap.search import Trial
 from hystbench.gap.state import State
 from hystbench.gap.thresholds import (
+    CERTAIN,
     EXACT,
     FINALISTS,
+    MATTERS,
     NEAR,
     PAYS,
     SHAPE,
@@ -124,7 +126,7 @@ def rank(
         for item in candidates
     )
     if not folds:
-        return (*candidates, *declined)
+        return (*with_few_numbers(candidates, state, score), *declined)
     candidates = [on_folds(item, state, score) for item in candidates]
     judged = [_not_cut_short(item, state) for item in candidates]
     declined += [item for item in judged if item.declined]
@@ -135,7 +137,32 @@ def rank(
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)
         candidates = in_order([again, *candidates])
-    return (*candidates, *declined)
+    return (*with_few_numbers(candidates, state, score), *declined)
+
+
+def with_few_numbers(
+    candidates: Sequence[Candidate], before: State, score: Score
+) -> list[Candidate]:
+    """Charge further numbers that do not matter as a further effect of that sort is.
+
+    An effect that leaves hardly less of the gap than another one of fewer numbers does
+    has to be better beyond doubt: the numbers may stand for what the simulation misses.
+    """
+    floor = score.floor
+    gap = before.power(floor)
+
+    def charged(item: Candidate) -> Candidate:
+        for other in candidates:
+            if item.state is None or other.state is None or other.gain < PAYS:
+                continue
+            more = item.state.freedom > other.state.freedom
+            less = item.state.share(other.state, floor, gap)
+            if more and item.score < other.score and less < MATTERS:
+                dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
+                return replace(item, score=dearer, gain=gain)
+        return item
+
+    return in_order(charged(item) for item in candidates)
 
 
 def _tested(trial: Trial) -> Tested:

@@ -159,7 +159,6 @@ SHORTFALL = _object(
 
 # What accounts for the gap and yet is no name, as it is new in every record and
 # predicts no other. Empty unless such effects are all that pays, and enough.
-FOUND = _object({"name": WORDS, "sentence": WORDS})
 
 # A delay, a gain or an offset that some fit records have of their own, by record: no
 # effect. `share_of_gap_power` is above the noise floor, on the fit records.
@@ -327,7 +326,6 @@ SCHEMA = _object(
     fit=FIT,
     unnamed=UNNAMED,
     runs_away={"type": "array", "items": AWAY},
-    findings={"type": "array", "items": FOUND},
     record_values={"oneOf": [RECORD_VALUES, {"type": "null"}]},
     withdrawn={"oneOf": [WITHDRAWN, {"type": "null"}]},
     # Where the user put effects in or left some out, or the kind of device leaves some

@@ -152,25 +152,6 @@ def test_names_beside_the_verdict_unnamed_name_nothing():
     assert [item[2] for item in confusion(frame([row]))] == ["unnamed"]
 
 
-def found(*names, effects=("drift",)):
-    about = [{"name": name, "sentence": "new in every record"} for name in names]
-    return gap(*map(named, effects), verdict="unnamed") | {"findings": about}
-
-
-def test_a_finding_that_accounts_for_all_counts_as_the_answer():
-    about = truth(effect("drift", "ramp"))
-    row = judged(about, found("drift"))
-    assert (row.verdict, row.top1, row.exact, row.all_named) == ("named", *(True,) * 3)
-    # It is an answer where it is wrong, too.
-    foreign = judged(truth(effect("dropouts", "only"), kind="unlisted"), found("drift"))
-    assert (foreign.unnamed, foreign.exact) == (False, False)
-    assert judged(truth(kind="none"), found("drift")).false_alarm
-    # Beside another effect it is none, nor is one without the effect.
-    both = found("drift", effects=("drift", "creep"))
-    assert judged(about, both).top1 is False
-    assert judged(about, found("drift", effects=())).top1 is False
-
-
 def test_names_that_were_withdrawn_name_nothing():
     effects = gap(named("resonance"))["effects"]
     taken = {

@@ -154,13 +154,8 @@ def judge(
     effects = [e for e in gap["effects"] if not (tolerated and e["name"] == SHAPE)]
     named = [effect["name"] for effect in effects]
     single, one = kind == "single", effects[0] if effects else None
-    # An answer is one thing: names beside another verdict than this name nothing, but
-    # for findings: what is new in every record is told so, as it predicts nothing.
-    told = {item["name"] for item in gap.get("findings", ())}
-    names = gap["verdict"] == "named" or (
-        gap["verdict"] == "unnamed" and bool(strict) and set(strict) <= told
-    )
-    word = "named" if names else gap["verdict"]
+    # An answer is one thing: names beside another verdict than this name nothing.
+    names = gap["verdict"] == "named"
     members = (
         tuple(dict.fromkeys([one["name"], *one["cannot_be_told_from"]]))
         if one and names
@@ -171,7 +166,7 @@ def judge(
     confirmed = confirm(members) if single and len(members) > 1 else members
     found = recovered(truth["effects"], effects)
     # An effect outside the vocabulary has no name to be called by.
-    right, right_strict = _right(kind, hidden, word, named, strict)
+    right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
     views = gap["where"]
     return Row(
         solver=solver,
@@ -186,7 +181,7 @@ def judge(
         ),
         truth=" ".join(hidden),
         form=" ".join(effect["form"] for effect in truth["effects"]),
-        verdict=word,
+        verdict=gap["verdict"],
         named=" ".join(strict),
         lost=lost,
         confidence=one["confidence"] if one else None,
@@ -204,7 +199,7 @@ def judge(
         else None,
         false_alarm=not right if kind == "none" else None,
         false_alarm_strict=not right_strict if kind == "none" else None,
-        unnamed=word == "unnamed" if kind == "unlisted" else None,
+        unnamed=gap["verdict"] == "unnamed" if kind == "unlisted" else None,
         where_hit=where_hit(views[0] if views else None, truth["effects"])
         if hidden and not machine
         else None,

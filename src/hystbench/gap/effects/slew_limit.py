@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.special import expit, logit
 
 from hystbench.gap.effects.base import Effect, Variant, places_in_drive
 from hystbench.gap.scene import Scene
@@ -17,8 +18,12 @@ class SlewLimit(Effect):
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:
-        """Offer rates from 2 to 98 % of the fastest there."""
-        share = np.geomspace(0.02, 0.98, 14)
+        """Offer rates from 2 to 98 % of the fastest there.
+
+        They are close together at both ends: just below the fastest rate the effect
+        sets in, and far below it the output grows with the limit.
+        """
+        share = expit(np.linspace(logit(0.02), logit(0.98), 16))
         for place in places_in_drive(scene):
             rates = scene.fastest(place) * share
             yield self.inserted(scene, place, grids={"rate": rates})

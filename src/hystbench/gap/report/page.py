@@ -26,7 +26,6 @@ OPTIONAL: dict[str, Any] = {
     "taken_out": [],
     "shortfall": None,
     "withdrawn": None,
-    "findings": [],
     "record_values": None,
     "no_experiment": "",
     "not_tried": [],

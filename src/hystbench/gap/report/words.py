@@ -109,12 +109,6 @@ def _verdict(gap: dict[str, Any]) -> str:
     sentence = VERDICTS[gap["verdict"]].format(
         effects=listed(names), reason=gap["reason"].rstrip(".")
     )
-    if gap["findings"]:
-        found = [item["name"].replace("-", " ") for item in gap["findings"]]
-        return (
-            f"The simulator lacks no effect that the records show; {listed(found)} "
-            "of each record's own accounts for what differs."
-        )
     if gap["verdict"] != "unnamed":
         return sentence
     stays = (gap["unnamed"] or {"sentence": None})["sentence"]
