@@ -1,6 +1,5 @@
 """Of effects that leave as little, the one of fewer numbers is taken."""
 
-import numpy as np
 import pytest
 
 from hystbench.gap.effects import effects
