@@ -1,4 +1,4 @@
-"""The site is made without a warning, and has the files beside docs/ that pages name."""
+"""The site is made without a warning, with files beside docs/ that pages name."""
 
 import subprocess
 
