@@ -13,16 +13,17 @@ INSTALL := $(BIN)/python $(PIP_INSTALL)
 SOURCES := $(wildcard src/hystbench/kernels/*.c src/hystbench/kernels/*.h \
   src/hystbench/challenge/kernels/*.c src/hystbench/challenge/kernels/*.h)
 
-.PHONY: help reproduce test lint docs bench rivals slurm test-slurm clean requirements
+.PHONY: help reproduce test lint docs site bench rivals slurm test-slurm clean requirements
 help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
 	@echo "make docs       fill the tables of README.md and docs/ from results/ (after test-slurm)"
+	@echo "make site       set up .venv-site, write docs/ as web pages into build/site"
 	@echo "make bench      measure kernels and pipeline beside their peers, fill docs/speed.md"
 	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
 	@echo "make slurm      set up .venv-slurm, from which the pipeline runs on a cluster"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
-	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm and what was written to results"
+	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm, .venv-site, build/site and what was written to results"
 
 # Each of hundreds of jobs would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -54,6 +55,16 @@ $(VENV)/ready-%: requirements-%.txt $(READY)
 	touch $@
 
 rivals slurm: %: .venv-%/ready
+
+# The site needs nothing of hystbench, so its environment is made without it.
+.venv-site/ready: requirements-site.txt
+	test -x $(@D)/bin/python || $(PYTHON) -m venv $(@D)
+	$(@D)/bin/python $(PIP_INSTALL) --require-hashes -r $<
+	touch $@
+
+# Strict: a link to a page or a heading that is not there is an error.
+site: .venv-site/ready
+	.venv-site/bin/mkdocs build --quiet --strict
 
 reproduce: $(READY)
 	$(BIN)/snakemake --cores all
@@ -94,9 +105,10 @@ requirements:
 	for group in bench slurm; do $(COMPILE) --extra $$group \
 	  --constraint requirements.txt --output-file requirements-$$group.txt pyproject.toml || exit 1; done
 	$(COMPILE) --extra rivals --output-file requirements-rivals.txt pyproject.toml
+	echo 'mkdocs>=1.6,<2' | $(COMPILE) --output-file requirements-site.txt -
 
 # Of results only what is on the lists of what hystbench wrote.
 clean:
 	@test ! -e results || test -x $(BIN)/hystbench || { echo "results: stays, as without $(VENV) nobody tells what hystbench wrote there; run 'make $(READY)' first, or remove it by hand" >&2; exit 1; }
 	test ! -e results || $(BIN)/hystbench clean results
-	rm -rf $(VENV) .venv-rivals .venv-slurm .snakemake
+	rm -rf $(VENV) .venv-rivals .venv-slurm .venv-site build/site .snakemake

@@ -12,7 +12,7 @@ from hystbench.gap.locate.samples import Samples
 from hystbench.record import FloatArray
 
 # The residual counts as this many independent facts in all, however finely sampled:
-# an error of a model is not white (docs/gap.md, "A score that saturates").
+# an error of a model is not white (docs/gap-method.md, "The score").
 FACTS = 300
 # What a form must save, in nats, to be read beside a wrong shape of the base's loop and
 # not as a part of that shape.
