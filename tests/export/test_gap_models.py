@@ -116,9 +116,9 @@ def test_every_model_has_an_input():
 
 @pytest.mark.parametrize("name", MODELS)
 def test_in_straight_lines_code_is_the_simulation(name, tmp_path):
-    """Two samples late, so that rates and curvatures are known from the first on."""
+    """Four samples late, so that rates and curvatures are known from the first on."""
     model, dt, u = model_and_input(name)
-    off = share_off(in_straight_lines(model), dt, u, 2, tmp_path)
+    off = share_off(in_straight_lines(model), dt, u, 4, tmp_path)
     assert off.max() <= 1e-9
 
 

@@ -24,26 +24,36 @@ from hystbench.blocks.step import (
 from hystbench.record import FloatArray
 
 INPUTS = ("position", "velocity")
-RATE = (
-    np.array(
-        [[0, 0, -18, 24, -6], [0, -4, -6, 12, -2], [1, -8, 0, 8, -1]], dtype=np.float64
-    )
-    / 12
-)
-"""Weights of five samples for the rate at the third of them, per sample: of a record's
-first sample, by the parabola through three; of its second, by the cubic through four;
-and of all others but the last two, for which these are turned round."""
-CURVATURE = (
-    np.array(
-        [[0, 0, 12, -24, 12], [0, 12, -24, 12, 0], [-1, 16, -30, 16, -1]],
-        dtype=np.float64,
-    )
-    / 12
-)
-"""The same for the second derivative."""
+REACH = 4
+"""Samples on either side that a rate is taken from, where they are there."""
 FINER = 8
 """Steps in a sampling interval of a band-limited motion: friction reverses between
 samples, and what of its jump is below half the sampling rate is right to a percent."""
+RINGS = 16
+"""Samples at each end of a record within which the band-limited curve, turned about the
+end, is too wavy for a second derivative."""
+
+
+def _differences(order: int) -> FloatArray:
+    """Weigh samples for a derivative at one of them, per sample, shape (5, 9).
+
+    The rows are for the first sample of a record, the second and so on: the last is
+    for all others but the last four, for which these are turned round. Each is of the
+    polynomial through the samples on both sides, five at least; the middle column is
+    for the sample itself.
+    """
+    around = np.arange(-REACH, REACH + 1.0)
+    weights = np.zeros((REACH + 1, len(around)))
+    for place, row in enumerate(weights):
+        taken = (around >= -place) & (around <= max(place, REACH - place))
+        powers = np.vander(around[taken], increasing=True).T
+        of = np.zeros(len(powers))
+        of[order] = factorial(order)
+        row[taken] = np.linalg.solve(powers, of)
+    return weights
+
+
+RATE, CURVATURE = _differences(1), _differences(2)
 
 
 @dataclass(frozen=True)
@@ -52,11 +62,12 @@ class Impedance(HeldBlock):
 
     F is the sum of the forces that follow it in the chain. The input is the position q,
     or the velocity, which is then integrated by the trapezoidal rule. Rates are
-    taken from five samples, to the fourth order in the sampling interval [2]_: second
-    differences of three make the force of a mass too small by 1 % at 18 samples a
-    period, which looks like another force. A band-limited motion is taken eight times
-    finer, and of F what passes a low-pass filter at half the sampling rate: what an
-    instrument records that samples without aliasing. ``zero-order`` is as ``linear``.
+    taken from nine samples, to the eighth order in the sampling interval [2]_, and from
+    fewer near the ends of a record (second differences of three make the force of a
+    mass too small by 1 % at 18 samples a period, which looks like another force). Of
+    a band-limited motion F is taken eight times finer, and of F what passes a low-pass
+    filter at half the sampling rate: what an instrument records that samples without
+    aliasing. ``zero-order`` is as ``linear``.
 
     References
     ----------
@@ -70,6 +81,7 @@ class Impedance(HeldBlock):
     name: ClassVar = "impedance"
     place: ClassVar = "base"
     reference: ClassVar = "Gardonio, Brennan, J. Sound Vib. 249 (2002)"
+    smooths: ClassVar = False
 
     mass: float = number("Y s^2/U", "m", -HUGE, HUGE)
     damping: float = number("Y s/U", "c, of a viscous force", -HUGE, HUGE)
@@ -123,24 +135,21 @@ class Impedance(HeldBlock):
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Do so with forces inside."""
         points, ahead, dt = sampling.curve_points, sampling.ahead, sampling.dt
+        rate, curvature = (
+            np.ravel([about_sample(row, points, ahead) for row in rows])
+            for rows in (RATE, CURVATURE)
+        )
+        way = np.zeros(points)
+        way[ahead : ahead + 2] = 0.5
+        told = [foretold(RATE[-1], points, ahead)]
         if self.holding == "band-limited":
-            rate, curvature = (
-                np.tile(through_samples(points, partial(_derivative, k), -ahead), 3)
-                for k in (1, 2)
-            )
+            told.append(smooth_curve(points, ahead))
             way = through_samples(points, lambda m: (-1.0) ** m / (m + 1), -ahead)
-            told = smooth_curve(points, ahead)
-            told += "" if ahead > 1 else f"; {foretold(RATE[-1], points, ahead)}"
+            for rows, order in ((rate, 1), (curvature, 2)):
+                of = partial(_derivative, order)
+                rows[-points:] = through_samples(points, of, -ahead)
             if forces:
-                told += "; takes its forces at samples alone, without a low-pass filter"
-        else:
-            rate, curvature = (
-                np.ravel([about_sample(row, points, ahead) for row in rows])
-                for rows in (RATE, CURVATURE)
-            )
-            way = np.zeros(points)
-            way[ahead : ahead + 2] = 0.5
-            told = foretold(RATE[-1], points, ahead)
+                told.append("takes its forces at samples, without a low-pass filter")
         constants = {
             "mass": self.mass,
             "damping": self.damping,
@@ -161,28 +170,51 @@ class Impedance(HeldBlock):
             constants,
             states,
             forward=True,
-            rates=2,
-            differs=told,
+            rates=REACH,
+            differs="; ".join(filter(None, told)),
         )
 
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Give the motion and the forces that it meets, as for :meth:`driven`."""
-        fine = FINER if self.holding == "band-limited" and len(z) > 2 else 1
-        x = finer(z, fine) if fine > 1 else np.ascontiguousarray(z, dtype=np.float64)
-        dt /= fine
-        if self.input == "position":
-            q, v, curved = x, _rate(x, dt), _curvature(x, dt)
+        z = np.ascontiguousarray(z, dtype=np.float64)
+        q, v, curved = self._moved(z, dt)
+        if self.holding != "band-limited" or len(z) < 3:
+            return Motion(q, v, curved, against(forces, q, v))
+        force = np.zeros(len(z))
+        if forces:
+            force = coarser(against(forces, *self._between(z, q, dt)), FINER)
+        smooth = self._moved(finer(z, FINER), dt / FINER)
+        inner = slice(RINGS, -RINGS)
+        for near, fine in ((v, smooth[1]), (curved, smooth[2])):
+            near[inner] = fine[::FINER][inner]
+        return Motion(smooth[0][::FINER], v, curved, force)
+
+    def _between(
+        self, z: FloatArray, q: FloatArray, dt: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Give position and velocity ``FINER`` times finer.
+
+        The velocity takes straight lines: the mean one of an interval is that in the
+        middle of it. A device that stops between two samples rests soon after; the
+        band-limited curve would go on to and fro, and friction with it.
+        """
+        samples = np.arange(len(z))
+        fine = np.arange((len(z) - 1) * FINER + 1) / FINER
+        if self.input == "velocity":
+            velocity = np.interp(fine, samples, z)
         else:
-            way = np.cumsum((x[1:] + x[:-1]) / 2 * dt)
-            q, v, curved = (
-                np.concatenate([np.zeros(min(len(x), 1)), way]),
-                x,
-                _rate(x, dt),
-            )
-        force = against(forces, q, v)
-        if fine > 1:
-            force = coarser(force, fine) if forces else force[::fine]
-        return Motion(q[::fine], v[::fine], curved[::fine], force)
+            velocity = np.interp(fine, samples[:-1] + 0.5, np.diff(z) / dt)
+        steps = (velocity[1:] + velocity[:-1]) / 2 * (dt / FINER)
+        return np.append(q[0], q[0] + np.cumsum(steps)), velocity
+
+    def _moved(
+        self, z: FloatArray, dt: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Give position, velocity and acceleration."""
+        if self.input == "position":
+            return z, _rate(z, dt), _curvature(z, dt)
+        way = np.cumsum((z[1:] + z[:-1]) / 2 * dt)
+        return np.concatenate([np.zeros(min(len(z), 1)), way]), z.copy(), _rate(z, dt)
 
 
 def _derivative(order: int, power: int) -> float:
@@ -190,24 +222,25 @@ def _derivative(order: int, power: int) -> float:
     return float(factorial(order)) if power == order else 0.0
 
 
+def _weighed(x: FloatArray, rows: FloatArray, order: int) -> FloatArray:
+    """Weigh every sample and its neighbours for a derivative, per sample."""
+    if len(x) < rows.shape[1]:
+        for _ in range(order):
+            x = np.gradient(x) if len(x) > 1 else np.zeros(len(x))
+        return x
+    found = np.empty(len(x))
+    found[REACH:-REACH] = np.correlate(x, rows[-1], mode="valid")
+    back, sign = x[::-1], (-1.0) ** order
+    for place, row in enumerate(rows[:-1]):
+        own = row[REACH - place :]
+        found[place] = own @ x[: len(own)]
+        found[-1 - place] = sign * (own @ back[: len(own)])
+    return found
+
+
 def _rate(x: FloatArray, dt: float) -> FloatArray:
-    if len(x) < RATE.shape[1]:
-        return np.gradient(x, dt) if len(x) > 1 else np.zeros(len(x))
-    return _from_five(x, RATE, -RATE) / dt
+    return _weighed(x, RATE, 1) / dt
 
 
 def _curvature(x: FloatArray, dt: float) -> FloatArray:
-    return _from_five(x, CURVATURE, CURVATURE) / dt**2
-
-
-def _from_five(x: FloatArray, begun: FloatArray, ended: FloatArray) -> FloatArray:
-    """Weigh each sample and its neighbours; ``ended`` is of the record turned round."""
-    count = begun.shape[1]
-    if len(x) < count:
-        return np.zeros(len(x))
-    weighed = np.empty(len(x))
-    weighed[2:-2] = np.correlate(x, begun[-1], mode="valid")
-    for k in (0, 1):
-        weighed[k] = begun[k, 2 - k :] @ x[: 3 + k]
-        weighed[-1 - k] = ended[k, 2 - k :] @ x[: -4 - k : -1]
-    return weighed
+    return _weighed(x, CURVATURE, 2) / dt**2

@@ -83,7 +83,7 @@ WAYS = {
     "--points 2": (Sampling(1.0, points=2), False),
     "--delay 1": (Sampling(1.0, delay=1), False),
     f"--delay {LARGEST_AHEAD}": (Sampling(1.0, delay=LARGEST_AHEAD), False),
-    "hold: linear --delay 2": (Sampling(1.0, delay=2), True),
+    "hold: linear --delay 4": (Sampling(1.0, delay=4), True),
 }
 COLUMNS = ("dataset", "blocks", "records", *WAYS)
 

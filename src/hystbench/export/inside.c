@@ -48,8 +48,8 @@ static double hb_impedance(double mass, double damping, double stiffness, double
     hb_remember(points, history, z);
     if (history[0] <= ahead) return 0;
     z = history[1 + ahead];
-    const int nth = (int)history[0] - 1 - ahead; /* weights of the first, second, others */
-    const int row = (nth < 2 ? nth : 2) * points;
+    const int nth = (int)history[0] - 1 - ahead; /* weights of the first, second, ... */
+    const int row = (nth < 4 ? nth : 4) * points;
     const double before = place[0];
     const double slope = hb_weighted(points, rate + row, history + 1);
     double q = z, v = slope, a = slope;

@@ -323,7 +323,7 @@ def impedance(
     if history[0] <= ahead:
         return 0.0
     z = history[1 + ahead]
-    row = min(int(history[0]) - 1 - ahead, 2) * points  # of the first, second, others
+    row = min(int(history[0]) - 1 - ahead, 4) * points  # of the first, second and so on
     v = rate[row : row + points] @ history[1:]
     if velocity:
         q = before + way @ history[1:] if moves else 0.0

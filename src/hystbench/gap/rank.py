@@ -12,7 +12,7 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap import work
 from hystbench.gap.change import at_end
-from hystbench.gap.effects import among
+from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fit import score_of
 from hystbench.gap.held_back import gain_held_back
@@ -126,7 +126,7 @@ def rank(
         for item in candidates
     )
     if not folds:
-        return (*with_few_numbers(candidates, state, score), *declined)
+        return (*beyond_an_offset(candidates, state, score), *declined)
     candidates = [on_folds(item, state, score) for item in candidates]
     judged = [_not_cut_short(item, state) for item in candidates]
     declined += [item for item in judged if item.declined]
@@ -137,27 +137,29 @@ def rank(
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)
         candidates = in_order([again, *candidates])
-    return (*with_few_numbers(candidates, state, score), *declined)
+    return (*beyond_an_offset(candidates, state, score), *declined)
 
 
-def with_few_numbers(
+def beyond_an_offset(
     candidates: Sequence[Candidate], before: State, score: Score
 ) -> list[Candidate]:
-    """Charge further numbers that do not matter as a further effect of that sort is.
+    """Charge what a law has beside an offset of the output as a further effect.
 
-    An effect that leaves hardly less of the gap than another one of fewer numbers does
-    has to be better beyond doubt: the numbers may stand for what the simulation misses.
+    A bias of the field has one, as the sensor may be set to zero with it on. Where an
+    effect of fewer numbers leaves hardly more of the gap, the bias has to be beyond
+    doubt: it may stand for what the simulation misses.
     """
     floor = score.floor
     gap = before.power(floor)
 
     def charged(item: Candidate) -> Candidate:
+        if item.state is None or item.form not in effects()[item.effect].offsets:
+            return item
         for other in candidates:
-            if item.state is None or other.state is None or other.gain < PAYS:
+            if other.state is None or other.gain < PAYS or other.score <= item.score:
                 continue
             more = item.state.freedom > other.state.freedom
-            less = item.state.share(other.state, floor, gap)
-            if more and item.score < other.score and less < MATTERS:
+            if more and item.state.share(other.state, floor, gap) < MATTERS:
                 dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
                 return replace(item, score=dearer, gain=gain)
         return item

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.impedance import INPUTS, Impedance
 from hystbench.blocks.transfer_function import STARTS
 from hystbench.errors import InputError
 from hystbench.gap.bases.halves import HalvesError
@@ -78,7 +80,8 @@ def identified_linear(evidence: Evidence) -> Linear:
     dataset's hold, without the first tenth of each record. Where the folds ask for 5 or
     more, modes are added one by one, up to order 12. The order is the lowest
     whose error on folds of the fit records is within half a percent of the best; then
-    the numerator is shortened by the same rule. Deterministic.
+    the numerator is shortened by the same rule. Where a motion makes a force, the
+    impedance of a mass on a spring is tried as well. Deterministic.
 
     Parameters
     ----------
@@ -99,15 +102,19 @@ def identified_linear(evidence: Evidence) -> Linear:
         Fold(_both(fold.train, whole), _both(fold.validation, whole))
         for fold in make_folds(records)
     )
-    static_fit, static_folds, gain = _static(evidence, whole, folds)
-    _, constant, _ = _static(evidence, whole, folds, 0.0)
+    ones = [np.ones((len(item), 1)) for item in records]
+    inputs = [
+        np.column_stack([item.u, one]) for item, one in zip(records, ones, strict=True)
+    ]
+    static = _summed(inputs, evidence, whole, folds)
+    constant = _summed(ones, evidence, whole, folds).folds
     spectra = Spectra.of([Stretch(r.u, r.y, r.dt) for r in records], evidence.hold)
 
     def dynamic(order: int, zeros: int) -> _Found:
         return _dynamic(evidence, spectra, order, zeros, whole, folds)
 
     found: list[_Found] = []
-    best, in_vain = static_folds, 0
+    best, in_vain = static.folds, 0
     for order in range(1, HIGHEST + 1):
         found.append(dynamic(order, order))
         in_vain = 0 if found[-1].folds < (1 - MATTERS) * best else in_vain + 1
@@ -118,24 +125,33 @@ def identified_linear(evidence: Evidence) -> Linear:
     likely = next((item for item in found if item.folds <= enough), None)
     if likely is not None and len(likely.ratio.a) >= MANY:
         found += _further_modes(spectra, likely, whole, folds)
-        best = min(static_folds, *(item.folds for item in found))
+        best = min(static.folds, *(item.folds for item in found))
+    moved = _impedance(evidence, whole, folds)
+    if moved is not None:
+        best = min(best, moved[0].folds)
     enough = best / (1 - MATTERS)
     chosen = next((item for item in found if item.folds <= enough), None)
-    if static_folds <= enough or chosen is None:
-        chain: tuple[Block, ...] = (gain,)
-        fit, fold, what = static_fit, static_folds, "order 0 (a gain and an offset)"
+    chain: tuple[Block, ...]
+    if static.folds <= enough:
+        value, offset = static.numbers
+        chain = (Gain(value=value, offset=offset),)
+        fit, fold, what = static.fit, static.folds, "order 0 (a gain and an offset)"
+    elif moved is not None and moved[0].folds <= enough:
+        (fit, fold, _), block = moved
+        chain, what = (block,), "the impedance of a mass on a spring"
     else:
+        assert chosen is not None  # noqa: S101  (one of them is the best)
         order = len(chosen.ratio.a)
         for zeros in range(order - 1, -1, -1) if order <= HIGHEST else ():
             shorter = dynamic(order, zeros)
             if shorter.folds > enough:
                 break
             chosen = shorter
-        block = chosen.task.block(chosen.ratio)
-        chain = (block, Gain(value=1.0, offset=float(chosen.ratio.offset)))
+        ratio = chosen.task.block(chosen.ratio)
+        chain = (ratio, Gain(value=1.0, offset=float(chosen.ratio.offset)))
         fit, fold = chosen.fit, chosen.folds
         zeros = len(chosen.ratio.b) - 1
-        what = f"order {order}, {zeros} zero{'s' * (zeros != 1)}, from {block.start}"
+        what = f"order {order}, {zeros} zero{'s' * (zeros != 1)}, from {ratio.start}"
     unit = evidence.output.unit
     if fold > (1 - MATTERS) * constant:
         raise InputError(
@@ -227,40 +243,75 @@ def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]
     return tuple(a & b for a, b in zip(masks, others, strict=True))
 
 
-def _static(
+class _Sum(NamedTuple):
+    """A model that is the sum of some signals, each times a number."""
+
+    fit: float
+    folds: float
+    numbers: tuple[float, ...]
+
+
+def _summed(
+    signals: Sequence[FloatArray],
     evidence: Evidence,
     whole: tuple[Mask, ...],
     folds: tuple[Fold, ...],
-    of_input: float = 1.0,
-) -> tuple[float, float, Gain]:
-    """Fit a gain and an offset: error on all records, on the folds, and the block.
+) -> _Sum:
+    """Fit a sum of signals: error on all records, on the folds, and the numbers.
 
-    With none of the input it is a constant.
+    Parameters
+    ----------
+    signals : sequence of ndarray, shape (n, k)
+        Of each record, in columns.
     """
-    u = [of_input * record.u for record in evidence.fit]
-    y = [record.y for record in evidence.fit]
+    sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
+    scaled = [columns / sizes for columns in signals]
+    outputs = [record.y for record in evidence.fit]
 
-    def line(masks: tuple[Mask, ...]) -> FloatArray:
-        left = np.concatenate([x[mask] for x, mask in zip(u, masks, strict=True)])
-        right = np.concatenate([x[mask] for x, mask in zip(y, masks, strict=True)])
-        columns = np.column_stack([left, np.ones(len(left))])
-        found: FloatArray = np.linalg.lstsq(columns, right, rcond=None)[0]
+    def solved(masks: tuple[Mask, ...]) -> FloatArray:
+        left = np.vstack([x[mask] for x, mask in zip(scaled, masks, strict=True)])
+        right = np.concatenate(
+            [x[mask] for x, mask in zip(outputs, masks, strict=True)]
+        )
+        found: FloatArray = np.linalg.lstsq(left, right, rcond=None)[0]
         return found
 
-    def squares(of: FloatArray, masks: tuple[Mask, ...]) -> float:
+    def squares(numbers: FloatArray, masks: tuple[Mask, ...]) -> float:
         return sum(
-            float(np.sum((b - of[0] * a - of[1])[mask] ** 2))
-            for a, b, mask in zip(u, y, masks, strict=True)
+            float(np.sum((y - x @ numbers)[mask] ** 2))
+            for x, y, mask in zip(scaled, outputs, masks, strict=True)
         )
 
-    best = line(whole)
-    judged = sum(squares(line(fold.train), fold.validation) for fold in folds)
+    best = solved(whole)
+    judged = sum(squares(solved(fold.train), fold.validation) for fold in folds)
     count = sum(int(mask.sum()) for mask in whole)
-    return (
+    return _Sum(
         float(np.sqrt(squares(best, whole) / count)),
         float(np.sqrt(judged / count)),
-        Gain(value=float(best[0]), offset=float(best[1])),
+        tuple((best / sizes).tolist()),
     )
+
+
+def _impedance(
+    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
+) -> tuple[_Sum, Block] | None:
+    """Fit the force of a mass on a spring to a motion; none to any other input.
+
+    It grows with the frequency: a ratio of polynomials that can be run has no such.
+    """
+    about = evidence.quantities
+    if about.causality != "motion to force" or about.input not in INPUTS:
+        return None
+    parts = Impedance.parts(about.input, evidence.hold)
+    signals = [
+        np.column_stack(
+            [x.simulate(record.u, record.u, record.dt) for x in parts.values()]
+        )
+        for record in evidence.fit
+    ]
+    found = _summed(signals, evidence, whole, folds)
+    numbers: dict[str, Any] = dict(zip(parts, found.numbers, strict=True))
+    return found, Impedance(**numbers, input=about.input, hold=evidence.hold)
 
 
 def _dynamic(

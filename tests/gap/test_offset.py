@@ -1,4 +1,4 @@
-"""Of effects that leave as little, the one of fewer numbers is taken."""
+"""An offset of the output is no bias of the field, though that has an offset too."""
 
 import pytest
 
