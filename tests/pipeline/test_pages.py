@@ -60,7 +60,7 @@ def test_nothing_but_figures_and_rdgpis_own_table_is_on_no_page(planned):
     read, every = planned.would_run(*read_by_pages()), planned.would_run()
     unread = {rule for rule, count in every.items() if count > read.get(rule, 0)}
     drawn = {rule for rule in unread if rule.startswith("draw_")}
-    # How an envelope fits is shown on the page of the results.
+    # The page of the results alone shows RDGPI's printed parameters.
     assert unread - drawn == {"page", "rdgpi_published"}
 
 
