@@ -2,7 +2,9 @@
 
 import os
 import sysconfig
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
@@ -30,6 +32,15 @@ class BuildKernels(build_ext):
         self.compiler.set_executables(
             compiler_so=[*words, *FLAGS], linker_so=[*words, "-shared"]
         )
+        alone = self.compiler.compile
+
+        def beside(sources: list[str], **given: Any) -> list[str]:
+            """Compile files on all cores."""
+            with ThreadPoolExecutor(os.cpu_count()) as pool:
+                made = pool.map(lambda source: alone([source], **given), sources)
+                return [item for each in made for item in each]
+
+        self.compiler.compile = beside
         super().build_extensions()
 
 

@@ -20,13 +20,13 @@ from tests.browser.chromium import EXECUTABLE, Chromium
 ROOT = Path(__file__).parents[1]
 
 # A kernel's first call or a busy machine must not fail a property. In CI the same
-# examples run every time, fewer of them; elsewhere new ones are looked for.
+# examples run every time; elsewhere new ones are looked for.
 settings.register_profile(
     "hystbench",
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow],
     derandomize="CI" in os.environ,
-    max_examples=25 if "CI" in os.environ else 100,
+    max_examples=25,
 )
 settings.load_profile("hystbench")
 

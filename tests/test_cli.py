@@ -7,7 +7,7 @@ from hystbench import group as group_module
 from hystbench.cli import COMMANDS, run
 from hystbench.group import group, job_lines
 from hystbench.options import SettingsType
-from tests.conftest import start_hystbench
+from tests.conftest import run_hystbench, start_hystbench
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -38,9 +38,9 @@ def test_help_lists_the_commands_and_imports_none_of_them():
 
 @pytest.mark.parametrize("arguments", [(), ("gap",), ("job",), ("job", "filter")])
 def test_h_is_help_everywhere(arguments):
-    short = start_hystbench(*arguments, "-h")
+    short = run_hystbench(*arguments, "-h")
     assert short.returncode == 0
-    assert short.stdout == start_hystbench(*arguments, "--help").stdout
+    assert short.stdout == run_hystbench(*arguments, "--help").stdout
     assert short.stdout.startswith("Usage: hystbench")
 
 

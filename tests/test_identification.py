@@ -142,11 +142,14 @@ def test_the_jacobian_gives_the_slope_of_the_best_cost(point):
     fit = search._fit(samples, point)
     slope = 2 * search._jacobian(samples, fit).T @ fit.error
     for k in range(len(point)):
-        ahead, behind = point.copy(), point.copy()
-        ahead[k] += 1e-5
-        behind[k] -= 1e-5
-        rise = search._fit(samples, ahead).cost - search._fit(samples, behind).cost
-        assert slope[k] == pytest.approx(rise / 2e-5, rel=0.05, abs=1e-4 * fit.cost)
+        # Where a weight becomes zero the cost has a corner: the slope is one side's.
+        sides = []
+        for step in (1e-5, -1e-5):
+            beside = point.copy()
+            beside[k] += step
+            sides.append((search._fit(samples, beside).cost - fit.cost) / step)
+        near = pytest.approx(slope[k], rel=0.05, abs=1e-4 * fit.cost)
+        assert any(side == near for side in sides), sides
 
 
 def test_the_loop_of_an_independent_plant_is_recovered(found, record):

@@ -83,13 +83,13 @@ wait = lambda: (at(), sleep())
 """
 #: Each moment, as a change of the program that comes there and stays.
 MOMENTS = {
-    # A module of ours, whose import takes three seconds: the signal waits as well.
+    # A module of ours, whose import takes a second: the signal waits as well.
     "import": """
 import importlib.abc
 class Slow(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
         if name == "click":
-            at(); end = time.monotonic() + 3.0
+            at(); end = time.monotonic() + 1.0
             while time.monotonic() < end: pass
 sys.meta_path.insert(0, Slow())
 """,

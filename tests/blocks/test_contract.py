@@ -119,14 +119,13 @@ class TestContract:
         with pytest.raises(InputError, match=f"missing parameter '{first}'"):
             registry()[name].from_mapping(values)
 
-    @pytest.mark.parametrize("wrong", ["0.1", True, None, float("nan"), {}])
-    def test_a_value_that_is_no_number_is_refused(self, name, wrong):
+    def test_a_value_that_is_no_number_is_refused(self, name):
         values = dict(EXAMPLES[name])
         first = next(iter(values))
-        if isinstance(wrong, str) and name in NAMED:
-            pytest.skip("any text may be a name")
-        with pytest.raises(InputError, match=f"{first}: expected"):
-            registry()[name].from_mapping({**values, first: wrong})
+        texts = () if name in NAMED else ("0.1",)
+        for wrong in (*texts, True, None, float("nan"), {}):
+            with pytest.raises(InputError, match=f"{first}: expected"):
+                registry()[name].from_mapping({**values, first: wrong})
 
     def test_a_value_out_of_bounds_is_refused(self, name):
         block = registry()[name]

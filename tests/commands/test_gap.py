@@ -48,6 +48,15 @@ def run(tmp_path, monkeypatch):
     return invoke
 
 
+def test_the_line_by_which_it_enters_the_contest_is_understood(run, root):
+    config = yaml.safe_load((root / "config.yaml").read_text())
+    program, command, *words = config["blind"]["solvers"]["gap"]["command"]
+    assert (program, command) == ("hystbench", "gap")
+    given = ("{dataset}", "--model", "{model}", "--out", "{out}")
+    assert tuple(words[: len(given)]) == given
+    run(*words[len(given) :])
+
+
 def test_limits_of_the_next_experiment_are_those_asked_and_no_other(run):
     assert run()[0]["limits"] == {}
     asked, _ = run("--limit-low", "0", "--limit-rate", "12.5")

@@ -101,25 +101,40 @@ def code_of(model, dt, u, delay):
     return code
 
 
-def share_off(model, dt, u, delay, folder):
-    code = code_of(model, dt, u, delay)
-    (y,) = Compiled([code], folder).outputs(u).values()
-    late = code.sampling.delay
-    wanted = model.simulate(u, dt)
-    assert np.isfinite(wanted).all()
-    return np.abs(y[late:] - wanted[: len(u) - late]) / np.ptp(wanted)
+#: In straight lines four samples late, so that rates and curvatures are known from the
+#: first on; and as it stands, by how many samples it is late.
+STRAIGHT, LATE = "straight", (0, 2, 15)
+
+
+@pytest.fixture(scope="module", params=MODELS)
+def off(request, tmp_path_factory):
+    """How far code is off, as a share of the range, by what it is made of.
+
+    One program of C holds all that is made of a model.
+    """
+    model, dt, u = model_and_input(request.param)
+    models = {STRAIGHT: in_straight_lines(model), **dict.fromkeys(LATE, model)}
+    codes = {
+        key: replace(code_of(item, dt, u, 4 if key == STRAIGHT else key), name=f"m{k}")
+        for k, (key, item) in enumerate(models.items())
+    }
+    program = Compiled(list(codes.values()), tmp_path_factory.mktemp("c"))
+    outputs = program.outputs(u)
+    found = {}
+    for key, code in codes.items():
+        late, wanted = code.sampling.delay, models[key].simulate(u, dt)
+        assert np.isfinite(wanted).all()
+        away = outputs[code.name][late:] - wanted[: len(u) - late]
+        found[key] = np.abs(away) / np.ptp(wanted)
+    return found
 
 
 def test_every_model_has_an_input():
     assert {path.stem for path in FOLDER.glob("*.yaml")} == set(WRITTEN)
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_in_straight_lines_code_is_the_simulation(name, tmp_path):
-    """Four samples late, so that rates and curvatures are known from the first on."""
-    model, dt, u = model_and_input(name)
-    off = share_off(in_straight_lines(model), dt, u, 4, tmp_path)
-    assert off.max() <= 1e-9
+def test_in_straight_lines_code_is_the_simulation(off):
+    assert off[STRAIGHT].max() <= 1e-9
 
 
 #: Where the code takes a curve through signals with corners: behind play operators, or
@@ -127,12 +142,8 @@ def test_in_straight_lines_code_is_the_simulation(name, tmp_path):
 CORNERS = 2e-4
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_late_by_more_samples_it_is_nearer_the_simulation_as_it_stands(name, tmp_path):
-    model, dt, u = model_and_input(name)
-    rms = {}
-    for delay in (0, 2, 15):
-        off = share_off(model, dt, u, delay, tmp_path)[3:-40]
-        rms[delay] = float(np.sqrt(np.mean(off**2)))
-        assert off.max() <= CORNERS or not delay
+def test_late_by_more_samples_it_is_nearer_the_simulation_as_it_stands(off):
+    rms = {late: float(np.sqrt(np.mean(off[late][3:-40] ** 2))) for late in LATE}
+    for late in LATE[1:]:
+        assert off[late][3:-40].max() <= CORNERS
     assert rms[15] <= 1e-7 or rms[15] < rms[2] < rms[0]

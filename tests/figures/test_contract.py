@@ -28,20 +28,14 @@ def name(request):
     return request.param
 
 
-def saved(name, inputs, path):
-    """A figure, and the bytes of its SVG file."""
-    with style.in_style():
-        figure = drawer(name)(**inputs.of(name))
-        style.save(figure, path)
-    return figure, path.read_bytes()
-
-
 @pytest.fixture(scope="module")
 def made(name, inputs, tmp_path_factory):
     """A figure, laid out and drawn; the bytes of its file; and the texts in it."""
-    folder = tmp_path_factory.mktemp("figure")
-    figure, content = saved(name, inputs, folder / "figure.svg")
-    return figure, content, texts_of(figure)
+    path = tmp_path_factory.mktemp("figure") / "figure.svg"
+    with style.in_style():
+        figure = drawer(name)(**inputs.of(name))
+        style.save(figure, path)
+    return figure, path.read_bytes(), texts_of(figure)
 
 
 @pytest.fixture
@@ -65,10 +59,8 @@ def texts_of(figure):
     return found
 
 
-def test_a_file_is_small_and_the_same_bytes_each_time(name, made, inputs, tmp_path):
-    _, content = saved(name, inputs, tmp_path / "again.svg")
-    assert content == made[1]
-    assert len(content) < 500_000
+def test_a_file_is_small(made):
+    assert len(made[1]) < 500_000
 
 
 def quantity(axes, of):

@@ -64,7 +64,9 @@ class TestLinear:
         with pytest.raises(InputError, match=r"made: linear: .* a constant .*--model"):
             identified_linear(evidence(*records))
 
-    @pytest.mark.parametrize("name", SYSTEMS)
+    @pytest.mark.parametrize(
+        "name", ["resonance above a gain", "derivative", "lag and resonance"]
+    )
     def test_it_finds_a_system_out_of_the_middle_of_its_motion(self, name):
         # The records hold the steady state, which no start from rest has.
         noise = np.random.default_rng(1)
@@ -101,7 +103,7 @@ class TestLinear:
         hold=st.sampled_from(["zero-order", "linear"]),
         seed=st.integers(0, 1000),
     )
-    @settings(max_examples=6)
+    @settings(max_examples=4)
     def test_a_lag_is_found_whatever_the_hold(self, tau, gain, hold, seed):
         # The exact answer of a lag to a staircase and to straight lines.
         dt, count = 0.001, 2000

@@ -68,12 +68,32 @@ def offered():
             except Declined:
                 continue
             for variant in variants:
-                yield pytest.param(name, variant, id=f"{variant.label} on {name}")
+                yield name, variant
 
 
 ALL = list(offered())
-SOLVED = [x for x in ALL if x.values[1].unit]
-SEARCHED = [x for x in ALL if not x.values[1].unit and x.values[1].beside is None]
+
+
+def every_variant(holds=lambda variant: True):
+    """Check all variants of an effect in one test; one that fails is told."""
+    by_effect = {}
+    for chain, variant in ALL:
+        if holds(variant):
+            by_effect.setdefault(variant.effect, []).append((chain, variant))
+
+    def as_test(check):
+        @pytest.mark.parametrize("effect", by_effect)
+        def test(effect):
+            for chain, variant in by_effect[effect]:
+                try:
+                    check(chain, variant)
+                except BaseException as error:
+                    error.add_note(f"{variant.label} on {chain}")
+                    raise
+
+        return test
+
+    return as_test
 
 
 def values_of(variant):
@@ -107,7 +127,7 @@ def test_every_word_of_the_vocabulary_is_a_block(name):
 def test_every_effect_is_tried_on_some_chain():
     """Otherwise the contract below would leave one out."""
     chained = {name for name, item in effects().items() if item.place != "inside"}
-    assert {item.values[1].effect for item in ALL} == chained
+    assert {variant.effect for _, variant in ALL} == chained
 
 
 @pytest.mark.parametrize("name", VOCABULARY["inside"])
@@ -116,7 +136,7 @@ def test_a_force_has_no_place_in_a_chain_in_series(name):
         list(effects()[name].variants(Scene(next(iter(chains().values())), records())))
 
 
-@pytest.mark.parametrize(("chain", "variant"), ALL)
+@every_variant()
 def test_a_variant_builds_a_model_that_runs(chain, variant):
     before = chains()[chain]
     effect = effects()[variant.effect]
@@ -151,9 +171,7 @@ def test_a_variant_builds_a_model_that_runs(chain, variant):
         assert again == model
 
 
-@pytest.mark.parametrize(
-    ("chain", "variant"), [x for x in ALL if not x.values[1].beside]
-)
+@every_variant(lambda variant: not variant.beside)
 def test_a_form_pays_for_every_number_that_it_leaves_free(chain, variant):
     """Otherwise a law of many numbers would stand before one of few."""
     built = variant.build(next(values_of(variant)))
@@ -164,7 +182,7 @@ def test_a_form_pays_for_every_number_that_it_leaves_free(chain, variant):
     assert variant.freedom >= free
 
 
-@pytest.mark.parametrize(("chain", "variant"), SOLVED)
+@every_variant(lambda variant: variant.unit)
 def test_a_neutral_variant_changes_nothing_where_all_is_zero(chain, variant):
     scene = Scene(chains()[chain], records())
     size = scene.largest(len(scene.chain))
@@ -195,9 +213,7 @@ NOTHING = {
 }
 
 
-@pytest.mark.parametrize(
-    ("chain", "variant"), [x for x in ALL if x.values[1].effect in NOTHING]
-)
+@every_variant(lambda variant: variant.effect in NOTHING)
 def test_nothing_of_an_effect_is_the_chain(chain, variant):
     """Otherwise how it is computed would be taken for what it is."""
     scene = Scene(chains()[chain], records())
@@ -230,7 +246,7 @@ def numbers(state):
     ]
 
 
-@pytest.mark.parametrize(("chain", "variant"), ALL)
+@every_variant()
 def test_what_is_added_can_be_taken_out_again(chain, variant):
     before = state_with_free(chain)
     for values in list(values_of(variant))[:2]:
@@ -314,7 +330,7 @@ def test_what_others_stand_on_cannot_be_taken_out():
     assert [removable(replaced, k) for k in range(3)] == [False, True, True]
 
 
-@pytest.mark.parametrize(("chain", "variant"), SEARCHED)
+@every_variant(lambda variant: not variant.unit and variant.beside is None)
 def test_a_trial_scores_as_the_model_that_it_stands_for(chain, variant):
     """Nothing is solved for: then what a trial says holds to rounding."""
     rng = np.random.default_rng(0)

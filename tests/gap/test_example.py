@@ -69,7 +69,7 @@ def test_the_dataset_names_the_period_of_records_that_have_one(tmp_path):
 FIT = ("sine-040hz", "sine-120hz", "chirp-1-100hz")
 """Of the example's fit records a few that show both effects, in half the time."""
 SHORT_S = 0.5
-"""Length of the sines, which repeat."""
+"""Length of the sines, which repeat; the chirp is twice as long."""
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +79,7 @@ def settings(root):
     slow = config["excitations"][config["identification"]["signal"]]["sine"]
     slow["duration_s"] = config["excitation"]["duration_s"]
     shorten(config, SHORT_S)
+    config["excitations"]["chirp-1-100hz"]["chirp"]["duration_s"] = 2 * SHORT_S
     return read_settings(config, root / "workflow" / "schemas" / "config.schema.yaml")
 
 

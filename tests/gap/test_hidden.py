@@ -1,11 +1,10 @@
 """Effects hidden by the challenge's plant, which shares no code with the blocks.
 
 Every effect of the vocabulary once, at 20 dB of gap to noise. To save time only the
-first half of each record is used. Seeds were not chosen: all cases are of seed 1.
+first half of each record is used. Seeds were not chosen: all cases are of seed 1. How
+often names are right is counted by the contest; here one search of each outcome runs.
 """
 
-import os
-from dataclasses import dataclass
 from functools import cache
 
 import pytest
@@ -14,13 +13,14 @@ from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import VOCABULARY
 from hystbench.challenge.spec import CaseSpec
 from hystbench.gap import name as naming
+from hystbench.gap.compared import Compared
+from hystbench.gap.effects import effects
 from hystbench.gap.finding import find
-from hystbench.gap.floor import Floor
+from hystbench.gap.floor import noise_floor
+from hystbench.gap.locate import locate
+from hystbench.gap.lone import lone_share
 from hystbench.gap.rank import make_score, rank
-from hystbench.gap.rounds import Candidate
-from hystbench.gap.score import Score
 from hystbench.gap.start import start_state
-from hystbench.gap.state import State
 from hystbench.gap.thresholds import PAYS, SHAPE, TIE
 from hystbench.gap.unnamed import what_is_unnamed
 from hystbench.gap.verdict import LONE, judge, what_is_left
@@ -39,22 +39,11 @@ def hidden(names, family):
     return first_halves(case), case.model
 
 
-@dataclass(frozen=True)
-class Tried:
-    """One round beside a base."""
-
-    state: State
-    floor: Floor
-    score: Score
-    ranking: tuple[Candidate, ...]
-
-
-@cache
-def tried(names, family):
-    records, base = hidden(names, family)
-    state, floor = start_state(records, base)
-    score = make_score(state, floor.rms)
-    return Tried(state, floor, score, rank(state, score))
+def first_round(name, family, offered):
+    """The ranking of one round beside a base."""
+    records, base = hidden((name,), family)
+    state, floor = start_state(records, base, offered=offered)
+    return rank(state, make_score(state, floor.rms))
 
 
 def told(ranking):
@@ -62,29 +51,31 @@ def told(ranking):
     return [f"{item.effect} {item.form} {item.gain:.0f}" for item in ranking[:5]]
 
 
-#: As the generator lists them: an effect that is taken out is missed here too. CI takes
-#: every third, as it takes fewer examples of each property.
+def of_its_place(name):
+    """Effects that act where one does: of all, those it is likeliest taken for."""
+    place = effects()[name].place
+    return tuple(key for key, item in effects().items() if item.place == place)
+
+
+#: As the generator lists them: an effect that is taken out is missed here too. A few
+#: are named among all, a simple and two strange ones; the others among their like.
 SINGLES = [
-    *((name, "gpi") for name in list(VOCABULARY)[:: 3 if "CI" in os.environ else 1]),
-    ("creep", "preisach"),
-    ("resonance", "jiles-atherton"),
-    ("dead-zone", "jiles-atherton"),
+    *((name, "gpi", of_its_place(name)) for name in VOCABULARY),
+    ("drive-lag", "gpi", None),
+    ("creep", "preisach", None),
+    ("resonance", "jiles-atherton", None),
 ]
 
 
-@pytest.mark.parametrize(("name", "family"), SINGLES)
-def test_a_hidden_effect_is_named_first(name, family):
-    case = tried((name,), family)
-    first = case.ranking[0]
-    assert first.effect == name, told(case.ranking)
+@pytest.mark.parametrize(("name", "family", "offered"), SINGLES)
+def test_a_hidden_effect_is_named_first(name, family, offered):
+    ranking = first_round(name, family, offered)
+    first = ranking[0]
+    assert first.effect == name, told(ranking)
     assert first.gain > PAYS
     # The name holds because of the effect: no other does as well beside the same base.
-    second = next(item for item in case.ranking[1:] if not item.declined)
-    assert second.score > first.score + TIE, told(case.ranking)
-    left = what_is_left(case.state, first.state, case.floor.rms)
-    unnamed = what_is_unnamed(case.state, first.state, case.floor.rms)
-    word, _ = judge(left, True, unnamed=unnamed)
-    assert word == "named"
+    second = next(item for item in ranking[1:] if not item.declined)
+    assert second.score > first.score + TIE, told(ranking)
 
 
 def verdict(names, family):
@@ -99,20 +90,9 @@ def verdict(names, family):
     return word, {item.effect for item in state.added}
 
 
-searches_more = pytest.mark.skipif(
-    "CI" in os.environ, reason="CI searches for one effect outside the vocabulary"
-)
-#: CI takes the first of each list.
-FIRST = slice(1) if "CI" in os.environ else slice(None)
-PAIRS = [
-    (("creep", "drive-lag"), "gpi"),
-    (("saturation", "resonance"), "preisach"),
-]
-
-
-@pytest.mark.parametrize(("pair", "family"), PAIRS[FIRST])
-def test_two_effects_are_both_named_and_no_third(pair, family):
-    assert verdict(pair, family) == ("named", set(pair))
+def test_two_effects_are_both_named_and_no_third():
+    pair = ("creep", "drive-lag")
+    assert verdict(pair, "gpi") == ("named", set(pair))
 
 
 @pytest.mark.parametrize("family", ["gpi", "preisach"])
@@ -120,52 +100,48 @@ def test_where_nothing_is_hidden_nothing_is_named(family):
     assert verdict((), family) == ("no-gap", set())
 
 
-def decided(name, family, monkeypatch):
+@pytest.fixture
+def decided(monkeypatch):
     """What gap.json says of one hidden effect, by all that decides."""
     # What would tell likely effects apart takes long and decides nothing.
     monkeypatch.setattr("hystbench.gap.finding.tell_apart", lambda *given: (None, ""))
-    records, base = hidden((name,), family)
-    return find("hidden", records, base).content
+
+    def decide(name, family):
+        return find("hidden", *hidden((name,), family)).content
+
+    return decide
 
 
-ALONE = [
-    ("saturation", "gpi"),
-    ("sensor-lag", "preisach"),
-    ("resonance", "jiles-atherton"),
-]
-
-
-@pytest.mark.parametrize(("name", "family"), ALONE[FIRST])
-def test_a_hidden_effect_is_named_alone(name, family, monkeypatch):
+def test_a_hidden_effect_is_named_alone(decided):
     """With the black box, lone samples and periods looked at; and nothing beside it.
 
     What a wrong shape of the base leaves is no second effect.
     """
-    content = decided(name, family, monkeypatch)
+    content = decided("sensor-lag", "preisach")
     names = {item["name"] for item in content["effects"]} - {SHAPE}
-    assert (content["verdict"], names) == ("named", {name})
+    assert (content["verdict"], names) == ("named", {"sensor-lag"})
 
 
-def unnamed(name, monkeypatch):
-    """What gap.json says of an effect outside the vocabulary."""
-    content = decided(name, "gpi", monkeypatch)
+def test_an_effect_outside_the_vocabulary_has_no_name(decided):
+    content = decided("capacitive-pickup", "gpi")
     assert content["verdict"] == "unnamed"
-    return content
-
-
-def test_an_effect_outside_the_vocabulary_has_no_name(monkeypatch):
-    content = unnamed("capacitive-pickup", monkeypatch)
     # The views are then what there is to say.
     assert content["where"][0]["share_of_gap_power"] > 0.5
 
 
-@searches_more
-def test_a_bad_contact_is_what_the_input_does_not_explain(monkeypatch):
-    first = unnamed("random-telegraph", monkeypatch)["where"][0]
-    assert first["view"] == "unexplained"
-    assert first["share_of_gap_power"] > 0.5
+def gap(name):
+    """Records of a hidden effect beside what the base says of them."""
+    records, base = hidden((name,), "gpi")
+    return [Compared(item, base.simulate(item.u, item.dt)) for item in records]
 
 
-@searches_more
-def test_dropouts_are_seen_as_lone_samples(monkeypatch):
-    assert unnamed("dropouts", monkeypatch)["fit"]["lone_share"] > LONE
+def test_a_bad_contact_is_what_the_input_does_not_explain():
+    compared = gap("random-telegraph")
+    first = locate(compared, noise_floor(compared))[0]
+    assert first.view == "unexplained"
+    assert first.share_of_gap_power > 0.5
+
+
+def test_dropouts_are_seen_as_lone_samples():
+    """More than the verdict takes for a gap that effects may explain."""
+    assert lone_share([item.residual for item in gap("dropouts")]) > LONE

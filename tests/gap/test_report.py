@@ -413,6 +413,7 @@ def test_how_much_of_the_gap_the_map_holds_is_said(page):
     assert "These cells hold 41 % of the gap" in page.said
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_model_is_drawn_as_blocks_where_its_effects_are_told(tmp_path):
     text = write_report(write_folder(tmp_path)).read_text()
     (told,) = re.findall(

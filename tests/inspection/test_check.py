@@ -216,12 +216,12 @@ def many(names):
     return made, held, entries
 
 
-@pytest.mark.parametrize("name", ["r{}", "a-record-with-quite-a-long-name-{}"])
 def test_thirty_records_are_one_screen_and_the_page_has_all(
-    plain, tmp_path, monkeypatch, name
+    plain, tmp_path, monkeypatch
 ):
+    """Also where names are long."""
     monkeypatch.chdir(tmp_path)
-    names = [name.format(k) for k in range(30)]
+    names = [f"a-record-with-quite-a-long-name-{k}" for k in range(30)]
     made, held, entries = many(names)
     write(Path("d"), made, roles=held, entries=entries)
     found = check(load_dataset("d/dataset.yaml"), effects=False)

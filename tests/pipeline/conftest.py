@@ -6,6 +6,7 @@ import copy
 import multiprocessing
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -20,7 +21,7 @@ import pytest
 import yaml
 
 from hystbench.written import ENTRIES
-from tests.conftest import shorten
+from tests.conftest import run_hystbench, shorten
 
 ROOT = Path(__file__).parents[2]
 
@@ -69,6 +70,23 @@ class Workflow:
         assert result.returncode == 0, result.stdout + result.stderr
         return jobs(result.stderr + result.stdout)
 
+    def run_here(self, *targets: str) -> int:
+        """Run the jobs that Snakemake would start, in its order; count them.
+
+        They run in this process, one after the other: programs of their own would
+        spend most of the time on imports.
+        """
+        asked = ("--dry-run", "--printshellcmds", "--cores", "1", *targets)
+        printed = self.snakemake(*asked)
+        commands = re.findall(r"^Shell command: (.*)$", printed.stdout, re.MULTILINE)
+        assert commands, printed.stdout + printed.stderr
+        for command in commands:
+            program, *words = shlex.split(command.partition(" 2> ")[0])
+            assert program == "hystbench", command
+            done = run_hystbench(*words, cwd=self.folder)
+            assert done.returncode == 0, command + done.stderr
+        return len(commands)
+
     def would_run(self, *arguments: str) -> dict[str, int]:
         return self.run("--dry-run", *arguments)
 
@@ -82,9 +100,17 @@ class Workflow:
         }
 
 
-#: To import this takes half of a run that has nothing to do.
+#: What a run imports: it takes most of one that has nothing to do.
+IMPORTED = (
+    *("snakemake.cli", "snakemake.report.html_reporter", "smart_open", "yte"),
+    *("snakemake.executors.dryrun", "snakemake.executors.local"),
+    *("pandas", "grimp", "pulp", "jsonschema", "docutils.core"),
+    *("hystbench.settings", "hystbench.settings_checks", "hystbench.figures"),
+    *("hystbench.model", "hystbench.gap.vocabulary", "hystbench.gap.asked"),
+    *("hystbench.challenge.contest.plan", "hystbench.commands.rival"),
+)
 FORKING = multiprocessing.get_context("forkserver")
-FORKING.set_forkserver_preload(["snakemake.cli", "pandas", "grimp", "pulp"])
+FORKING.set_forkserver_preload(list(IMPORTED))
 
 
 def forked(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from tests.gap.small import write_lagging
+from tests.conftest import run_hystbench
 from tests.gap.tiny import LAG_S, write_tiny
 
 from .conftest import Workflow, small_config
@@ -29,21 +29,23 @@ class Finished(Workflow):
     done: dict[str, int] = field(default_factory=dict)
 
 
-def configured(folder, config) -> Workflow:
+RIG = {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
+LIMITS = {"low": -0.5, "high": 0.75, "rate": 400}
+
+
+def configured(folder, config, **rig) -> Workflow:
     workflow = Workflow(folder)
     write_tiny(folder / "tiny")
-    config["gap"] |= {
-        "datasets": [
-            {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
-        ],
-    }
+    config["gap"] |= {"datasets": [RIG | rig]}
     workflow.configure(config)
     return workflow
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    workflow = configured(tmp_path_factory.mktemp("whole"), small_config())
+    config = small_config()
+    config["gap"] |= {"write_experiment": True}
+    workflow = configured(tmp_path_factory.mktemp("whole"), config, limits=LIMITS)
     return Finished(workflow.folder, workflow.environment, workflow.run(PAGE))
 
 
@@ -82,47 +84,31 @@ def test_gap_json_holds_the_rms_of_the_hold_out_record(whole):
         assert gap[key] == pytest.approx(rms, rel=1e-6)
 
 
-def test_the_next_experiment_is_written_within_the_limits_of_its_dataset(
-    tmp_path, config
-):
-    """Only where it is asked for; the folder is there though none may be needed."""
-    workflow = Workflow(tmp_path)
-    write_lagging(tmp_path)
-    rig = {"dataset": "rig/dataset.yaml", "model": "base.yaml"}
-    limits = {"low": -0.15, "high": 0.35, "rate": 12}
-    config["gap"] |= {"datasets": [rig | {"limits": limits}], "write_experiment": True}
-    workflow.configure(config)
-    workflow.run("results/gap/made/next-experiment")
-    file = tmp_path / "results/gap/made/next-experiment/signal.csv"
-    time, u = np.loadtxt(file, delimiter=",", skiprows=1).T
-    assert limits["low"] - 1e-6 <= u.min() < u.max() <= limits["high"] + 1e-6
-    rates = np.abs(np.diff(u)) / np.diff(time)
-    assert rates.max() <= limits["rate"] * (1 + 1e-4)
-    config["gap"] |= {"datasets": [rig], "write_experiment": False}
-    workflow.configure(config)
-    asked = workflow.snakemake("results/gap/made/next-experiment", "--dry-run")
-    assert asked.returncode != 0
+def test_the_folder_of_the_next_experiment_is_there_though_none_may_be_needed(whole):
+    needed = load(whole)["next_experiment"] is not None
+    folder = whole.folder / "results/gap/tiny/next-experiment"
+    assert [file.name for file in folder.glob("*.csv")] == ["signal.csv"] * needed
 
 
-def test_effects_that_a_dataset_leaves_out_and_puts_in_reach_its_search(
-    workflow, config
-):
-    write_tiny(workflow.folder / "tiny")
-    rig = {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
-    asked = {"without": ["sensor-lag", "input-delay"], "with": ["asymmetry"]}
-    config["gap"] |= {"datasets": [rig | asked]}
-    workflow.configure(config)
+def test_what_a_dataset_asks_reaches_its_search(workflow, config):
+    """Limits of the next experiment, and effects that are left out and put in."""
+    asked = {
+        "limits": {"low": -0.15, "rate": 12},
+        "without": ["sensor-lag", "input-delay"],
+        "with": ["asymmetry"],
+    }
+    configured(workflow.folder, config, **asked)
     shown = workflow.snakemake(GAP, "--dry-run", "--printshellcmds")
     assert shown.returncode == 0
     told = " ".join((shown.stdout + shown.stderr).split())
     assert "--without sensor-lag --without input-delay --with asymmetry" in told
+    assert "--limit-low=-0.15 --limit-rate=12" in told
+    # An experiment is written only where it is asked for.
+    assert "--write-experiment" not in told
 
 
 def test_an_effect_that_is_none_is_one_line(workflow, config):
-    write_tiny(workflow.folder / "tiny")
-    rig = {"dataset": "tiny/dataset/dataset.yaml", "model": "tiny/base.yaml"}
-    config["gap"] |= {"datasets": [rig | {"without": ["fricton"]}]}
-    workflow.configure(config)
+    configured(workflow.folder, config, without=["fricton"])
     refused = workflow.snakemake(GAP)
     assert refused.returncode != 0
     told = "no effect 'fricton'; did you mean 'friction'?"
@@ -262,24 +248,34 @@ def test_a_signal_in_both_roles_is_one_line(workflow, config):
     ) in refused.stderr.splitlines()
 
 
-def test_the_example_runs_from_identification_to_summary(workflow, config):
+def test_the_examples_dataset_is_made_again_when_a_record_changes_its_role(
+    workflow, config
+):
+    """A record that changes its role is the same input; the dataset is not."""
     config["gap"]["twin"] = {"fit": ["sine-100hz"], "hold_out": ["sine-200hz"]}
     workflow.configure(config)
-    workflow.run("results/gap/summary.csv")
-    gap = workflow.folder / "results" / "gap"
-    with (gap / "summary.csv").open(newline="") as stream:
-        (row,) = csv.DictReader(stream)
-    content = json.loads((gap / "twin" / "gap.json").read_text())
-    assert (row["dataset"], row["verdict"]) == ("twin", content["verdict"])
-    assert float(row["before"]) == pytest.approx(content["gap"]["before"], rel=1e-3)
-    names = [item["name"] for item in content["effects"]]
-    assert row["effects"] == (" + ".join(names) or "none")
-    # A record that changes its role is the same input; the dataset is not.
-    assert workflow.would_run("results/gap/summary.csv") == {}
+    dataset = "results/gap/twin/dataset/dataset.yaml"
+    assert workflow.run(dataset) == {"gap_twin": 1}
+    assert workflow.would_run(dataset) == {}
     config["gap"]["twin"] = {"fit": ["sine-200hz"], "hold_out": ["sine-100hz"]}
     workflow.configure(config)
     planned = workflow.would_run("results/gap/summary.csv")
     assert planned["gap_twin"] == planned["gap_decide"] == 1
+
+
+def test_the_summary_has_a_row_of_each_gap(whole, tmp_path):
+    tables = {key: tmp_path / f"{key}.csv" for key in ("effects", "records", "out")}
+    words = [x for key, file in tables.items() for x in (f"--{key}", file)]
+    words += ["--sentences", tmp_path / "sentences.csv"]
+    done = run_hystbench("job", "gap-summary", whole.folder / GAP, *words)
+    assert done.returncode == 0, done.stderr
+    with tables["out"].open(newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    content = load(whole)
+    assert (row["dataset"], row["verdict"]) == ("tiny", content["verdict"])
+    assert float(row["before"]) == pytest.approx(content["gap"]["before"], rel=1e-3)
+    names = [item["name"] for item in content["effects"]]
+    assert row["effects"] == " + ".join(names)
 
 
 def test_a_strangers_table_among_hold_out_results_is_refused(whole, tmp_path):

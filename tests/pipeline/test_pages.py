@@ -38,18 +38,30 @@ PAGES = [
 
 
 @pytest.fixture(scope="module")
-def reproduced(tmp_path_factory) -> Workflow:
-    """The project's own config, run in full but for figures that no page shows."""
+def planned(tmp_path_factory) -> Workflow:
+    """A folder with the project's own config, in which nothing has run."""
     workflow = Workflow(tmp_path_factory.mktemp("reproduction"))
     workflow.configure(yaml.safe_load((ROOT / "config.yaml").read_text()))
-    workflow.run(*{source: None for page in PAGES for source in sources(page)})
     return workflow
 
 
-def test_nothing_but_figures_and_rdgpis_own_table_is_left(reproduced):
-    left = reproduced.would_run()
-    drawn = [name for name in left if name.startswith("draw_")]
-    assert set(left) - set(drawn) <= {"page", "rdgpi_published"}
+def read_by_pages() -> list[str]:
+    return list(dict.fromkeys(source for page in PAGES for source in sources(page)))
+
+
+@pytest.fixture(scope="module")
+def reproduced(planned) -> Workflow:
+    """What the pages read; that the workflow runs it, its own tests say."""
+    assert planned.run_here(*read_by_pages()) > 100
+    return planned
+
+
+def test_nothing_but_figures_and_rdgpis_own_table_is_on_no_page(planned):
+    read, every = planned.would_run(*read_by_pages()), planned.would_run()
+    unread = {rule for rule, count in every.items() if count > read.get(rule, 0)}
+    drawn = {rule for rule in unread if rule.startswith("draw_")}
+    # The page of the results alone shows RDGPI's printed parameters.
+    assert unread - drawn == {"page", "rdgpi_published"}
 
 
 def test_pages_hold_the_numbers_of_the_results(reproduced):

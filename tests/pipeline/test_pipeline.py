@@ -149,12 +149,13 @@ def test_afterwards_there_is_nothing_to_do(finished):
     assert finished.would_run() == {}
 
 
-def test_another_run_on_one_core_gives_the_same_bytes(finished, tmp_path_factory):
+def test_jobs_one_after_the_other_give_the_same_bytes(finished, tmp_path_factory):
+    """In one process, where whatever a job leaves behind would reach the next."""
     # As deep as the other: results hold no paths, but rules name sources by them.
     alone = Workflow(tmp_path_factory.mktemp("alone"))
     alone.configure(yaml.safe_load((finished.folder / "config.yaml").read_text()))
     # Figures and the page are held to this by tests of their own.
-    alone.run("--cores", "1", "tables", "rdgpi_published", "found")
+    alone.run_here("tables", "rdgpi_published", "found")
     drawn = {".png", ".svg", ".html"}
     expected = {
         name: content

@@ -94,9 +94,9 @@ def test_a_run_that_was_cut_off_goes_on(workflow):
         time.sleep(0.01)
     cut_off.send_signal(signal.SIGINT)
     cut_off.wait(timeout=120)
-    workflow.run("--rerun-incomplete")
+    workflow.run("--rerun-incomplete", "tables")
     assert gone.is_file()
-    assert workflow.would_run() == {}
+    assert workflow.would_run("tables") == {}
 
 
 def test_clean_takes_results_and_leaves_the_rest(workflow):
