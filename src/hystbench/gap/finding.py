@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.inside.name import beats, named_inside
 from hystbench.gap.limits import Limits
-from hystbench.gap.locate import curves, locate
+from hystbench.gap.locate import Contribution, locate
 from hystbench.gap.lone import lone_share
 from hystbench.gap.name import LITTLE, Named, name
 from hystbench.gap.named_apart import named_apart
@@ -210,9 +211,6 @@ def decide(
         left = what_is_left(start, named.state, floor.rms)
     records, state = start.records, named.state
     compared = _compared(start.chain, start)
-    views = locate(compared, floor)
-    if views:
-        say(views[0].sentence)
     box = black_box(start, floor)
     after = compared if state is start else _compared(state.chain, state)
     lone = lone_share([item.residual for item in after])
@@ -241,6 +239,11 @@ def decide(
         verdict = "unnamed"
         reason = "; ".join(item["sentence"] for item in findings)
     reason += f"; {used_up}" if used_up else ""
+    ladder = rungs(start, named)
+    where = locate(
+        compared, floor, contributions(ladder) if verdict == "named" else ()
+    )
+    say(where.views[0].sentence)
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -271,7 +274,7 @@ def decide(
         "fit": _fit(start, state, floor)
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "unnamed": unnamed.mapping(unnamed_share),
-        "where": [view.to_mapping() for view in views],
+        "where": [view.to_mapping() for view in where.views],
         "ranking": ranking_rows(named),
         "findings": findings,
         "record_values": own.mapping(records[0].output.unit),
@@ -294,11 +297,30 @@ def decide(
         left,
         box,
         content,
-        curves(compared, floor),
+        where.curves(),
         experiment,
-        rungs(start, named),
+        ladder,
         own,
     )
+
+
+def contributions(ladder: Sequence[Rung]) -> list[Contribution]:
+    """Give what each named effect adds to the output of the rung before it."""
+    outputs = [_compared(rung.state.chain, rung.state) for rung in ladder]
+    found = []
+    for (old, new), (before, after) in zip(
+        pairwise(ladder), pairwise(outputs), strict=True
+    ):
+        added = tuple(
+            b.simulated - a.simulated for a, b in zip(before, after, strict=True)
+        )
+        known = {item.effect for item in old.state.added}
+        found += [
+            Contribution(item.effect, added, item.charge)
+            for item in new.state.added
+            if item.effect not in known
+        ]
+    return found
 
 
 def new_in_every_record(state: State, left: Left) -> list[dict[str, str]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench.gap.bases import spectral
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio
-from hystbench.gap.locate.modes import ENOUGH, excited_lines
+from hystbench.gap.locate.mode import ENOUGH, excited_lines
 from hystbench.record import FloatArray, Record
 
 ORDERS = (2, 4, 6, 8)

@@ -12,7 +12,7 @@ from hystbench.gap.locate import LEVEL
 from hystbench.gap.report import diagram, pictures, words
 from hystbench.gap.report.pictures import Picture, draw, embedded
 from hystbench.gap.report.read import Content
-from hystbench.gap.report.where_drawn import pictures_of
+from hystbench.gap.report.where import pictures_of
 from hystbench.record import column_name
 from hystbench.report.markup import one_micro
 
@@ -70,7 +70,7 @@ def page(content: Content) -> str:
     environment.filters["listed"] = words.listed
     named = with_optional(content.gap)  # as the vocabulary has it
     gap = with_optional(for_readers(content.gap))
-    drawn, missing = pictures_of(content)
+    drawn, missing = pictures_of(content.curves)
     page = environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(named),

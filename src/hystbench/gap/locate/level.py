@@ -16,16 +16,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from scipy import special
 
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.dominant import Found, find_modes
-from hystbench.gap.locate.listed import listed
-from hystbench.gap.locate.modes import LINES, Mode, fit_mode, lines_of
-from hystbench.gap.locate.regression import saved
+from hystbench.gap.locate.forms import saved
+from hystbench.gap.locate.mode import LINES, Lines, Mode, fit_mode, lines_of
+from hystbench.gap.locate.picture import Axis, Panel, Picture, Role, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.quantities import quantity_of
@@ -208,7 +208,7 @@ def take_levels(samples: Samples) -> tuple[Moving, ...]:
         return ()
     lines = [[lines_of(item) for item in level] for level in levels]
     inputs = np.array([np.mean([_rms(one) for one in level]) for level in levels])
-    measured = quantity_of("output", levels[0][0].record.output.unit)
+    measured = quantity_of("output", samples.units[1])
     integrals = _INTEGRALS.get(measured, 1)
     found, start = _start(levels)
     moving: list[Moving] = []
@@ -223,19 +223,27 @@ def take_levels(samples: Samples) -> tuple[Moving, ...]:
     return tuple(moving)
 
 
-def levels_view(samples: Samples, moving: Sequence[Moving]) -> View:
+def level(samples: Samples) -> View | None:
     """Tell how modes move with the level.
 
     The share is what a mode of each level's own takes away of the gap within its band.
     The p-value is that of frequency, damping and gain being the same at every level.
+
+    Returns
+    -------
+    View, optional
+        None where no three levels of a broadband input show a mode.
     """
+    moving = take_levels(samples)
+    if not moving:
+        return None
     inputs = moving[0].inputs
     total = len(samples.compared)
     explained = sum(m.missed - m.left for each in moving for m in each.modes) / total
     freedom = NUMBERS * sum(len(each.modes) for each in moving)
     chi_squares, freedoms = zip(*(each.chi_square for each in moving), strict=True)
     share = samples.share(explained, freedom)
-    unit = samples.compared[0].record.input.unit
+    unit = samples.units[0]
     told = "; ".join(each.sentence for each in moving)
     return View(
         view="level",
@@ -251,30 +259,43 @@ def levels_view(samples: Samples, moving: Sequence[Moving]) -> View:
             f"{percent(share)} of the gap."
         ),
         saved=saved(samples, explained, freedom),
+        pictures=(picture_of(moving, unit),),
     )
 
 
-def levels_curve(moving: Sequence[Moving]) -> dict[str, Any] | None:
-    """Give what the picture draws, by mode; None where no mode was followed."""
-    if not moving:
-        return None
-    return {
-        "modes": [
-            {
-                "kind": each.kind,
-                "input": listed(each.inputs),
-                **{
-                    name: listed(each.numbers[:, k])
-                    for k, name in enumerate(("frequency", "width", "damping", "gain"))
-                },
-                **{
-                    f"{name}_error": listed(each.errors[:, k] * each.numbers[:, k])
-                    for k, name in enumerate(("frequency", "width", "damping", "gain"))
-                },
-            }
-            for each in moving
+ROLES: tuple[tuple[Role, Role], ...] = (
+    ("first", "first by width"),
+    ("second", "second by width"),
+)
+
+
+def picture_of(moving: Sequence[Moving], unit: str) -> Picture:
+    """Draw how modes move with the input's level: frequency, damping, gain."""
+    frequency, damping, gain = [], [], []
+    for (role, by_width), mode in zip(ROLES, moving, strict=False):
+        values, errors = mode.numbers, mode.errors * mode.numbers
+        first, label = values[0], f"{values[0, 0]:.3g} Hz: {mode.kind}"
+        change, size = 100 * (values[:, 0] / first[0] - 1), 100 / first[0]
+        x = mode.inputs
+        frequency.append(series(role, x, change, label, size * errors[:, 0]))
+        damping += [
+            series(role, x, 100 * values[:, 2], "", 100 * errors[:, 2]),
+            series(by_width, x, 100 * values[:, 1], "width of the peak"),
         ]
-    }
+        relative = values[:, 3] / first[3], errors[:, 3] / first[3]
+        gain.append(series(role, x, relative[0], "", relative[1]))
+    x_axis = Axis("rms of the input", unit)
+    panels = (
+        Panel(x_axis, Axis("change of frequency", "%"), tuple(frequency)),
+        Panel(x_axis, Axis("damping ratio", "%"), tuple(damping)),
+        Panel(x_axis, Axis("gain over the first"), tuple(gain)),
+    )
+    words = (
+        "How modes move when the input grows; a linear device's stay. Damping is told "
+        "by power: what the input puts in, over the mean square velocity; a curved "
+        "spring widens the peak and leaves this alone. Bars: standard errors"
+    )
+    return Picture("levels", words, panels)
 
 
 def _levels(compared: Sequence[Compared]) -> list[list[Compared]]:
@@ -306,7 +327,7 @@ def _start(levels: Sequence[Sequence[Compared]]) -> tuple[Found, int]:
 
 
 def _followed(
-    lines: Sequence[Sequence[Any]],
+    lines: Sequence[Sequence[Lines]],
     start: int,
     mode: tuple[float, float],
     integrals: int,
