@@ -10,17 +10,14 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
 from hystbench.gap.locate.amplitude import amplitude
 from hystbench.gap.locate.branch import branch
-from hystbench.gap.locate.coherence import take_coherence
 from hystbench.gap.locate.contribution import Contribution
 from hystbench.gap.locate.delay import delay
-from hystbench.gap.locate.distortion import take_distortion
 from hystbench.gap.locate.frequency import frequency
 from hystbench.gap.locate.level import level
 from hystbench.gap.locate.rate import rate
 from hystbench.gap.locate.record import record
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.locate.slow_time import slow_time
-from hystbench.gap.locate.spectra import take_spectra
 from hystbench.gap.locate.unexplained import unexplained
 from hystbench.gap.locate.view import View
 
@@ -94,17 +91,14 @@ def locate(
     and no view wins by freedom.
     """
     samples = take_samples(compared, floor, contributions)
-    spectra = take_spectra(samples)
-    distortion = take_distortion(samples)
-    coherence = take_coherence(spectra, samples.gap_power)
     by_level = level(samples)
     views = (
         delay(samples),
         amplitude(samples),
-        branch(samples, spectra),
-        frequency(samples, spectra, distortion),
+        branch(samples),
+        frequency(samples),
         slow_time(samples),
-        unexplained(samples, distortion, coherence),
+        unexplained(samples),
         rate(samples),
         record(samples),
         *(() if by_level is None else (by_level,)),

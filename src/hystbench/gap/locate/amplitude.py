@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from hystbench.gap.locate.forms import fit_form, hats, named_or, narrowest, p_value_of
-from hystbench.gap.locate.picture import Axis, Panel, Picture, Role, mean_in, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 
@@ -13,8 +12,6 @@ KNOTS = 9
 """Of a map over an axis."""
 ONE_SIDED = 0.8
 """Share of what is explained on one side of zero, for the side to be told."""
-CELLS = 40
-"""Of the picture."""
 
 
 def amplitude(samples: Samples) -> View:
@@ -57,22 +54,4 @@ def amplitude(samples: Samples) -> View:
         ),
         saved=form.saved,
         named=form.named,
-        pictures=(_picture(samples),),
     )
-
-
-def _picture(samples: Samples) -> Picture:
-    """Draw the residual over the input, branch by branch."""
-    u, residual = samples.input, samples.residual
-    edges = np.linspace(float(u.min()), max(float(u.max()), u.min() + 1e-300), CELLS + 1)
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    branches: tuple[tuple[Role, int], ...] = (("rising", 1), ("falling", -1))
-    lines = [
-        series(role, middle, mean_in(edges, u[way], residual[way]), role)
-        for role, sign in branches
-        for way in [samples.direction == sign]
-    ]
-    rms = series("noise", middle, np.sqrt(mean_in(edges, u, residual**2)), "rms")
-    given, made = samples.units
-    panel = Panel(Axis("input", given), Axis("mean residual", made), (*lines, rms))
-    return Picture("over-input", "Mean residual over the input, by branch", (panel,))

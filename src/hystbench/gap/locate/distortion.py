@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,35 +44,32 @@ LINES = 100
 class Lines:
     """The residual of one periodic record, averaged over periods, line by line.
 
-    Energies are sums of squares over the samples of the periods that were used.
-
     Parameters
     ----------
     record : str
     frequency, amplitude : ndarray, shape (m,)
         In Hz and in the output's unit.
-    energy, scatter : ndarray, shape (m,)
-        Energy of the mean period, and what differs from period to period.
     kind : ndarray of int, shape (m,)
-    periods, samples : int
+    sums : ndarray, shape (4, 5)
+        By kind: energy of the mean period and what differs from period to period (sums
+        of squares over the samples of the periods that were used), the number of lines,
+        and how many numbers the difference has.
+    samples : int
         That were used.
     """
 
     record: str
     frequency: FloatArray
     amplitude: FloatArray
-    energy: FloatArray
-    scatter: FloatArray
     kind: IntArray
-    periods: int
+    sums: FloatArray
     samples: int
 
     def above(self, noise: float) -> FloatArray:
         """Give the energy above the noise of each kind, what does not repeat last."""
-        held = np.bincount(self.kind, self.energy - 2 * noise, 5)
-        # What the mean over periods leaves of white noise is in the lines already.
-        share = (self.periods - 1) / self.periods
-        held[BETWEEN] += float(np.sum(self.scatter)) - share * self.samples * noise
+        energy, scatter, count, freedom = self.sums
+        held = energy - 2 * noise * count
+        held[BETWEEN] += float(np.sum(scatter - noise * freedom))
         return np.maximum(held, 0.0)
 
 
@@ -120,18 +116,15 @@ class Distortion:
             return " Next to all of the gap of periodic records repeats with the input."
         return (
             f" Of the gap of periodic records {percent(other)} does not repeat with "
-            f"the input ({chance(self.p_values[BETWEEN])})."
+            "the input."
         )
 
     def picture(self, unit: str) -> Picture:
         """Draw the lines of the record that holds most beside the input's."""
-        above = np.array([one.above(self.noise) for one in self.records])
-        beside = above[:, ODD:BETWEEN].sum(axis=1)
-        # Where nothing lies beside the input's lines, the record with the largest gap.
-        most = int(np.argmax(beside if np.any(beside > 0) else above.sum(axis=1)))
-        one = self.records[most]
-        # An amplitude below a tenth of what the floor gives is rounding, not a line.
+        beside = [one.above(self.noise)[ODD:BETWEEN].sum() for one in self.records]
+        one = self.records[int(np.argmax(beside))]
         floor = float(2 * np.sqrt(self.noise / one.samples))
+        # An amplitude below a tenth of what the floor gives is rounding, not a line.
         seen = one.amplitude > 0.1 * floor
         places = [np.flatnonzero(seen & (one.kind == kind)) for kind, _, _ in DRAWN]
         lines = [
@@ -167,13 +160,16 @@ def take_distortion(samples: Samples) -> Distortion | None:
         None where no record holds two whole periods, or no power lies above the noise.
     """
     records = tuple(one for item in samples.compared if (one := _lines(item)))
-    energy = np.sum([one.above(samples.noise) for one in records], axis=0)
-    total = float(np.sum(energy))
+    above = np.sum([one.above(samples.noise) for one in records], axis=0)
+    total = float(np.sum(above))
     if total <= 0:
         return None
-    p_values = [_p_value(records, kind, samples.noise) for kind in range(BETWEEN)]
-    p_values.append(_p_other(records, samples.noise))
-    return Distortion(energy / total, np.array(p_values), records, samples.noise)
+    energy, scatter, count, freedom = np.sum([one.sums for one in records], axis=0)
+    level = np.maximum(samples.noise, scatter / np.maximum(freedom, 1))
+    ratio = energy / np.maximum(2 * count, 1) / level
+    p_values = special.fdtrc(np.maximum(2 * count, 1), np.maximum(freedom, 1), ratio)
+    there = np.where(count > 0, p_values, 1.0)
+    return Distortion(above / total, there, records, samples.noise)
 
 
 def _lines(item: Compared) -> Lines | None:
@@ -187,9 +183,9 @@ def _lines(item: Compared) -> Lines | None:
         return None
     runs = fft.rfft(settled(item.residual, period), axis=1)
     used, mean = len(runs), runs.mean(axis=0)
-    twice = np.full(len(mean), 2.0)
+    scale = np.full(len(mean), 2.0 / period)
     if period % 2 == 0:
-        twice[-1] = 1.0
+        scale[-1] /= 2
     order = np.arange(len(mean))
     step = int(np.gcd.reduce(excited))
     harmonic, between = np.divmod(order, step)
@@ -197,15 +193,15 @@ def _lines(item: Compared) -> Lines | None:
     beside = np.where(harmonic % 2 == 1, ODD, EVEN) if told_apart else EITHER
     kind = np.where(between == 0, beside, BETWEEN)
     kind[excited] = OWN
-    scatter = np.sum(np.abs(runs - mean) ** 2, axis=0)
+    one = np.ones(len(mean))
+    scatter = np.sum(np.abs(runs - mean) ** 2, axis=0) * scale
+    rows = (used * np.abs(mean) ** 2 * scale, scatter, one, 2 * (used - 1) * one)
     return Lines(
         record=item.record.name,
         frequency=order[1:] / (period * item.record.dt),
-        amplitude=(np.abs(mean) * twice / period)[1:],
-        energy=(used * np.abs(mean) ** 2 * twice / period)[1:],
-        scatter=(scatter * twice / period)[1:],
+        amplitude=(np.abs(mean) * scale)[1:],
         kind=kind[1:].astype(np.int64),
-        periods=used,
+        sums=np.array([np.bincount(kind[1:], row[1:], 5) for row in rows]),
         samples=used * period,
     )
 
@@ -218,24 +214,3 @@ def _excited(u: FloatArray) -> IntArray:
     scatter = float(np.sum((u - mean) ** 2)) / (count - 1) / count
     floor = max(EXCITED * float(np.max(cause)), ABOVE_NOISE * scatter)
     return np.flatnonzero(cause > floor)
-
-
-def _p_value(records: Sequence[Lines], kind: int, noise: float) -> float:
-    """Test the power of a kind of line against its scatter between periods."""
-    chosen = [(one, one.kind == kind) for one in records]
-    count = sum(int(np.sum(here)) for _, here in chosen)
-    if not count:
-        return 1.0
-    energy = sum(float(np.sum(one.energy[here])) for one, here in chosen)
-    scatter = sum(float(np.sum(one.scatter[here])) for one, here in chosen)
-    freedom = sum(2 * (one.periods - 1) * int(np.sum(here)) for one, here in chosen)
-    level = max(noise, scatter / freedom)
-    return float(special.fdtrc(2 * count, freedom, energy / (2 * count) / level))
-
-
-def _p_other(records: Sequence[Lines], noise: float) -> float:
-    """Test what differs from period to period against the floor."""
-    freedom = sum(2 * (one.periods - 1) * len(one.kind) for one in records)
-    scatter = sum(float(np.sum(one.scatter)) for one in records)
-    # The floor itself is a median of as many samples, worth half of them.
-    return float(special.fdtrc(freedom, freedom / 2, scatter / freedom / noise))

@@ -11,7 +11,7 @@ from scipy import fft
 
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import periodogram
-from hystbench.gap.locate.distortion import Distortion
+from hystbench.gap.locate.distortion import take_distortion
 from hystbench.gap.locate.forms import (
     fit_form,
     named_or,
@@ -27,7 +27,7 @@ from hystbench.gap.locate.picture import (
     thinned,
 )
 from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.spectra import R, S, Spectra
+from hystbench.gap.locate.spectra import R, S, Spectra, U, take_spectra
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
 
@@ -37,14 +37,13 @@ BINS = 401
 """Edges of bins over which a range is sought."""
 
 
-def frequency(
-    samples: Samples, spectra: Spectra, distortion: Distortion | None
-) -> View:
+def frequency(samples: Samples) -> View:
     """Fit a linear filter of the simulated output: a gain and a phase of each band.
 
     The range is the narrowest band that holds four fifths of what is explained. The
     p-value is that of the filter.
     """
+    spectra, distortion = take_spectra(samples), take_distortion(samples)
     bands = _bands(spectra)
     pairs = [(band, [samples.thin(of) for of in band]) for band in bands]
     whole = [of for band in bands for of in band]
@@ -54,7 +53,9 @@ def frequency(
     own, passed = max([(filtered, whole), *found], key=lambda one: one[0].saved)
     form = named_or(samples, "frequency", [own])
     signals = form.added or [
-        np.sum([w * of(item) for w, of in zip(own.weights, passed, strict=True)], axis=0)
+        np.sum(
+            [w * of(item) for w, of in zip(own.weights, passed, strict=True)], axis=0
+        )
         for item in samples.compared
     ]
     power, edges = _power(samples, signals)
@@ -62,7 +63,7 @@ def frequency(
     start, end = float(edges[first]), float(edges[last + 1])
     share = samples.share(form.explained, form.freedom)
     inside = share * float(np.sum(power[first : last + 1]) / max(power.sum(), 1e-300))
-    told = "" if distortion is None else distortion.told
+    told = "" if distortion is None else distortion.told + distortion.told_repeating
     like = form.words if form.named else "linear in the simulated output"
     return View(
         view="frequency",
@@ -97,9 +98,11 @@ def _bands(spectra: Spectra) -> list[list[Passed]]:
     excited = np.flatnonzero(spectra.excited)
     if not len(excited):
         return [[partial(_passed, band=(0.0, np.inf), turn=1.0)]]
-    low, high = spectra.edges[excited[0]], spectra.edges[excited[-1] + 1]
+    low, high = spectra.low[excited[0]], spectra.high[excited[-1]]
     bands = pairwise(np.geomspace(low, high, BANDS + 1))
-    return [[partial(_passed, band=ends, turn=turn) for turn in (1, 1j)] for ends in bands]
+    return [
+        [partial(_passed, band=ends, turn=turn) for turn in (1, 1j)] for ends in bands
+    ]
 
 
 def _passed(item: Compared, band: tuple[float, float], turn: complex) -> FloatArray:
@@ -124,15 +127,13 @@ def _power(
 
 def _spectrum(samples: Samples, spectra: Spectra) -> Picture:
     """Draw amplitude densities of simulation, residual, its linear part and floor."""
-    there = np.isfinite(spectra.frequency)
-    noise = spectra.noise_power[there]
     # White noise of variance s^2 at a sampling interval dt has the density 2 s^2 dt.
     lengths = [len(item.record) for item in samples.compared]
     steps = [item.record.dt for item in samples.compared]
-    density = 2 * samples.noise * np.average(steps, weights=lengths) / noise
+    density = 2 * samples.noise * np.average(steps, weights=lengths) / spectra.noise
     linear = spectra.power(R) * spectra.coherence(R, S)
-    rows = (spectra.power(S), spectra.power(R), linear, spectra.noise_power)
-    at, *lines = thinned(spectra.frequency[there], *(density * x[there] for x in rows))
+    rows = (spectra.power(S), spectra.power(R), linear, spectra.noise)
+    at, *lines = thinned(spectra.frequency, *(density * row for row in rows))
     simulated, residual, part, floor = (np.sqrt(line) for line in lines)
     drawn = (
         series("simulation", at, simulated, "simulation"),
@@ -151,27 +152,24 @@ def _response(spectra: Spectra) -> Picture:
     A harmonic that the simulation makes by itself has no response.
     """
     there = spectra.excited & (spectra.power(S) > 0)
-    ratio = 1 + spectra.matrix[R, S][there] / spectra.power(S)[there]
-    at, real, imaginary = thinned(spectra.frequency[there], ratio.real, ratio.imag)
-    found = real + 1j * imaginary
+    ratio = 1 + spectra.matrix[R, S] / np.maximum(spectra.power(S), 1e-300)
+    found = spectra.frequency, ratio.real, ratio.imag, spectra.coherence(R, U)
+    at, real, imaginary, coherence = thinned(*(row[there] for row in found))
+    ratio = real + 1j * imaginary
     rows = (
-        (Axis("magnitude"), np.abs(found), 1.0),
-        (Axis("phase", "degrees"), np.degrees(np.angle(found)), 0.0),
+        (Axis("magnitude"), np.abs(ratio), 1.0),
+        (Axis("phase", "degrees"), np.degrees(np.angle(ratio)), 0.0),
+        (Axis("coherence of the gap"), coherence, None),
     )
-    panels = tuple(
-        Panel(
-            FREQUENCY,
-            axis,
-            (
-                series("measurement", at, values),
-                series("right", at[[0, -1]], [right, right]),
-            ),
-        )
-        for axis, values, right in rows
-        if len(at)
-    )
+    panels = []
+    for axis, values, right in rows:
+        lines = [series("measurement", at, values)]
+        if right is not None and len(at):
+            lines.append(series("right", at[[0, -1]], [right, right]))
+        panels.append(Panel(FREQUENCY, axis, tuple(lines)))
     words = (
-        "Best linear approximation of measurement over simulation; dashed where the "
-        "simulation is right"
+        "Best linear approximation of measurement over simulation, dashed where the "
+        "simulation is right, and coherence of the gap with the input: one where a "
+        "linear path leaves it, less where distortion or something else does"
     )
-    return Picture("response", words, panels)
+    return Picture("response", words, tuple(panels))

@@ -14,7 +14,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, cast
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,12 +37,10 @@ LINES = 16
 """Fewest excited lines of a band: twice the numbers that are fitted."""
 DAMPINGS, FREQUENCIES = 12, 25
 """Of the grid in which a mode is searched."""
-
-
-EXCITED = 1e-3
-"""Of the strongest line's input power, that an excited line holds."""
 EDGE = 1e-3
 """Of a range: a fit that comes so near to its end has none, relative to its value."""
+EXCITED = 1e-3
+"""Of the strongest line's input power, that an excited line holds."""
 ENOUGH = 2**15
 """Samples of a record without periods that are looked at, from its end on."""
 
@@ -161,13 +160,9 @@ def fit_mode(
     """
     found: Mode | None = None
     half = float(np.clip(2 * WIDE * damping, 2 * NARROWEST, WIDEST))
-    for searched in (True, False, False):
+    for search in (True, False, False):
         band = _Band.of(level, frequency, half, integrals)
-        if band is None:
-            return None
-        if searched:
-            frequency, damping = band.searched()
-        found = band.fitted(frequency, damping)
+        found = None if band is None else band.fitted(frequency, damping, search)
         if found is None:
             return None
         frequency, damping = found.frequency, found.damping
@@ -189,23 +184,37 @@ class _Band:
     ) -> _Band | None:
         parts = []
         for one in level:
-            inside = np.abs(one.frequency / centre - 1) <= half
-            near = one.within(inside)
-            near = near.within(near.excited)
+            near = one.within(
+                (np.abs(one.frequency / centre - 1) <= half) & one.excited
+            )
             away = near.frequency / centre - 1
-            if len(away) >= LINES and _on_both_sides(away, half):
+            # Lines on both sides of the middle, half way out at least.
+            if len(away) >= LINES and away.min() < -half / 2 < half / 2 < away.max():
                 parts.append(near)
         return cls(centre, tuple(parts), integrals) if parts else None
 
-    @property
-    def ends(self) -> tuple[float, float]:
-        """The lowest and the highest frequency, over the middle of the band."""
-        low = min(float(one.frequency[0]) for one in self.lines)
-        high = max(float(one.frequency[-1]) for one in self.lines)
-        return low / self.centre, high / self.centre
+    def fitted(self, frequency: float, damping: float, search: bool) -> Mode | None:
+        """Fit the mode from a start; none where it leaves the band or is too sharp."""
+        from scipy.optimize import least_squares  # late: it takes long to load
+
+        low = min(float(one.frequency[0]) for one in self.lines) / self.centre
+        high = max(float(one.frequency[-1]) for one in self.lines) / self.centre
+        ends = np.log([[low, self._sharpest], [high, 1.0]])
+        start = np.log([frequency / self.centre, damping])
+        if search:
+            grid = product(
+                np.log(np.linspace(low, high, FREQUENCIES))[1:-1],
+                np.linspace(ends[0, 1], np.log(0.6), DAMPINGS),
+            )
+            start = min(map(np.array, grid), key=lambda at: _square(self._residual(at)))
+        inside = np.clip(start, ends[0] + EDGE, ends[1] - EDGE)
+        best = least_squares(self._residual, inside, x_scale=0.1, bounds=ends)
+        if np.any(np.abs(best.x - ends) < EDGE):
+            return None
+        return self._mode(*np.exp(best.x), best.fun, best.jac)
 
     @property
-    def sharpest(self) -> float:
+    def _sharpest(self) -> float:
         """Damping ratio of a peak as wide as the lines are apart.
 
         One that is sharper stands on a single line, and may be that line's noise.
@@ -213,76 +222,42 @@ class _Band:
         steps = [float(np.median(np.diff(one.frequency))) for one in self.lines]
         return min(steps) / (2 * self.centre)
 
-    def searched(self) -> tuple[float, float]:
-        """Give the best frequency, in Hz, and damping ratio of a grid."""
-        _, nu, zeta = min(
-            (float(np.sum(np.square(self._residual(np.log([nu, zeta]))))), nu, zeta)
-            for nu in np.linspace(*self.ends, FREQUENCIES)[1:-1]
-            for zeta in np.geomspace(self.sharpest, 0.6, DAMPINGS)
-        )
-        return float(nu) * self.centre, float(zeta)
-
-    def fitted(self, frequency: float, damping: float) -> Mode | None:
-        """Fit the mode from a start; none where it leaves the band or is too sharp."""
-        from scipy.optimize import least_squares  # late: it takes long to load
-
-        low, high = self.ends
-        ends = np.log([[low, self.sharpest], [high, 1.0]])
-        start = np.log([frequency / self.centre, damping])
-        inside = np.clip(start, ends[0] + EDGE, ends[1] - EDGE)
-        best = least_squares(self._residual, inside, x_scale=0.1, bounds=ends).x
-        if np.any(np.abs(best - ends) < EDGE):
-            return None
-        return self._mode(best)
-
-    def _residual(self, at: FloatArray) -> FloatArray:
-        """Give what B and T cannot explain for a pole: real and imaginary parts."""
-        parts = []
-        for columns, y in self._linear(at):
-            basis, _ = np.linalg.qr(columns)
-            parts.append(y - basis @ (basis.conj().T @ y))
-        whole = np.concatenate(parts)
-        return np.concatenate([whole.real, whole.imag])
-
-    def _linear(self, at: FloatArray) -> list[tuple[ComplexArray, ComplexArray]]:
-        """Give the columns of B, then of T, and the output, of each record."""
-        nu, zeta = np.exp(at)
+    def _linear(self, nu: float, zeta: float) -> list[ComplexArray]:
+        """Give the columns of B, then of T, of each record."""
         found = []
         for one in self.lines:
             s = 1j * one.frequency / self.centre
             powers = np.vander(s - 1j, DEGREE + 1, increasing=True)
             powers = powers / (s**2 + 2 * zeta * nu * s + nu**2)[:, None]
             columns = powers * one.u[:, None]
-            if one.ends:
-                columns = np.hstack([columns, powers])
-            found.append((columns, one.y))
+            found.append(np.hstack([columns, powers]) if one.ends else columns)
         return found
 
-    def _mode(self, at: FloatArray) -> Mode:
+    def _residual(self, at: FloatArray) -> FloatArray:
+        """Give what B and T cannot explain for a pole: real and imaginary parts."""
+        parts = []
+        for columns, one in zip(self._linear(*np.exp(at)), self.lines, strict=True):
+            basis, _ = np.linalg.qr(columns)
+            parts.append(one.y - basis @ (basis.conj().T @ one.y))
+        whole = np.concatenate(parts)
+        return np.concatenate([whole.real, whole.imag])
+
+    def _mode(
+        self, nu: float, zeta: float, residual: FloatArray, slopes: FloatArray
+    ) -> Mode:
         """Give the numbers of the mode, and how sure they are."""
-        nu, zeta = (float(value) for value in np.exp(at))
-        residual = self._residual(at)
-        linear = self._linear(at)
-        facts = len(residual) - 2 - 2 * sum(columns.shape[1] for columns, _ in linear)
-        noise = float(residual @ residual) / max(facts, 1)
-        step = 1e-5
-        slopes = np.column_stack(
-            [
-                (self._residual(at + step * e) - self._residual(at - step * e))
-                / (2 * step)
-                for e in np.eye(2)
-            ]
-        )
-        covariance = noise * np.linalg.pinv(slopes.T @ slopes)
-        errors = np.sqrt(np.diag(covariance))
+        linear = self._linear(nu, zeta)
+        facts = len(residual) - 2 - 2 * sum(columns.shape[1] for columns in linear)
+        noise = _square(residual) / max(facts, 1)
+        errors = np.sqrt(noise * np.diag(np.linalg.pinv(slopes.T @ slopes)))
         # The numerator at the pole, over all records alike, weighted by their power.
         here = np.array([1.0, 1j * (nu - 1), (1j * (nu - 1)) ** 2])
         value, weights, spread = 0.0 + 0.0j, 0.0, 0.0
-        for columns, y in linear:
-            solved = np.linalg.lstsq(columns, y, rcond=None)[0]
+        for columns, one in zip(linear, self.lines, strict=True):
+            found = np.linalg.lstsq(columns, one.y, rcond=None)[0]
             inverse = np.linalg.pinv(columns.conj().T @ columns)
             weight = float(np.sum(np.abs(columns[:, 0]) ** 2))
-            value += weight * complex(here @ solved[: DEGREE + 1])
+            value += weight * complex(here @ found[: DEGREE + 1])
             own = inverse[: DEGREE + 1, : DEGREE + 1]
             spread += weight**2 * 2 * noise * float(np.real(here @ own @ here.conj()))
             weights += weight
@@ -292,19 +267,17 @@ class _Band:
         scale = (2 * np.pi) ** (2 - self.integrals)
         gain = abs(value) * self.centre**2 * scale / frequency**self.integrals
         # A pole that is damped more has a numerator that is larger alike.
-        relative = np.array([errors[0], errors[1], blurred, 0.0])
-        relative[3] = float(np.hypot(of_gain, errors[1]))
-        relative[2] = float(np.hypot(relative[2], relative[3]))
+        gain_error = float(np.hypot(of_gain, errors[1]))
         held = sum(float(np.sum(np.abs(one.y) ** 2)) for one in self.lines)
         return Mode(
             frequency,
             zeta,
             taken / (2 * nu * moved),
             float(gain),
-            relative,
+            np.array([*errors, np.hypot(blurred, gain_error), gain_error]),
             float(np.sqrt(held / len(self.lines))),
             sum(float(np.sum(np.abs(one.missed) ** 2)) for one in self.lines),
-            float(residual @ residual),
+            _square(residual),
         )
 
     def _power(
@@ -328,6 +301,5 @@ def excited_lines(u: ComplexArray) -> NDArray[np.bool_]:
     return np.asarray(power > EXCITED * float(np.max(power, initial=0.0)))
 
 
-def _on_both_sides(away: FloatArray, half: float) -> bool:
-    """Tell whether lines lie on both sides of the middle, half way out at least."""
-    return cast(bool, away.min() < -half / 2 and away.max() > half / 2)
+def _square(values: FloatArray) -> float:
+    return float(values @ values)

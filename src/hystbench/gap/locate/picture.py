@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -137,8 +136,3 @@ def mean_in(edges: FloatArray, at: FloatArray, values: FloatArray) -> FloatArray
     held, _ = np.histogram(at, edges)
     total, _ = np.histogram(at, edges, weights=values)
     return np.where(held > 0, total / np.maximum(held, 1), np.nan)
-
-
-def in_units(names: Sequence[str]) -> str:
-    """Join units as a product."""
-    return " ".join(name for name in names if name)

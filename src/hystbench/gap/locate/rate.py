@@ -31,7 +31,10 @@ def rate(samples: Samples) -> View:
     powers = [np.sign(samples.speed) * speed**exponent for exponent in EXPONENTS]
     wider = [power * factor for power in powers for factor in (1.0, size)]
     odd = fit_form(samples, "an odd function of the rate", powers)
-    forms = [odd, fit_form(samples, "a loop that widens with rate and amplitude", wider)]
+    forms = [
+        odd,
+        fit_form(samples, "a loop that widens with rate and amplitude", wider),
+    ]
     form = named_or(samples, "rate", forms)
     start, end = narrowest(np.abs(samples.speed), form.fitted**2)
     unit = f"{samples.units[0]}/s"
@@ -52,7 +55,9 @@ def rate(samples: Samples) -> View:
         saved=form.saved,
         named=form.named,
         pictures=() if plane is None else (plane,),
-        not_drawn=("the residual by rate, as the input rests",) if plane is None else (),
+        not_drawn=("the residual by rate, as the input rests",)
+        if plane is None
+        else (),
     )
 
 

@@ -34,7 +34,9 @@ def record(samples: Samples) -> View:
     own = fit_form(samples, "gains and offsets", list(columns), by_record=True)
     there = np.zeros(columns.shape[1])
     there[samples.slices[int(np.argmax(shares))]] = 1.0
-    single = fit_form(samples, "a gain and an offset", list(columns * there), searched=1)
+    single = fit_form(
+        samples, "a gain and an offset", list(columns * there), searched=1
+    )
     where = names[first] if first == last else f"{names[first]} to {names[last]}"
     taken = samples.share(own.explained, own.freedom)
     return View(

@@ -89,7 +89,9 @@ def _picture(samples: Samples) -> Picture:
     roles: tuple[Role, Role] = ("rising", "falling")
     lines, start = [], 0.0
     frequencies = samples.main_frequencies.tolist()
-    for k, (item, frequency) in enumerate(zip(samples.compared, frequencies, strict=True)):
+    for k, (item, frequency) in enumerate(
+        zip(samples.compared, frequencies, strict=True)
+    ):
         n, dt = len(item.record), item.record.dt
         period = item.record.period_samples or round(1 / max(frequency * dt, 1 / n))
         # Whole periods, so that what repeats cancels alike in every block.

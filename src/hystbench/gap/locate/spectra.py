@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,126 +19,46 @@ U, R, S = range(3)
 """Input, residual and simulated output, as rows and columns of a spectral matrix."""
 SEGMENTS = 4
 """Of a record without as many periods, that overlap by half."""
-OVERLAP = 1 + 2 / 36
-"""What the overlap takes from them: neighbours under a Hann window share a sixth
-(Welch 1967)."""
-HANN = 35 / 18
-"""What a Hann window does to the variance of a sum over lines: n sum w^4 over the
-square of sum w^2."""
-BINS = 400
-"""Of the common axis, evenly spaced in the logarithm of frequency."""
+BINS = 401
+"""Edges of the common axis, evenly spaced in the logarithm of frequency."""
 EXCITED = 1e-5
 """Of the strongest bin's input power, that an excited bin holds."""
-FACTS = 3.0
-"""Averages of a bin, at least: one alone is coherent with anything."""
-
-
-@dataclass(frozen=True)
-class Lines:
-    """Spectral lines of one record, averaged over periods or segments.
-
-    Parameters
-    ----------
-    frequency : ndarray, shape (m,)
-        In Hz.
-    matrix : ndarray of complex, shape (3, 3, m)
-        Auto- and cross-spectra of input, residual and simulation: row times the
-        conjugate of column. Sums over lines are mean squares.
-    count : float
-        Independent averages of a line.
-    spread : float
-        By what a window makes neighbours alike.
-    samples : int
-        Of the record.
-    """
-
-    frequency: FloatArray
-    matrix: ComplexArray
-    count: float
-    spread: float
-    samples: int
 
 
 @dataclass(frozen=True)
 class Spectra:
-    """Spectra summed over the records in each bin, weighted by their lengths.
+    """Spectra summed over the lines of all records in each bin.
 
     Parameters
     ----------
-    lines : tuple of Lines
-    noise : float
-        Variance of the noise floor.
+    low, high : ndarray, shape (m,)
+        Edges in Hz of the bins that hold lines.
+    matrix : ndarray of complex, shape (3, 3, m)
+        Auto- and cross-spectra of input, residual and simulation: row times the
+        conjugate of column. Sums over bins are mean squares over all samples.
+    noise : ndarray, shape (m,)
+        Mean square that the noise floor gives a bin.
     """
 
-    lines: tuple[Lines, ...]
-    noise: float
+    low: FloatArray
+    high: FloatArray
+    matrix: ComplexArray
+    noise: FloatArray
 
-    @cached_property
-    def edges(self) -> FloatArray:
-        """Edges of the bins, in Hz."""
-        low = min(float(one.frequency[0]) for one in self.lines)
-        high = max(float(one.frequency[-1]) for one in self.lines)
-        return np.geomspace(0.999 * low, 1.001 * high, BINS + 1)
-
-    def gathered(
-        self, of: Callable[[Lines], FloatArray], edges: FloatArray | None = None
-    ) -> FloatArray:
-        """Sum real values of lines in each bin, a mean over records by length."""
-        ends = self.edges if edges is None else edges
-        total = sum(one.samples for one in self.lines)
-        found = np.zeros(len(ends) - 1)
-        for one in self.lines:
-            held, _ = np.histogram(one.frequency, ends, weights=of(one))
-            found += one.samples / total * held
-        return found
-
-    @cached_property
-    def matrix(self) -> ComplexArray:
-        """Spectral matrix of each bin, shape (3, 3, bins)."""
-
-        def of(row: int, column: int) -> ComplexArray:
-            real = self.gathered(lambda one: one.matrix[row, column].real)
-            return real + 1j * self.gathered(lambda one: one.matrix[row, column].imag)
-
-        return np.array([[of(row, column) for column in range(3)] for row in range(3)])
+    @property
+    def frequency(self) -> FloatArray:
+        """Middle of each bin, in Hz."""
+        return np.asarray(np.sqrt(self.low * self.high))
 
     def power(self, row: int) -> FloatArray:
         """Mean square of a signal in each bin."""
         return self.matrix[row, row].real
 
     @cached_property
-    def frequency(self) -> FloatArray:
-        """Mean frequency of each bin that holds lines, NaN of others."""
-        held = self.gathered(lambda one: np.ones_like(one.frequency))
-        total = self.gathered(lambda one: one.frequency)
-        return np.where(held > 0, total / np.maximum(held, 1e-300), np.nan)
-
-    @cached_property
-    def noise_power(self) -> FloatArray:
-        """Mean square that the noise floor gives each bin."""
-        return self.gathered(
-            lambda one: np.full(len(one.frequency), self.noise / len(one.frequency))
-        )
-
-    @cached_property
-    def count(self) -> FloatArray:
-        """Independent facts of each bin: averages, and lines by the input's power."""
-        held = self.gathered(lambda one: one.matrix[U, U].real)
-        total = sum(one.samples for one in self.lines)
-        square = self.gathered(
-            lambda one: one.samples
-            / total
-            * one.matrix[U, U].real ** 2
-            * (one.spread / one.count)
-        )
-        return held**2 / np.maximum(square, 1e-300)
-
-    @cached_property
     def excited(self) -> NDArray[np.bool_]:
-        """Bins in which the input has power, and averages enough to tell anything."""
+        """Bins in which the input has power."""
         power = self.power(U)
-        strong = power > EXCITED * float(np.max(power))
-        return np.asarray(strong & (self.count >= FACTS))
+        return np.asarray(power > EXCITED * float(np.max(power)))
 
     def coherence(self, a: int, b: int) -> FloatArray:
         """Coherence of two signals in each bin, from 0 to 1."""
@@ -148,30 +67,51 @@ class Spectra:
 
 
 def take_spectra(samples: Samples) -> Spectra:
-    """Average the spectra of each record by Welch's method."""
-    return Spectra(tuple(map(_lines, samples.compared)), samples.noise)
+    """Average the spectra of each record by Welch's method, and add the records."""
+    lines = [_lines(item) for item in samples.compared]
+    frequencies = np.concatenate([frequency for frequency, _ in lines])
+    edges = np.geomspace(0.999 * frequencies.min(), 1.001 * frequencies.max(), BINS)
+    total = sum(len(item.record) for item in samples.compared)
+    # The noise is white: each line of a record has as much of it.
+    weights = [
+        len(item.record) / total * np.vstack([matrix, np.full_like(matrix[:1], share)])
+        for item, (_, matrix) in zip(samples.compared, lines, strict=True)
+        for share in [samples.noise / matrix.shape[1]]
+    ]
+    place = np.digitize(frequencies, edges) - 1
+    held = np.zeros((len(edges) - 1, 10), dtype=np.complex128)
+    np.add.at(held, place, np.hstack(weights).T)
+    there = np.bincount(place, minlength=len(held)) > 0
+    *matrix, noise = held[there].T
+    found = np.array(matrix).reshape(3, 3, -1)
+    return Spectra(edges[:-1][there], edges[1:][there], found, noise.real)
 
 
-def _lines(item: Compared) -> Lines:
-    """Average over whole periods where there are enough, else over segments."""
+def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
+    """Average over whole periods where there are enough, else over segments.
+
+    Returns
+    -------
+    frequency : ndarray, shape (m,)
+    matrix : ndarray of complex, shape (9, m)
+    """
     from scipy.signal import csd  # late: it takes long to load
 
     record = item.record
     signals = np.stack([record.u, item.residual, item.simulated])
     n, period = len(record), record.period_samples
-    repeats = bool(period) and n >= SEGMENTS * (period or n)
-    if repeats and period:
-        runs = settled(signals, period)
-        signals, count = runs.reshape(3, -1), float(runs.shape[1])
-        about = {"window": "boxcar", "nperseg": period, "noverlap": 0}
-    else:
-        size = n // SEGMENTS
-        count = (2 * SEGMENTS - 1) / OVERLAP
-        about = {"window": "hann", "nperseg": size, "noverlap": size // 2}
+    size, window, overlap = n // SEGMENTS, "hann", n // SEGMENTS // 2
+    if period and n >= SEGMENTS * period:
+        signals = settled(signals, period).reshape(3, -1)
+        size, window, overlap = period, "boxcar", 0
     centred = signals - signals.mean(axis=1, keepdims=True)
     frequency, matrix = csd(
-        centred[None], centred[:, None], 1 / record.dt, detrend=False, **about
+        centred[None],
+        centred[:, None],
+        1 / record.dt,
+        window=window,
+        nperseg=size,
+        noverlap=overlap,
+        detrend=False,
     )
-    step = float(frequency[1])
-    spread = 1.0 if repeats else HANN
-    return Lines(frequency[1:], matrix[..., 1:] * step, count, spread, n)
+    return frequency[1:], matrix.reshape(9, -1)[:, 1:] * frequency[1]

@@ -8,8 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.gap.floor import periodogram
-from hystbench.gap.locate.coherence import Coherence
-from hystbench.gap.locate.distortion import Distortion
 from hystbench.gap.locate.forms import (
     best,
     fit_form,
@@ -18,7 +16,6 @@ from hystbench.gap.locate.forms import (
     p_value_of,
 )
 from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.spectra import HANN
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.gap.once import shows_a_path
 from hystbench.record import FloatArray
@@ -30,6 +27,9 @@ ORDERS = 4
 """Half-periods of the fastest drift within a record."""
 NEIGHBOURS = 48
 """Bins of a periodogram over which its own level is read."""
+HANN = 35 / 18
+"""What a Hann window does to the variance of a mean over bins: n sum w^4 over the
+square of sum w^2."""
 MEDIAN_EFFICIENCY = float(np.log(2) ** 2)
 """Variance of the mean over that of the median scaled to it, of exponential values."""
 CAUSED = 1e-5
@@ -38,9 +38,7 @@ STANDS_OUT = 10.0
 """Times the level around it, that a line holds."""
 
 
-def unexplained(
-    samples: Samples, distortion: Distortion | None, coherence: Coherence | None
-) -> View:
+def unexplained(samples: Samples) -> View:
     """Fit a lone line and drift, each record's own.
 
     A line must stand out in the residual, at one frequency in at least half of the
@@ -79,8 +77,6 @@ def unexplained(
         axis, unit, within = "frequency", "Hz", f"at {number(hertz)} Hz"
     p_value = min(1.0, 2 * min(line_p, p_value_of(samples, drift)))
     share = samples.share(form.explained, form.freedom)
-    told = "" if coherence is None else coherence.told
-    told += "" if distortion is None else distortion.told_repeating
     return View(
         view="unexplained",
         axis=axis,
@@ -91,14 +87,10 @@ def unexplained(
         p_value=p_value_of(samples, form) if form.named else p_value,
         sentence=(
             f"{percent(share)} of the gap is {form.words}, which the input does not "
-            f"explain, between {number(start)} and {number(end)} {unit} {within}.{told}"
+            f"explain, between {number(start)} and {number(end)} {unit} {within}."
         ),
         saved=form.saved,
         named=form.named,
-        pictures=() if coherence is None else (coherence.picture,),
-        not_drawn=()
-        if coherence
-        else ("coherence, as records are too short or the input never moves",),
     )
 
 

@@ -8,9 +8,10 @@ that a force inside a mechanism that has other modes beside it needs no rule of 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from textwrap import wrap
+from typing import TypeVar
 
 from hystbench.gap.report.parts import Part, Stage, Whose
 
@@ -93,6 +94,9 @@ class Label:
     words: tuple[str, ...]
 
 
+Placed = TypeVar("Placed", Box, Sum, Label)
+
+
 @dataclass(frozen=True)
 class Drawn:
     """What is drawn, anywhere."""
@@ -104,24 +108,20 @@ class Drawn:
 
     def moved(self, x: float, y: float) -> Drawn:
         """Move all to the right and up."""
-        return Drawn(
-            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.boxes),
-            tuple(
-                replace(item, points=tuple((a + x, b + y) for a, b in item.points))
-                for item in self.lines
-            ),
-            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.sums),
-            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.labels),
+
+        def placed(items: tuple[Placed, ...]) -> tuple[Placed, ...]:
+            return tuple(replace(one, x=one.x + x, y=one.y + y) for one in items)
+
+        lines = tuple(
+            replace(line, points=tuple((a + x, b + y) for a, b in line.points))
+            for line in self.lines
         )
+        return Drawn(placed(self.boxes), lines, placed(self.sums), placed(self.labels))
 
     def __add__(self, other: Drawn) -> Drawn:
         """Draw both."""
-        return Drawn(
-            self.boxes + other.boxes,
-            self.lines + other.lines,
-            self.sums + other.sums,
-            self.labels + other.labels,
-        )
+        names = (field.name for field in fields(self))
+        return Drawn(*(getattr(self, name) + getattr(other, name) for name in names))
 
 
 @dataclass(frozen=True)
@@ -300,6 +300,7 @@ def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
     left = start + RADIUS + LEAD + (inner - group.width) / 2
     end = start + RADIUS + LEAD + inner + STUB
     width = end + STUB
+    loop, reach = _branches(boxes, end, start, -group.down)
     drawn = group.drawn.moved(left, 0.0) + Drawn(
         lines=(
             Line(((start + RADIUS, 0.0), (left, 0.0)), group.arrow),
@@ -307,26 +308,7 @@ def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
         ),
         sums=(Sum(start, 0.0, minus=True),),
     )
-    y, before, last = -group.down, 0.0, len(boxes) - 1
-    for k, box in enumerate(boxes):
-        middle = y - SPACE - box.height / 2
-        x = (start + end - box.width) / 2
-        placed = replace(box, x=x, y=middle - box.height / 2)
-        foot = (start, before - RADIUS)
-        back: tuple[Line, ...] = (
-            Line(((end, before), (end, middle), (x + box.width, middle)), arrow=True),
-        )
-        if k == last:
-            back += (Line(((x, middle), (start, middle), foot), arrow=True),)
-        else:  # forces are summed on their way back
-            back += (
-                Line(((x, middle), (start + RADIUS, middle)), arrow=True),
-                Line(((start, middle + RADIUS), foot), arrow=True),
-            )
-            drawn += Drawn(sums=(Sum(start, middle),))
-        drawn += Drawn(boxes=(placed,), lines=back)
-        y, before = middle - box.height / 2, middle
-    return _Group(width, group.up, -y, drawn)
+    return _Group(width, group.up, -reach, drawn + loop)
 
 
 def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
@@ -335,7 +317,7 @@ def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
     inner = max(group.width, *(box.width for box in boxes))
     left = STUB + LEAD + (inner - group.width) / 2
     end = STUB + LEAD + inner + LEAD + RADIUS
-    width = end + RADIUS
+    above, reach = _branches(boxes, STUB, end, group.up)
     drawn = group.drawn.moved(left, 0.0) + Drawn(
         lines=(
             Line(((0.0, 0.0), (left, 0.0)), group.arrow),
@@ -343,27 +325,49 @@ def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
         ),
         sums=(Sum(end, 0.0),),
     )
-    y, before, last = group.up, 0.0, len(boxes) - 1
+    return _Group(end + RADIUS, reach, group.down, drawn + above, arrow=False)
+
+
+def _branches(
+    boxes: Sequence[Box], tap: float, total: float, edge: float
+) -> tuple[Drawn, float]:
+    """Stack boxes on ways from where a signal is tapped to where they are summed.
+
+    Parameters
+    ----------
+    boxes : sequence of Box
+    tap, total : float
+        Where, along the signal's line, the ways begin and end.
+    edge : float
+        How far from the line the stack begins; below zero it goes down.
+
+    Returns
+    -------
+    drawn : Drawn
+    reach : float
+        How far from the line it ends.
+    """
+    up = 1 if edge > 0 else -1
+    onward = 1 if total > tap else -1
+    drawn, before = Drawn(), 0.0
     for k, box in enumerate(boxes):
-        middle = y + SPACE + box.height / 2
-        x = (STUB + end - box.width) / 2
-        placed = replace(box, x=x, y=middle - box.height / 2)
-        head = (end, before + RADIUS)
-        branch: tuple[Line, ...] = (
-            Line(((STUB, before), (STUB, middle), (x, middle)), arrow=True),
-        )
-        if k == last:
-            way = ((x + box.width, middle), (end, middle), head)
-            branch += (Line(way, arrow=True),)
-        else:
-            branch += (
-                Line(((x + box.width, middle), (end - RADIUS, middle)), arrow=True),
-                Line(((end, middle - RADIUS), head), arrow=True),
+        middle = edge + up * (SPACE + box.height / 2)
+        x = (tap + total - box.width) / 2
+        near, far = (x, x + box.width)[::onward]
+        ways: list[tuple[Point, ...]] = [((tap, before), (tap, middle), (near, middle))]
+        head = (total, before + up * RADIUS)
+        if k == len(boxes) - 1:
+            ways.append(((far, middle), (total, middle), head))
+        else:  # what comes from further out is added first
+            lines = (
+                Line(((far, middle), (total - onward * RADIUS, middle)), arrow=True),
+                Line(((total, middle - up * RADIUS), head), arrow=True),
             )
-            drawn += Drawn(sums=(Sum(end, middle),))
-        drawn += Drawn(boxes=(placed,), lines=branch)
-        y, before = middle + box.height / 2, middle
-    return _Group(width, y, group.down, drawn, arrow=False)
+            drawn += Drawn(lines=lines, sums=(Sum(total, middle),))
+        placed = replace(box, x=x, y=middle - box.height / 2)
+        drawn += Drawn((placed,), tuple(Line(way, arrow=True) for way in ways))
+        edge, before = middle + up * box.height / 2, middle
+    return drawn, edge
 
 
 def _with_spill(group: _Group, part: Part, caught: bool) -> _Group:
