@@ -12,7 +12,8 @@ from hystbench.gap.compared import Compared
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.floor import noise_floor
 from hystbench.gap.locate import locate
-from hystbench.gap.locate.level import WORDS, picture_of, take_levels
+from hystbench.gap.locate.level import picture_of, take_levels
+from hystbench.gap.locate.moving import WORDS
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.schema import VIEW
 from hystbench.model import load_model

@@ -240,9 +240,7 @@ def decide(
         reason = "; ".join(item["sentence"] for item in findings)
     reason += f"; {used_up}" if used_up else ""
     ladder = rungs(start, named)
-    where = locate(
-        compared, floor, contributions(ladder) if verdict == "named" else ()
-    )
+    where = locate(compared, floor, contributions(ladder) if verdict == "named" else ())
     say(where.views[0].sentence)
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)

@@ -85,9 +85,9 @@ def locate(
     lies. Without a name a view fits what any function of its axis could explain. Any
     gap lies somewhere on every axis, and a free enough map holds all of it, so the
     largest share says little. A form saves description length: half of 300 facts times
-    the log of how much smaller the residual's power gets, less half of log 300 for every
-    parameter (the Bayesian information criterion, the facts fixed because a model's
-    error is not white). So of two views that explain as much the simpler comes first,
+    the log of how much smaller the residual's power gets, less half of log 300 for
+    every parameter (the Bayesian information criterion, the facts fixed because a
+    model's error is not white). So of two views that explain as much the simpler comes first,
     and no view wins by freedom.
     """
     samples = take_samples(compared, floor, contributions)

@@ -70,7 +70,7 @@ class Lines:
         energy, scatter, count, freedom = self.sums
         held = energy - 2 * noise * count
         held[BETWEEN] += float(np.sum(scatter - noise * freedom))
-        return np.maximum(held, 0.0)
+        return np.asarray(np.maximum(held, 0.0))
 
 
 @dataclass(frozen=True)

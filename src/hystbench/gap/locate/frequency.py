@@ -116,7 +116,7 @@ def _passed(item: Compared, band: tuple[float, float], turn: complex) -> FloatAr
 def _power(
     samples: Samples, signals: Sequence[FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Give the power of a signal of each record in bins of frequency, and their edges."""
+    """Give the power of signals in bins of frequency, and the edges of these."""
     pairs = zip(signals, samples.compared, strict=True)
     found = [periodogram(signal, item.record.dt) for signal, item in pairs]
     power = np.concatenate([each[1:] for each, _ in found])

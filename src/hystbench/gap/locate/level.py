@@ -1,197 +1,37 @@
-"""The view by level: how modes move when the input grows, and what that speaks for.
-
-A linear device has the same modes at every level. What moves, and how, tells the class
-of what is missing [1]_ [2]_.
-
-References
-----------
-.. [1] K. Worden, G. R. Tomlinson, Nonlinearity in Structural Dynamics, IOP Publishing,
-   2001, chapters 2 and 3.
-.. [2] L. Lauwers, J. Schoukens, R. Pintelon, M. Enqvist, "A nonlinear block structure
-   identification procedure using frequency response function measurements", IEEE Trans.
-   Instrumentation and Measurement 57 (2008) 2257-2264.
-"""
+"""The view by level: how modes move when the input grows."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy import special
 
 from hystbench.gap.compared import Compared
-from hystbench.gap.locate.dominant import Found, find_modes
+from hystbench.gap.locate.dominant import find_modes
 from hystbench.gap.locate.forms import saved
 from hystbench.gap.locate.mode import LINES, Lines, Mode, fit_mode, lines_of
+from hystbench.gap.locate.moving import Moving
 from hystbench.gap.locate.picture import Axis, Panel, Picture, Role, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.quantities import quantity_of
-from hystbench.record import FloatArray
-
-Class = Literal[
-    "hardening",
-    "softening",
-    "clearance",
-    "micro-slip or hysteresis",
-    "Coulomb friction",
-    "damping that grows with speed",
-    "a static curve before or behind",
-    "none",
-]
-WORDS: dict[Class, str] = {
-    "hardening": "hardening, as of a spring that stiffens or a stop",
-    "softening": "softening, as of a spring that yields",
-    "clearance": "a clearance, as the frequency rises from the lowest levels",
-    "micro-slip or hysteresis": "micro-slip or hysteresis, as of a joint that slips",
-    "Coulomb friction": "Coulomb friction, which matters less in a larger motion",
-    "damping that grows with speed": "damping that grows with speed, as drag does",
-    "a static curve before or behind": "a static curve before or behind the dynamics",
-    "none": "a linear mode, as far as these levels show",
-}
 
 APART = 1.2
 """Of two input levels, rms over rms, at least."""
 FEWEST = 3
 """Levels that show how something moves."""
-SURE = 3.0
-"""Standard errors by which a number has to move."""
-STEADY = np.array([1e-4, 1e-2, 1e-2, 1e-2])
-"""Smallest relative error of frequency, damping twice, and gain that is believed: from
-one record to the next temperature alone moves them by as much."""
 BLURRED = 0.5
 """Relative error of damping or gain above which there is no peak to speak of."""
-BENDS = 0.75
-"""Share of a rise in frequency squared that lies in the lower half of the mean square
-of the motion: half of it of a cubic spring, next to all of it of a clearance."""
+MODES = 2
+"""That are shown."""
 NUMBERS = 8
 """Of a mode at a level: its pole, and three complex numbers of its band."""
-_INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
-
-
-@dataclass(frozen=True)
-class Moving:
-    """A mode at several levels of the input.
-
-    Parameters
-    ----------
-    inputs : ndarray, shape (levels,)
-        RMS of the input, rising.
-    modes : tuple of Mode
-    integrals : int
-        How often the output has to be integrated for a position.
-    levels : int
-        Levels that there are; at some of them the mode may have no peak.
-    """
-
-    inputs: FloatArray
-    modes: tuple[Mode, ...]
-    integrals: int
-    levels: int
-
-    @property
-    def numbers(self) -> FloatArray:
-        """Frequency, damping ratio of the pole, that by power, gain: (levels, 4)."""
-        return np.array(
-            [[m.frequency, m.damping, m.power_damping, m.gain] for m in self.modes]
-        )
-
-    @property
-    def errors(self) -> FloatArray:
-        """Relative standard errors of the numbers, shape (levels, 4)."""
-        found = np.array([mode.errors for mode in self.modes])
-        return np.asarray(np.maximum(found, STEADY))
-
-    @property
-    def rates(self) -> FloatArray:
-        """Damping by power as a rate of decay, which no stiffness changes."""
-        return np.asarray(self.numbers[:, 2] * self.numbers[:, 0])
-
-    def moves(self, values: FloatArray, errors: FloatArray) -> int:
-        """Tell whether a number grows (1), falls (-1) or stays (0) with the level.
-
-        Parameters
-        ----------
-        values, errors : ndarray, shape (levels,)
-            Errors are relative to the values.
-        """
-        # A value that noise made negative is next to nothing.
-        size = np.log(np.maximum(values, 1e-3 * np.max(np.abs(values))))
-        away = (size - size[0]) / np.hypot(errors, errors[0])
-        away[0] = 0.0
-        most = float(away[np.argmax(np.abs(away))])
-        return int(np.sign(most)) if abs(most) > SURE else 0
-
-    @property
-    def kind(self) -> Class:
-        """The class that follows from what moves."""
-        errors = self.errors
-        frequency = self.moves(self.numbers[:, 0], errors[:, 0])
-        damping = self.moves(self.rates, errors[:, 2])
-        if damping < 0:
-            return "Coulomb friction"
-        if frequency > 0:
-            return "clearance" if self.bend > BENDS else "hardening"
-        if frequency < 0:
-            return "micro-slip or hysteresis" if damping > 0 else "softening"
-        if damping > 0:
-            return "damping that grows with speed"
-        if self.moves(self.numbers[:, 3], errors[:, 3]):
-            return "a static curve before or behind"
-        return "none"
-
-    @property
-    def bend(self) -> float:
-        """Share of the rise of frequency squared in the lower half of the motion."""
-        frequency = self.numbers[:, 0]
-        reach = np.array([mode.reach for mode in self.modes])
-        motion = (reach / frequency**self.integrals) ** 2
-        order = np.argsort(motion)
-        motion, square = motion[order], frequency[order] ** 2
-        middle = np.interp((motion[0] + motion[-1]) / 2, motion, square)
-        return float((middle - square[0]) / (square[-1] - square[0]))
-
-    @property
-    def chi_square(self) -> tuple[float, int]:
-        """How far all numbers are from the same at every level, and the freedom."""
-        values = np.column_stack([self.numbers[:, 0], self.rates, self.numbers[:, 3]])
-        weights = self.errors[:, [0, 2, 3]] ** -2
-        means = np.sum(weights * values, axis=0) / np.sum(weights, axis=0)
-        away = np.sum(weights * (values / means - 1) ** 2)
-        return float(away), 3 * (len(values) - 1)
-
-    @property
-    def sentence(self) -> str:
-        """What moves by how much, and the class."""
-        first, last = self.numbers[0], self.numbers[-1]
-        errors = np.hypot(self.errors[0], self.errors[-1])
-        change = 100 * (last[0] / first[0] - 1)
-        by = _with_error(abs(change), 100 * float(errors[0]))
-        if self.moves(self.numbers[:, 0], self.errors[:, 0]):
-            moved = f"{'rises' if change > 0 else 'falls'} by {by} %"
-        else:
-            moved = f"stays (it moves by {by} %)"
-        ratios = [
-            _with_error(100 * mode.power_damping, 100 * mode.power_damping * error)
-            for mode, error in zip(self.modes, self.errors[:, 2], strict=True)
-        ]
-        damping = self.moves(self.rates, self.errors[:, 2])
-        told = f"{ratios[0]} to {ratios[-1]} %"
-        damped = f"{_verb(damping)} {told}" if damping else f"stays ({told})"
-        gain = self.moves(self.numbers[:, 3], self.errors[:, 3])
-        ratio = _with_error(last[3] / first[3], last[3] / first[3] * float(errors[3]))
-        held = f"its gain {_verb(gain)} 1 to {ratio}" if gain else "its gain stays"
-        return (
-            f"the mode at {number(first[0])} Hz {moved}, its damping ratio {damped}, "
-            f"{held}{self._of_levels}: {WORDS[self.kind]}"
-        )
-
-    @property
-    def _of_levels(self) -> str:
-        seen = len(self.modes)
-        return "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
+INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
+ROLES: tuple[tuple[Role, Role], ...] = (
+    ("first", "first by width"),
+    ("second", "second by width"),
+)
 
 
 def take_levels(samples: Samples) -> tuple[Moving, ...]:
@@ -209,18 +49,21 @@ def take_levels(samples: Samples) -> tuple[Moving, ...]:
     lines = [[lines_of(item) for item in level] for level in levels]
     inputs = np.array([np.mean([_rms(one) for one in level]) for level in levels])
     measured = quantity_of("output", samples.units[1])
-    integrals = _INTEGRALS.get(measured, 1)
-    found, start = _start(levels)
+    integrals = INTEGRALS.get(measured, 1)
     moving: list[Moving] = []
-    for mode in found.modes:
-        fits = dict(_followed(lines, start, mode, integrals))
+    # A clearance and friction matter least at the highest level, a spring at the
+    # lowest: a mode is followed from the end where it explains more.
+    ends = [(mode, k) for k in (0, -1) for mode in find_modes(lines[k], integrals)]
+    for mode, end in sorted(ends, key=lambda item: item[0].left / item[0].held):
+        fits = dict(_followed(lines, end, mode, integrals))
         if len(fits) >= FEWEST:
             places = sorted(fits)
             modes = tuple(fits[place] for place in places)
             one = Moving(inputs[places], modes, integrals, len(levels))
             if not any(_same(one, other) for other in moving):
                 moving.append(one)
-    return tuple(moving)
+    moving.sort(key=lambda one: -sum(mode.held for mode in one.modes))
+    return tuple(moving[:MODES])
 
 
 def level(samples: Samples) -> View | None:
@@ -261,12 +104,6 @@ def level(samples: Samples) -> View | None:
         saved=saved(samples, explained, freedom),
         pictures=(picture_of(moving, unit),),
     )
-
-
-ROLES: tuple[tuple[Role, Role], ...] = (
-    ("first", "first by width"),
-    ("second", "second by width"),
-)
 
 
 def picture_of(moving: Sequence[Moving], unit: str) -> Picture:
@@ -316,31 +153,17 @@ def _rms(item: Compared) -> float:
     return float(np.std(item.record.u))
 
 
-def _start(levels: Sequence[Sequence[Compared]]) -> tuple[Found, int]:
-    """Find the modes where the device is more nearly linear: lowest or highest level.
-
-    A clearance and friction matter least at the highest, a spring at the lowest.
-    """
-    ends = (0, len(levels) - 1)
-    found = [(find_modes([one.record for one in levels[k]]), k) for k in ends]
-    return min(found, key=lambda item: item[0].left)
-
-
 def _followed(
-    lines: Sequence[Sequence[Lines]],
-    start: int,
-    mode: tuple[float, float],
-    integrals: int,
+    lines: Sequence[Sequence[Lines]], end: int, mode: Mode, integrals: int
 ) -> list[tuple[int, Mode]]:
     """Fit a mode at each level, each from its neighbour, as long as it has a peak."""
-    order = range(len(lines)) if start == 0 else range(len(lines) - 1, -1, -1)
+    order = range(len(lines))
     found = []
-    for place in order:
-        fitted = fit_mode(lines[place], *mode, integrals)
-        if fitted is None or float(np.max(fitted.errors)) > BLURRED:
-            continue
-        mode = (fitted.frequency, fitted.damping)
-        found.append((place, fitted))
+    for place in order if end == 0 else reversed(order):
+        fitted = fit_mode(lines[place], mode.frequency, mode.damping, integrals)
+        if fitted is not None and float(np.max(fitted.errors)) <= BLURRED:
+            mode = fitted
+            found.append((place, fitted))
     return found
 
 
@@ -349,13 +172,3 @@ def _same(one: Moving, other: Moving) -> bool:
     place = np.searchsorted(other.inputs, one.inputs).clip(max=len(other.inputs) - 1)
     frequency, damping = other.numbers[place, :2].T
     return bool(np.any(np.abs(one.numbers[:, 0] - frequency) < damping * frequency))
-
-
-def _verb(way: int) -> str:
-    return "grows from" if way > 0 else "falls from"
-
-
-def _with_error(value: float, error: float) -> str:
-    """Write a number and its standard error, which has one digit."""
-    decimals = max(0, -int(np.floor(np.log10(max(error, 1e-9)))))
-    return f"{value:.{decimals}f} ± {error:.{decimals}f}"

@@ -103,9 +103,9 @@ class Mode:
         by a linear filter counts as noise.
     reach : float
         RMS of the output in the band.
-    missed, left : float
-        Mean square in the band of what the simulation misses, and of what the mode as
-        fitted here misses; summed over the level's records.
+    held, missed, left : float
+        Mean square in the band of the output, of what the simulation misses of it, and
+        of what the mode as fitted here misses; summed over the level's records.
     """
 
     frequency: float
@@ -114,6 +114,7 @@ class Mode:
     gain: float
     errors: FloatArray
     reach: float
+    held: float
     missed: float
     left: float
 
@@ -211,7 +212,8 @@ class _Band:
         best = least_squares(self._residual, inside, x_scale=0.1, bounds=ends)
         if np.any(np.abs(best.x - ends) < EDGE):
             return None
-        return self._mode(*np.exp(best.x), best.fun, best.jac)
+        nu, zeta = np.exp(best.x).tolist()
+        return self._mode(nu, zeta, best.fun, best.jac)
 
     @property
     def _sharpest(self) -> float:
@@ -276,6 +278,7 @@ class _Band:
             float(gain),
             np.array([*errors, np.hypot(blurred, gain_error), gain_error]),
             float(np.sqrt(held / len(self.lines))),
+            held,
             sum(float(np.sum(np.abs(one.missed) ** 2)) for one in self.lines),
             _square(residual),
         )

@@ -52,7 +52,7 @@ class Spectra:
 
     def power(self, row: int) -> FloatArray:
         """Mean square of a signal in each bin."""
-        return self.matrix[row, row].real
+        return np.asarray(self.matrix[row, row].real)
 
     @cached_property
     def excited(self) -> NDArray[np.bool_]:
@@ -63,7 +63,7 @@ class Spectra:
     def coherence(self, a: int, b: int) -> FloatArray:
         """Coherence of two signals in each bin, from 0 to 1."""
         both = np.maximum(self.power(a) * self.power(b), 1e-300)
-        return np.clip(np.abs(self.matrix[a, b]) ** 2 / both, 0.0, 1.0)
+        return np.asarray(np.clip(np.abs(self.matrix[a, b]) ** 2 / both, 0.0, 1.0))
 
 
 def take_spectra(samples: Samples) -> Spectra:
