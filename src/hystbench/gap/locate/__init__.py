@@ -87,8 +87,8 @@ def locate(
     largest share says little. A form saves description length: half of 300 facts times
     the log of how much smaller the residual's power gets, less half of log 300 for
     every parameter (the Bayesian information criterion, the facts fixed because a
-    model's error is not white). So of two views that explain as much the simpler comes first,
-    and no view wins by freedom.
+    model's error is not white). So of two views that explain as much the simpler comes
+    first, and no view wins by freedom.
     """
     samples = take_samples(compared, floor, contributions)
     by_level = level(samples)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hystbench.gap.locate.forms import fit_form, named_or, p_value_of
-from hystbench.gap.locate.picture import Axis, Panel, Picture, Role, mean_in, series
+from hystbench.gap.locate.picture import Axis, Panel, Picture, mean_in, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.operators import play
@@ -75,10 +75,9 @@ def _picture(samples: Samples) -> Picture:
         float(u.min()), max(float(u.max()), u.min() + 1e-300), CELLS + 1
     )
     middle = 0.5 * (edges[1:] + edges[:-1])
-    branches: tuple[tuple[Role, int], ...] = (("rising", 1), ("falling", -1))
     lines = [
         series(role, middle, mean_in(edges, u[way], residual[way]), role)
-        for role, sign in branches
+        for role, sign in (("rising", 1), ("falling", -1))
         for way in [samples.direction == sign]
     ]
     rms = series("noise", middle, np.sqrt(mean_in(edges, u, residual**2)), "rms")

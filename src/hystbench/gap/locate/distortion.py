@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import fft, special
 
 from hystbench.gap.compared import Compared
-from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, Role, series
+from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import MATTERS, SIGNIFICANT, chance, percent
 from hystbench.gap.periods import settled
@@ -25,7 +25,7 @@ MEANS = {
     ODD: ("odd", "is alike in both, as of saturation, friction or backlash"),
     EITHER: ("other", "an input of odd and even lines cannot call odd or even"),
 }
-DRAWN: tuple[tuple[int, Role, str], ...] = (
+DRAWN = (
     (OWN, "own lines", "input's lines"),
     (ODD, "odd lines", "odd lines"),
     (EVEN, "even lines", "even lines"),

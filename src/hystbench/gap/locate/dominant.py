@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hystbench.gap.locate.mode import Lines, Mode, fit_mode
+from hystbench.gap.locate.lines import Lines
+from hystbench.gap.locate.mode import Mode, fit_mode
 
 PEAKS = 6
 """Of the output's spectrum, that are tried."""

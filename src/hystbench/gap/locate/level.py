@@ -10,9 +10,10 @@ from scipy import special
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.dominant import find_modes
 from hystbench.gap.locate.forms import saved
-from hystbench.gap.locate.mode import LINES, Lines, Mode, fit_mode, lines_of
+from hystbench.gap.locate.lines import Lines, lines_of
+from hystbench.gap.locate.mode import LINES, Mode, fit_mode
 from hystbench.gap.locate.moving import Moving
-from hystbench.gap.locate.picture import Axis, Panel, Picture, Role, series
+from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.quantities import quantity_of
@@ -28,7 +29,7 @@ MODES = 2
 NUMBERS = 8
 """Of a mode at a level: its pole, and three complex numbers of its band."""
 INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
-ROLES: tuple[tuple[Role, Role], ...] = (
+ROLES = (
     ("first", "first by width"),
     ("second", "second by width"),
 )

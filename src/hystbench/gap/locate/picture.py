@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,25 +15,6 @@ POINTS = 200
 
 Number = float | None
 """None where there is nothing to show."""
-Role = Literal[
-    "measurement",
-    "simulation",
-    "residual",
-    "linear part",
-    "noise",
-    "right",
-    "rising",
-    "falling",
-    "first",
-    "second",
-    "first by width",
-    "second by width",
-    "own lines",
-    "odd lines",
-    "even lines",
-    "other lines",
-]
-"""What a line is: it decides how the page draws it."""
 
 
 @dataclass(frozen=True)
@@ -47,9 +28,12 @@ class Axis:
 
 @dataclass(frozen=True)
 class Series:
-    """One line of a panel, with standard errors or without."""
+    """One line of a panel, with standard errors or without.
 
-    role: Role
+    Its role is what it is: it decides how the page draws it (``LOOKS`` there).
+    """
+
+    role: str
     x: list[Number]
     y: list[Number]
     label: str = ""
@@ -107,7 +91,7 @@ FREQUENCY = Axis("frequency", "Hz", logarithmic=True)
 
 
 def series(
-    role: Role, x: ArrayLike, y: ArrayLike, label: str = "", error: Any = None
+    role: str, x: ArrayLike, y: ArrayLike, label: str = "", error: Any = None
 ) -> Series:
     """Give a line from arrays."""
     errors = None if error is None else listed(error)

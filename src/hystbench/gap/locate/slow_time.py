@@ -9,7 +9,7 @@ import numpy as np
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.compared import Compared
 from hystbench.gap.locate.forms import fit_form, named_or, narrowest, p_value_of
-from hystbench.gap.locate.picture import Axis, Panel, Picture, Role, series
+from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
@@ -86,7 +86,6 @@ def block_means(values: FloatArray, size: int) -> FloatArray:
 
 def _picture(samples: Samples) -> Picture:
     """Draw the mean residual over blocks of whole periods, record behind record."""
-    roles: tuple[Role, Role] = ("rising", "falling")
     lines, start = [], 0.0
     frequencies = samples.main_frequencies.tolist()
     for k, (item, frequency) in enumerate(
@@ -98,7 +97,7 @@ def _picture(samples: Samples) -> Picture:
         size = min(n, max(1, period) * max(1, -(-n // (BLOCKS * max(1, period)))))
         means = block_means(item.residual[: n // size * size], size)
         at = start + (np.arange(len(means)) + 0.5) * size * dt
-        lines.append(series(roles[k % 2], at, means, item.record.name))
+        lines.append(series(("first", "second")[k % 2], at, means, item.record.name))
         start += len(means) * size * dt
     panel = Panel(
         Axis("time, record behind record", "s"),

@@ -85,7 +85,7 @@ def page(content: Content) -> str:
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
-        shares=_shares(gap),
+        level=LEVEL,
         ladder=_ladder(gap),
         ranking=_ranking(gap),
         ranked=_ranked(item for item in gap["ranking"] if not item["look"]),
@@ -168,24 +168,6 @@ def _input_column(gap: dict[str, Any]) -> str:
         return ""
     channel = gap["simulator"]["input"]
     return column_name(channel["name"], channel["unit"])
-
-
-def _shares(gap: dict[str, Any]) -> Picture | None:
-    if not gap["where"]:
-        return None
-    names = [item["view"].replace("-", " ") for item in gap["where"]]
-    shares = [100 * item["share_of_gap_power"] for item in gap["where"]]
-    sure = [item["p_value"] * len(names) < LEVEL for item in gap["where"]]
-    return draw(
-        pictures.bars,
-        names,
-        shares,
-        "share of the gap's power (%)",
-        sure,
-        words="Share of the gap's power in each view; grey where it may be chance, "
-        f"as the p-value times the number of views is not below {LEVEL}",
-        height=0.5 + 0.22 * len(names),
-    )
 
 
 def _ranking(gap: dict[str, Any]) -> Picture | None:
