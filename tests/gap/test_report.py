@@ -68,6 +68,7 @@ GAP = {
                     "unit": "-",
                 },
             },
+            "blocks": ["resonance"],
             "confidence": 0.97,
             "cannot_be_told_from": [],
         },
@@ -81,6 +82,7 @@ GAP = {
                     "unit": "-",
                 }
             },
+            "blocks": ["creep"],
             "confidence": 0.61,
             "cannot_be_told_from": ["thermal-drift", "drift"],
         },

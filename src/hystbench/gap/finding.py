@@ -12,7 +12,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
-from hystbench.gap.augmented import augmented
+from hystbench.gap.augmented import augmented, blocks_of
 from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.compared import Compared
 from hystbench.gap.effects import among
@@ -267,6 +267,7 @@ def decide(
                 size_error(finer, floor.rms, number),
                 unnamed.trust(unnamed_share),
             )
+            | {"blocks": blocks_of(item, state, model)}
             for number, item in enumerate(state.added)
         ],
         "fit": _fit(start, state, floor)
