@@ -39,6 +39,7 @@ def amplitude(samples: Samples) -> View:
     start, end = narrowest(axis, power)
     share = samples.share(form.explained, form.freedom)
     unit = samples.units[0]
+    alike = "" if form.named else ", the same in rising and falling and at every rate"
     return View(
         view="amplitude",
         axis=name,
@@ -48,9 +49,8 @@ def amplitude(samples: Samples) -> View:
         share_of_gap_power=share,
         p_value=p_value_of(samples, form, maps),
         sentence=(
-            f"{percent(share)} of the gap is {form.words}, the same in rising and "
-            f"falling and at every rate; most of it lies where the {name} is between "
-            f"{number(start)} and {number(end)} {unit}."
+            f"{percent(share)} of the gap is {form.words}{alike}; most of it lies where "
+            f"the {name} is between {number(start)} and {number(end)} {unit}."
         ),
         saved=form.saved,
         named=form.named,

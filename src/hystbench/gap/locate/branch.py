@@ -41,6 +41,7 @@ def branch(samples: Samples) -> View:
     power = form.fitted**2
     rising = float(np.sum(power[direction > 0])) / max(float(np.sum(power)), 1e-300)
     share = samples.share(form.explained, form.freedom)
+    alike = "" if form.named else ", at every rate alike"
     apart = float(np.mean(np.abs(form.fitted)))
     return View(
         view="branch",
@@ -51,7 +52,7 @@ def branch(samples: Samples) -> View:
         share_of_gap_power=share,
         p_value=p_value_of(samples, form, [shape]),
         sentence=(
-            f"{percent(share)} of the gap is {form.words}, at every rate alike, "
+            f"{percent(share)} of the gap is {form.words}{alike}, "
             f"{percent(rising)} of it while the input rises; it is {number(apart)} "
             f"{samples.units[1]} on average."
         ),
