@@ -49,8 +49,8 @@ def amplitude(samples: Samples) -> View:
         share_of_gap_power=share,
         p_value=p_value_of(samples, form, maps),
         sentence=(
-            f"{percent(share)} of the gap is {form.words}{alike}; most of it lies where "
-            f"the {name} is between {number(start)} and {number(end)} {unit}."
+            f"{percent(share)} of the gap is {form.words}{alike}; most of it lies "
+            f"where the {name} is between {number(start)} and {number(end)} {unit}."
         ),
         saved=form.saved,
         named=form.named,
