@@ -58,8 +58,8 @@ CASES = {
     "two stores": (
         model(*STORES),
         gap(
-            effect("outflow", **{"exponent": (1.5, "-"), "exponent#2": (0.3, "-")}),
-            effect("overflow", height=(801.0, "V s"), caught=(0.28, "-")),
+            effect("outflow", blocks=["store", "store#2"], exponent=(1.5, "-")),
+            effect("overflow", blocks=["store"], height=(801.0, "V s")),
         ),
     ),
     "many blocks": (

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.report.diagram_layout import RADIUS, layout, text_width
+from hystbench.gap.report.diagram_layout import layout
+from hystbench.gap.report.diagram_shapes import RADIUS, text_width
 from hystbench.gap.report.parts import Part, Stage
 
 PAGE = 7.2

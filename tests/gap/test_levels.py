@@ -7,16 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
-from hystbench.figures.style import PAGE, in_style
 from hystbench.gap.compared import Compared
 from hystbench.gap.evidence import load_evidence
 from hystbench.gap.floor import noise_floor
-from hystbench.gap.locate import curves, locate
-from hystbench.gap.locate.levels import WORDS, levels_curve, take_levels
+from hystbench.gap.locate import locate
+from hystbench.gap.locate.level import picture_of, take_levels
+from hystbench.gap.locate.moving import WORDS
 from hystbench.gap.locate.samples import take_samples
-from hystbench.gap.report import where
 from hystbench.gap.schema import VIEW
 from hystbench.model import load_model
 from hystbench.record import Channel, Record
@@ -133,9 +131,9 @@ def test_coulomb_friction_falls_with_the_motion(oscillators):
 def test_where_levels_show_nothing_there_is_no_view(oscillators, compared):
     found = compared(oscillators)
     assert moving(found) == ()
-    views = locate(found, noise_floor(found))
-    assert "level" not in {view.view for view in views}
-    assert curves(found, noise_floor(found))["levels"] is None
+    found = locate(found, noise_floor(found))
+    assert "level" not in {view.view for view in found.views}
+    assert any("modes by level" in line for line in found.not_drawn)
 
 
 def test_levels_that_are_alike_are_one(oscillators):
@@ -147,38 +145,39 @@ def test_levels_that_are_alike_are_one(oscillators):
 def test_the_view_is_as_gap_json_has_it(oscillators):
     compared = records(oscillators["hysteresis"])
     floor = noise_floor(compared)
-    (view,) = (item for item in locate(compared, floor) if item.view == "level")
+    (view,) = (item for item in locate(compared, floor).views if item.view == "level")
     check_against_schema(view.to_mapping(), VIEW, "view")
     assert (view.start, view.end) == pytest.approx((LEVELS[0], LEVELS[-1]))
     assert view.p_value < 1e-6
     # The simulation is nothing: all of the motion near the mode is the gap.
     assert view.share_of_gap_power > 0.7
     assert "micro-slip" in view.sentence
-    json.dumps(curves(compared, floor)["levels"], allow_nan=False)
+    (picture,) = view.pictures
+    json.dumps(picture.to_mapping(), allow_nan=False)
 
 
 def test_a_mode_that_stays_is_no_evidence(oscillators):
     compared = records(oscillators["linear"])
-    views = locate(compared, noise_floor(compared))
+    views = locate(compared, noise_floor(compared)).views
     (view,) = (item for item in views if item.view == "level")
     assert view.p_value > 0.05
 
 
-def test_the_picture_has_labels_with_units(oscillators):
-    modes = levels_curve(moving(records(oscillators["hysteresis"])))["modes"]
-    with in_style():
-        figure = Figure(figsize=(PAGE, 2.4))
-        axes = figure.subplots(1, 3)
-        where.levels(axes, modes, "N")
-    assert [panel.get_xlabel() for panel in axes] == 3 * ["rms of the input (N)"]
-    assert [panel.get_ylabel() for panel in axes] == [
-        "change of frequency (%)",
-        "damping ratio (%)",
-        "gain over the first (-)",
+def test_the_picture_has_axes_with_units(oscillators):
+    """Frequency, damping and gain, each with the numbers of the mode and errors."""
+    modes = moving(records(oscillators["hysteresis"]))
+    picture = picture_of(modes, "N")
+    axes = [(panel.x.unit, panel.y.name, panel.y.unit) for panel in picture.panels]
+    assert axes == [
+        ("N", "change of frequency", "%"),
+        ("N", "damping ratio", "%"),
+        ("N", "gain over the first", ""),
     ]
-    (legend,) = figure.legends
-    told = [text.get_text() for text in legend.get_texts()]
-    assert told[0].endswith("Hz: micro-slip or hysteresis")
+    frequency, damping, _ = (panel.series for panel in picture.panels)
+    assert frequency[0].label.endswith("Hz: micro-slip or hysteresis")
+    assert damping[0].y == pytest.approx(100 * modes[0].numbers[:, 2], rel=1e-5)
+    errors = 100 * modes[0].errors[:, 2] * modes[0].numbers[:, 2]
+    assert damping[0].error == pytest.approx(errors, rel=1e-5)
 
 
 @pytest.mark.skipif(not AIRCRAFT.is_dir(), reason="the measurements are not here")

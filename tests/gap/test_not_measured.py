@@ -7,6 +7,7 @@ import pytest
 
 from hystbench.gap.compared import Compared
 from hystbench.gap.evidence import load_evidence
+from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.nuisance import left_over, path_and_mains
@@ -101,8 +102,8 @@ def test_views_of_samples_do_not_see_them(both):
     seen = []
     for records in both:
         items = tuple(Compared(*x) for x in zip(records, base(records), strict=True))
-        view = Samples(items, 0.02**2, 1)
-        assert len(view.residual) == len(view.time) == len(view.record) == 4 * 1994
+        view = Samples(items, Floor(0.02, "declared", {}), 1)
+        assert len(view.residual) == len(view.time) == len(view.input) == 4 * 1994
         assert view.slices[-1].stop == 4 * 1994
         seen.append(view.residual)
     np.testing.assert_array_equal(*seen)

@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from hystbench.errors import InputError
 from hystbench.gap.report.parts import Part, in_one_line, number_words, stages
 from hystbench.model import Model
 
@@ -20,8 +21,10 @@ def model(*chain):
     )
 
 
-def effect(name, place="inside", **numbers):
+def effect(name, place="inside", *, blocks=None, **numbers):
+    """Give an effect; its block has its name, if nothing else is said."""
     return {
+        "blocks": [name] if blocks is None else list(blocks),
         "name": name,
         "place": place,
         "parameters": {
@@ -46,7 +49,12 @@ IMPEDANCE = {"impedance": {"mass": 0.1, "damping": 2.0, "stiffness": 3.0}}
 OTHERS = {"other-modes": {"numerator": [1.0], "denominator": [1.0, 2.0, 900.0]}}
 ENVELOPE = [1.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]
 PLAYS = {"gpi": {"envelope": ENVELOPE, "thresholds": [0.0, 0.1], "weights": [1.0, 0.5]}}
-FELT = effect("friction", coulomb=(4.5, "N"), presliding_distance=(1e-7, "mm"))
+FELT = effect(
+    "friction",
+    blocks=["friction-force"],
+    coulomb=(4.5, "N"),
+    presliding_distance=(1e-7, "mm"),
+)
 
 
 def test_a_force_inside_a_mechanism_is_fed_back_with_its_numbers():
@@ -103,8 +111,14 @@ def test_effects_of_stores_are_in_them_and_what_is_spilt_goes_on():
     upper = {"gain": 1.0, "rate": 0.1, "exponent": 0.6, "height": 8.0}
     upper |= {"caught": 0.25, "output": "outflow"}
     lower = {"gain": 1.0, "rate": 0.2, "exponent": 0.4}
-    outflow = effect("outflow", **{"exponent": (0.6, "-"), "exponent#2": (0.4, "-")})
-    overflow = effect("overflow", height=(8.0, "V"), caught=(0.25, "-"))
+    outflow = effect(
+        "outflow",
+        blocks=["store", "store#2"],
+        **{"exponent": (0.6, "-"), "exponent#2": (0.4, "-")},
+    )
+    overflow = effect(
+        "overflow", blocks=["store"], height=(8.0, "V"), caught=(0.25, "-")
+    )
     first, last = stages(
         model({"store": upper}, {"store": lower}), gap(outflow, overflow)
     )
@@ -126,9 +140,11 @@ def test_a_given_store_that_overflows_is_drawn_so():
     assert not found.caught
 
 
-def test_of_two_blocks_of_one_name_the_one_with_the_numbers_was_added():
+def test_of_two_blocks_of_one_name_the_one_that_gap_json_has_was_added():
     lags = [{"sensor-lag": {"time_constant_s": value}} for value in (0.02, 0.03)]
-    named = effect("sensor-lag", "sensor", time_constant_s=(0.03, "s"))
+    named = effect(
+        "sensor-lag", "sensor", blocks=["sensor-lag#2"], time_constant_s=(0.03, "s")
+    )
     found = stages(model(*lags), gap(named))
     assert [stage.core.whose for stage in found] == ["simulator", "added"]
 
@@ -136,7 +152,7 @@ def test_of_two_blocks_of_one_name_the_one_with_the_numbers_was_added():
 def test_a_block_of_the_simulator_with_an_effects_name_stays_its_own():
     """The effect gave way to a later one, and has no block."""
     given = {"sensor-lag": {"time_constant_s": 0.02}}
-    named = effect("sensor-lag", "sensor", time_constant_s=(0.03, "s"))
+    named = effect("sensor-lag", blocks=(), time_constant_s=(0.03, "s"))
     (found,) = stages(model(given), gap(named))
     assert found.core == Part("sensor lag")
 
@@ -154,10 +170,22 @@ def test_what_the_user_put_in_is_told_apart_and_has_its_numbers_of_today():
 def test_an_offset_before_and_behind_the_hysteresis_is_the_asymmetry():
     bias = {"gain": {"value": 1.0, "offset": 0.2}}
     zero = {"gain": {"value": 1.0, "offset": -1.5}}
-    named = effect("asymmetry", "material", bias=(0.2, "N"), zero=(-1.5, "mm"))
+    named = effect(
+        "asymmetry",
+        "material",
+        blocks=["gain", "gain#2"],
+        bias=(0.2, "N"),
+        zero=(-1.5, "mm"),
+    )
     found = stages(model(bias, PLAYS, zero), gap(named))
     assert [stage.core.words for stage in found] == ["asymmetry", "gpi", "asymmetry"]
     assert found[2].core.numbers == numbers("zero −1.5 mm")  # noqa: RUF001
+
+
+def test_a_block_that_is_not_there_is_one_line():
+    lost = effect("backlash", blocks=["backlsh"])
+    with pytest.raises(InputError, match=r"no block 'backlsh' in model\.yaml; did you"):
+        stages(model({"backlash": {"half_width": 0.5}}), gap(lost))
 
 
 def test_noise_is_not_drawn():
@@ -175,7 +203,7 @@ def test_an_effect_of_a_later_vocabulary_is_found_by_its_name():
     unknown = effect("backlash", half_width=(0.5, "mm"))
     found = stages(model({"backlash": {"half_width": 0.5}}), gap(unknown))
     assert found[0].core.whose == "added"
-    assert stages(model(MECHANISM), gap(effect("of-tomorrow")))[0].core.words
+    assert stages(model(MECHANISM), gap(effect("of-tomorrow", blocks=())))[0].core.words
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hystbench.gap.state import State
+from hystbench.gap.state import Added, State
 from hystbench.gap.told import beside_blocks, places_of_base
 from hystbench.model import Model
 
@@ -41,6 +41,23 @@ def augmented(base: Model, state: State) -> Model:
             if name in now and model.value(now[name]) == base.value(name)
         },
     )
+
+
+def blocks_of(item: Added, state: State, model: Model) -> list[str]:
+    """Give the labels of the blocks that stand for an added effect.
+
+    Parameters
+    ----------
+    item : Added
+    state : State
+    model : Model
+        As :func:`augmented` gives it: what lies beside the chain stands behind it.
+    """
+    return [
+        label
+        for k, (label, block) in enumerate(model.labelled())
+        if k in item.blocks or (k >= len(state.chain) and block.name == item.effect)
+    ]
 
 
 def _names_now(base: Model, state: State, labels: list[str]) -> dict[str, str]:

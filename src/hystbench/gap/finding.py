@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
-from hystbench.gap.augmented import augmented
+from hystbench.gap.augmented import augmented, blocks_of
 from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.compared import Compared
 from hystbench.gap.effects import among
@@ -20,7 +21,7 @@ from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
 from hystbench.gap.inside.name import beats, named_inside
 from hystbench.gap.limits import Limits
-from hystbench.gap.locate import curves, locate
+from hystbench.gap.locate import Contribution, locate
 from hystbench.gap.lone import lone_share
 from hystbench.gap.name import LITTLE, Named, name
 from hystbench.gap.named_apart import named_apart
@@ -210,9 +211,6 @@ def decide(
         left = what_is_left(start, named.state, floor.rms)
     records, state = start.records, named.state
     compared = _compared(start.chain, start)
-    views = locate(compared, floor)
-    if views:
-        say(views[0].sentence)
     box = black_box(start, floor)
     after = compared if state is start else _compared(state.chain, state)
     lone = lone_share([item.residual for item in after])
@@ -238,6 +236,9 @@ def decide(
     reason += f"; beside {own.words} of some records' own" if own.records else ""
     reason += _predicts_nothing(state)
     reason += f"; {used_up}" if used_up else ""
+    ladder = rungs(start, named)
+    where = locate(compared, floor, contributions(ladder) if verdict == "named" else ())
+    say(where.views[0].sentence)
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -263,12 +264,13 @@ def decide(
                 size_error(finer, floor.rms, number),
                 unnamed.trust(unnamed_share),
             )
+            | {"blocks": blocks_of(item, state, model)}
             for number, item in enumerate(state.added)
         ],
         "fit": _fit(start, state, floor)
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "unnamed": unnamed.mapping(unnamed_share),
-        "where": [view.to_mapping() for view in views],
+        "where": [view.to_mapping() for view in where.views],
         "ranking": ranking_rows(named),
         "record_values": own.mapping(records[0].output.unit),
         "not_tried": untried,
@@ -290,11 +292,30 @@ def decide(
         left,
         box,
         content,
-        curves(compared, floor),
+        where.curves(),
         experiment,
-        rungs(start, named),
+        ladder,
         own,
     )
+
+
+def contributions(ladder: Sequence[Rung]) -> list[Contribution]:
+    """Give what each named effect adds to the output of the rung before it."""
+    outputs = [_compared(rung.state.chain, rung.state) for rung in ladder]
+    found = []
+    for (old, new), (before, after) in zip(
+        pairwise(ladder), pairwise(outputs), strict=True
+    ):
+        added = tuple(
+            b.simulated - a.simulated for a, b in zip(before, after, strict=True)
+        )
+        known = {item.effect for item in old.state.added}
+        found += [
+            Contribution(item.effect, added, item.charge)
+            for item in new.state.added
+            if item.effect not in known
+        ]
+    return found
 
 
 def _predicts_nothing(state: State) -> str:

@@ -41,6 +41,8 @@ EFFECT = _object(
     # Standard error of what it adds to the output, in times of it; null where that
     # cannot be told.
     size_error=OPTIONAL,
+    # Labels of the blocks of model.yaml that stand for it.
+    blocks=NAMES,
     # What it is called by what it does, and what usually causes it: in such a device,
     # where its kind is known.
     behaviour=WORDS,

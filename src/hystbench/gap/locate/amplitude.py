@@ -4,41 +4,42 @@ from __future__ import annotations
 
 import numpy as np
 
-from hystbench.gap.locate.regression import (
-    Form,
-    best,
-    fit_form,
-    fitted_p_value,
-    hats,
-    narrowest,
-)
+from hystbench.gap.locate.forms import fit_form, hats, named_or, narrowest, p_value_of
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
-from hystbench.record import FloatArray
 
 KNOTS = 9
+"""Of a map over an axis."""
+ONE_SIDED = 0.8
+"""Share of what is explained on one side of zero, for the side to be told."""
 
 
-def amplitude_view(samples: Samples) -> View:
-    """Fit gain and offset, polynomials and maps over u and over the simulated output.
+def amplitude(samples: Samples) -> View:
+    """Fit a gain with an offset, and maps over input and simulated output.
 
     The p-value is the smaller of those of the two maps, doubled for the choice.
     """
-    forms = static_forms(samples)
-    form = best(list(forms.values()))
-    kind = next(name for name, one in forms.items() if one is form)
+    s, one = samples.simulated, np.ones_like(samples.simulated)
+    maps = [
+        fit_form(samples, f"a map over the {of}", hats(values, KNOTS))
+        for of, values in (("input", samples.input), ("output", s))
+    ]
+    powers = [one, s, s**2, s**3]
+    forms = [
+        fit_form(samples, "an offset", [one]),
+        fit_form(samples, "a gain error", [s, one]),
+        fit_form(samples, "a cubic function of the output", powers),
+    ]
+    form = named_or(samples, "amplitude", [*forms, *maps])
     power = form.fitted**2
-    size = np.abs(samples.input)
-    above = float(np.sum(power[samples.input > 0]))
-    below = float(np.sum(power[samples.input < 0]))
-    one_sided = max(above, below) > 0.8 * (above + below)
-    axis = samples.input if one_sided else size
-    start, end = narrowest(axis, power)
+    above = float(np.sum(power[samples.input > 0])) / max(float(np.sum(power)), 1e-300)
+    one_sided = max(above, 1 - above) > ONE_SIDED
+    axis = samples.input if one_sided else np.abs(samples.input)
     name = "input" if one_sided else "magnitude of the input"
-    unit = samples.compared[0].record.input.unit
+    start, end = narrowest(axis, power)
     share = samples.share(form.explained, form.freedom)
-    maps = [forms[f"a map over the {of}"] for of in ("input", "output")]
-    p_value = min(1.0, 2 * min(fitted_p_value(samples, one) for one in maps))
+    unit = samples.units[0]
+    alike = "" if form.named else ", the same in rising and falling and at every rate"
     return View(
         view="amplitude",
         axis=name,
@@ -46,34 +47,11 @@ def amplitude_view(samples: Samples) -> View:
         end=end,
         unit=unit,
         share_of_gap_power=share,
-        p_value=p_value,
+        p_value=p_value_of(samples, form, maps),
         sentence=(
-            f"{percent(share)} of the gap is {kind}, the same in rising and falling "
-            f"and at every rate; most of it lies where the {name} is between "
-            f"{number(start)} and {number(end)} {unit}."
+            f"{percent(share)} of the gap is {form.words}{alike}; most of it lies "
+            f"where the {name} is between {number(start)} and {number(end)} {unit}."
         ),
         saved=form.saved,
+        named=form.named,
     )
-
-
-def static_forms(samples: Samples) -> dict[str, Form]:
-    """Fit every static form, by what it is in words."""
-    u = samples.input / samples.reach
-    s = samples.simulated / max(float(np.max(np.abs(samples.simulated))), 1e-300)
-    one = np.ones_like(u)
-    return {
-        "an offset": fit_form(samples, [one]),
-        "a gain error": fit_form(samples, [s, one]),
-        "a gain error of the input's part": fit_form(samples, [u, one]),
-        "a quadratic function of the output": fit_form(samples, [one, s, s**2]),
-        "an odd cubic function of the output": fit_form(samples, [one, s, s**3]),
-        "a cubic function of the output": fit_form(samples, [one, s, s**2, s**3]),
-        "a map over the input": fit_form(samples, hats(u, knots(u))),
-        "a map over the output": fit_form(samples, hats(s, knots(s))),
-    }
-
-
-def knots(values: FloatArray, count: int = KNOTS) -> FloatArray:
-    """Spread knots evenly over the values."""
-    low, high = float(np.min(values)), float(np.max(values))
-    return np.linspace(low, high if high > low else low + 1.0, count)

@@ -4,86 +4,84 @@ from __future__ import annotations
 
 import numpy as np
 
-from hystbench.gap.locate.loops import take_loops, told
-from hystbench.gap.locate.regression import Form, best, fit_form, fitted_p_value
+from hystbench.gap.locate.forms import fit_form, named_or, p_value_of
+from hystbench.gap.locate.picture import Axis, Panel, Picture, mean_in, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
-# Half-widths of a backlash, as shares of the simulated output's largest magnitude.
-BACKLASH = (0.01, 0.02, 0.04, 0.07, 0.12, 0.2)
-# Speeds over which friction turns, as shares of the greatest.
-SOFTNESS = (0.0002, 0.0005, 0.001, 0.003, 0.01, 0.03, 0.1, 0.25)
+THRESHOLDS = np.array([0.02, 0.05, 0.09, 0.13, 0.18, 0.24, 0.3, 0.37, 0.45, 0.54, 0.7])
+"""Of play operators, as shares of the input's largest magnitude."""
+ONE_SIDED = 0.8
+"""Share of what is explained on one branch, for the other to be left out."""
+CELLS = 40
+"""Of the picture."""
 
 
-def branch_view(samples: Samples) -> View:
-    """Fit friction, backlash and play operators, none of which knows a rate.
+def branch(samples: Samples) -> View:
+    """Fit steps where the input turns and play operators, none of which knows a rate.
 
-    The p-value is that of friction beside the play operators.
+    The p-value is that of a step beside the play operators.
     """
-    forms = branch_forms(samples)
-    form = best(list(forms.values()))
-    kind = next(name for name, one in forms.items() if one is form)
+    u, direction = samples.input / samples.reach, samples.direction
+    one, plays = np.ones_like(u), _plays(samples)
+    shape = fit_form(samples, "the shape of the loop", [u, direction, *plays])
+    steps = [direction, direction * u, direction * u**2]
+    uneven = [one, u, u**2, u**3, *plays, *[each**2 for each in plays[::2]]]
+    forms = [
+        fit_form(samples, "a step between rising and falling", steps[:1]),
+        fit_form(
+            samples, "a step between the branches that depends on the input", steps
+        ),
+        shape,
+        fit_form(samples, "the shape of an asymmetric loop", uneven),
+    ]
+    form = named_or(samples, "branch", forms)
     power = form.fitted**2
-    rising = float(np.sum(power[samples.direction > 0]))
-    rising /= max(float(np.sum(power)), 1e-300)
-    start = "falling" if rising < 0.2 else "rising"
-    end = "rising" if rising > 0.8 else "falling"
+    rising = float(np.sum(power[direction > 0])) / max(float(np.sum(power)), 1e-300)
     share = samples.share(form.explained, form.freedom)
-    unit = samples.compared[0].record.output.unit
+    alike = "" if form.named else ", at every rate alike"
     apart = float(np.mean(np.abs(form.fitted)))
     return View(
         view="branch",
         axis="branch",
-        start=start,
-        end=end,
+        start="falling" if rising < 1 - ONE_SIDED else "rising",
+        end="rising" if rising > ONE_SIDED else "falling",
         unit="",
         share_of_gap_power=share,
-        p_value=fitted_p_value(samples, forms["the shape of the loop"]),
+        p_value=p_value_of(samples, form, [shape]),
         sentence=(
-            f"{percent(share)} of the gap is {kind}, at every rate alike, "
+            f"{percent(share)} of the gap is {form.words}{alike}, "
             f"{percent(rising)} of it while the input rises; it is {number(apart)} "
-            f"{unit} on average.{told(take_loops(samples))}"
+            f"{samples.units[1]} on average."
         ),
         saved=form.saved,
+        named=form.named,
+        pictures=(_picture(samples),),
     )
 
 
-def branch_forms(samples: Samples) -> dict[str, Form]:
-    """Fit every form that tells rising from falling, by what it is in words."""
-    u = samples.input / samples.reach
-    direction = samples.direction
-    loops = list(samples.plays / samples.reach)
-    few = loops[1::2]
-    top = max(float(np.max(np.abs(samples.speed))), 1e-300)
-    soft = [
-        fit_form(samples, [np.tanh(samples.speed / (share * top))], searched=1)
-        for share in SOFTNESS
+def _plays(samples: Samples) -> list[FloatArray]:
+    """Give play operators of the input: no loop of Preisach's is out of their reach."""
+    thresholds = THRESHOLDS * samples.reach
+    signals = [play(item.record.u, thresholds)[0] for item in samples.compared]
+    return list((samples.thinned(signals) / samples.reach).T)
+
+
+def _picture(samples: Samples) -> Picture:
+    """Draw the residual over the input, branch by branch."""
+    u, residual = samples.input, samples.residual
+    edges = np.linspace(
+        float(u.min()), max(float(u.max()), u.min() + 1e-300), CELLS + 1
+    )
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    lines = [
+        series(role, middle, mean_in(edges, u[way], residual[way]), role)
+        for role, sign in (("rising", 1), ("falling", -1))
+        for way in [samples.direction == sign]
     ]
-    slack = [fit_form(samples, [one], searched=1) for one in _slack(samples)]
-    return {
-        "a step between rising and falling": best(
-            [fit_form(samples, [direction]), *soft]
-        ),
-        "a step between rising and falling that depends on the input": fit_form(
-            samples, [direction, direction * u, direction * u**2]
-        ),
-        "a play at the output": best(slack),
-        "the loop's width": fit_form(samples, [u, *few]),
-        "the shape of the loop": fit_form(samples, [u, direction, *loops]),
-        "the shape of an asymmetric loop": fit_form(
-            samples, [np.ones_like(u), u, u**2, u**3, *loops, *[f**2 for f in few]]
-        ),
-    }
-
-
-def _slack(samples: Samples) -> list[FloatArray]:
-    """Give what a backlash of the simulated output would take away from it."""
-    widths = np.array(BACKLASH) * float(np.max(np.abs(samples.simulated)))
-    parts = []
-    for item, places in zip(samples.compared, samples.places, strict=True):
-        simulated = item.simulated
-        lost = play(simulated, widths)[0] - simulated[:, np.newaxis]
-        parts.append(lost[places])
-    return list(np.ascontiguousarray(np.concatenate(parts).T))
+    rms = series("noise", middle, np.sqrt(mean_in(edges, u, residual**2)), "rms")
+    given, made = samples.units
+    panel = Panel(Axis("input", given), Axis("mean residual", made), (*lines, rms))
+    return Picture("over-input", "Mean residual over the input, by branch", (panel,))

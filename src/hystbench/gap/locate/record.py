@@ -6,18 +6,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hystbench.gap.locate.regression import (
-    fit_by_record,
-    fit_form,
-    fitted_p_value,
-    narrowest_bins,
-)
+from hystbench.gap.locate.forms import fit_form, narrowest_bins, p_value_of
+from hystbench.gap.locate.picture import Axis, Bars, Panel, Picture, listed
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, percent
 from hystbench.record import FloatArray
 
+QUIET = 1.5
+"""Of the noise's power, that a record's residual has where the gap is not."""
+NAMED = 3
+"""Records that are told by name; of more, how many they are."""
 
-def record_view(samples: Samples) -> View:
+
+def record(samples: Samples) -> View:
     """Share the gap's power out among the records.
 
     The range is the fewest neighbouring records that hold four fifths of it. For the
@@ -29,16 +30,15 @@ def record_view(samples: Samples) -> View:
     first, last = narrowest_bins(shares)
     share = float(np.sum(shares[first : last + 1]))
     names = [item.record.name for item in samples.compared]
-    form = fit_by_record(samples, [samples.simulated, np.ones_like(samples.simulated)])
-    most = samples.slices[int(np.argmax(shares))]
-    columns = []
-    for values in (samples.simulated, np.ones_like(samples.simulated)):
-        column = np.zeros_like(values)
-        column[most] = values[most]
-        columns.append(column)
-    single = fit_form(samples, columns, searched=1)
-    own = samples.share(form.explained, form.freedom)
+    columns = np.stack([samples.simulated, np.ones_like(samples.simulated)])
+    own = fit_form(samples, "gains and offsets", list(columns), by_record=True)
+    there = np.zeros(columns.shape[1])
+    there[samples.slices[int(np.argmax(shares))]] = 1.0
+    single = fit_form(
+        samples, "a gain and an offset", list(columns * there), searched=1
+    )
     where = names[first] if first == last else f"{names[first]} to {names[last]}"
+    taken = samples.share(own.explained, own.freedom)
     return View(
         view="record",
         axis="record",
@@ -46,20 +46,27 @@ def record_view(samples: Samples) -> View:
         end=names[last],
         unit="",
         share_of_gap_power=share,
-        p_value=fitted_p_value(samples, form),
+        p_value=p_value_of(samples, own),
         sentence=(
             f"{percent(share)} of the gap lies in {last - first + 1} of {len(names)} "
             f"records, {where}; a gain and an offset of each record's own would take "
-            f"away {percent(own)}.{_left_alone(samples, names)}"
+            f"away {percent(taken)}.{_left_alone(samples, names)}"
         ),
         saved=single.saved,
+        pictures=(_picture(names, shares),),
     )
 
 
-QUIET = 1.5
-"""Of the noise's power, that a record's residual has where the gap is not."""
-NAMED = 3
-"""Records that are told by name; of more, how many they are."""
+def record_shares(samples: Samples) -> FloatArray:
+    """Give each record's share of the power above the floor; they add to one."""
+    above = np.array(
+        [
+            max(float(np.sum(samples.residual[part] ** 2 - samples.noise)), 0.0)
+            for part in samples.slices
+        ]
+    )
+    total = float(np.sum(above))
+    return above / total if total > 0 else np.full(len(above), 1 / len(above))
 
 
 def _left_alone(samples: Samples, names: Sequence[str]) -> str:
@@ -77,13 +84,10 @@ def _left_alone(samples: Samples, names: Sequence[str]) -> str:
     return f" It leaves {told} alone."
 
 
-def record_shares(samples: Samples) -> FloatArray:
-    """Give each record's share of the power above the floor; they add to one."""
-    above = np.array(
-        [
-            max(float(np.sum(samples.residual[part] ** 2 - samples.noise)), 0.0)
-            for part in samples.slices
-        ]
+def _picture(names: list[str], shares: FloatArray) -> Picture:
+    panel = Panel(
+        Axis("share of the gap's power", "%"),
+        Axis("record"),
+        bars=Bars(names, listed(100 * shares)),
     )
-    total = float(np.sum(above))
-    return above / total if total > 0 else np.full(len(above), 1 / len(above))
+    return Picture("records", "Share of the gap's power in each fit record", (panel,))

@@ -13,29 +13,17 @@ from numpy.typing import NDArray
 from hystbench.errors import InputError
 from hystbench.gap.compared import Compared
 from hystbench.gap.floor import Floor
+from hystbench.gap.locate.contribution import Contribution
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
-# More samples than this tell a map over an axis nothing more.
 ENOUGH = 14_000
+"""More samples than this tell a map over an axis nothing more."""
 FEWEST = 32
-# Thresholds of play operators, as shares of the input's largest magnitude.
-THRESHOLDS = (
-    0.02,
-    0.05,
-    0.09,
-    0.13,
-    0.18,
-    0.24,
-    0.3,
-    0.37,
-    0.45,
-    0.54,
-    0.64,
-    0.74,
-    0.85,
-)
+"""Of a record that has a spectrum."""
 PRIMES = (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61)
+TURNS = 0.01
+"""Of the input's range, that it moves before a turn counts: noise is no turn."""
 
 
 @dataclass(frozen=True)
@@ -49,23 +37,25 @@ class Samples:
     Parameters
     ----------
     compared : tuple of Compared
-    noise : float
-        Variance of the noise floor.
+    floor : Floor
     stride : int
+    contributions : tuple of Contribution
+        What named effects add.
     """
 
     compared: tuple[Compared, ...]
-    noise: float
+    floor: Floor
     stride: int
+    contributions: tuple[Contribution, ...] = ()
 
     def thin(self, of: Callable[[Compared], FloatArray]) -> FloatArray:
         """Work out a signal on all samples of each record; keep every stride-th."""
-        return np.concatenate(
-            [
-                of(item)[places]
-                for item, places in zip(self.compared, self.places, strict=True)
-            ]
-        )
+        return self.thinned([of(item) for item in self.compared])
+
+    def thinned(self, signals: Sequence[FloatArray]) -> FloatArray:
+        """Keep every stride-th sample of a signal of each record."""
+        pairs = zip(signals, self.places, strict=True)
+        return np.concatenate([signal[places] for signal, places in pairs])
 
     @cached_property
     def places(self) -> list[NDArray[np.intp]]:
@@ -75,6 +65,12 @@ class Samples:
             for item in self.compared
             for at in [np.arange(0, len(item.record), self.stride)]
         ]
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """Where each record's samples lie."""
+        ends = np.cumsum([len(places) for places in self.places]).tolist()
+        return tuple(map(slice, [0, *ends[:-1]], ends))
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -97,18 +93,10 @@ class Samples:
         return self.thin(lambda item: np.gradient(item.record.u, item.record.dt))
 
     @cached_property
-    def simulated_speed(self) -> FloatArray:
-        """Rate of the simulated output, by a stencil of fourth order."""
-        return self.thin(lambda item: derivative(item.simulated, item.record.dt))
-
-    @cached_property
     def direction(self) -> FloatArray:
-        """Plus one where the input rises, minus one where it falls.
-
-        A turn counts once the input has moved by a hundredth of its range, so that
-        noise on a measured input is no turn.
-        """
-        return self.thin(lambda item: _direction(item.record.u, 0.005 * self.reach))
+        """Plus one where the input rises, minus one where it falls."""
+        half = 0.5 * TURNS * self.reach
+        return self.thin(lambda item: _direction(item.record.u, half))
 
     @cached_property
     def time(self) -> FloatArray:
@@ -116,57 +104,21 @@ class Samples:
         return self.thin(lambda item: item.record.time)
 
     @cached_property
-    def record(self) -> NDArray[np.int64]:
-        """Which record each sample is of."""
-        counts = [len(places) for places in self.places]
-        return np.repeat(np.arange(len(counts)), counts)
-
-    @cached_property
-    def slices(self) -> tuple[slice, ...]:
-        """Where each record's samples lie."""
-        counts = np.bincount(self.record, minlength=len(self.compared))
-        ends = np.cumsum(counts)
-        return tuple(
-            slice(int(end - count), int(end))
-            for end, count in zip(ends, counts, strict=True)
-        )
-
-    @cached_property
     def reach(self) -> float:
         """Largest magnitude of the input, never quite zero."""
         largest = max(float(np.max(np.abs(item.record.u))) for item in self.compared)
         return max(largest, 1e-300)
 
-    @cached_property
-    def plays(self) -> FloatArray:
-        """Play operators of the input, shape (thresholds, n), in the input's unit.
+    @property
+    def units(self) -> tuple[str, str]:
+        """Units of input and output."""
+        record = self.compared[0].record
+        return record.input.unit, record.output.unit
 
-        They approximate any Preisach operator, so no loop is out of their reach.
-        """
-        thresholds = np.array(THRESHOLDS) * self.reach
-        played = self.thin(lambda item: play(item.record.u, thresholds)[0])
-        return np.ascontiguousarray(played.T)
-
-    @cached_property
-    def shapes(self) -> FloatArray:
-        """What a wrong shape of the base's loop could leave, orthonormal, (m, n).
-
-        The span of powers of the input and of its play operators.
-        """
-        u = self.input / self.reach
-        span = np.concatenate([[u, u**2, u**3], self.plays / self.reach])
-        scale = np.maximum(np.sqrt(np.sum(span**2, axis=1)), 1e-300)
-        values, vectors = np.linalg.eigh(span @ span.T / np.outer(scale, scale))
-        kept = values > 1e-9 * max(float(values[-1]), 1e-300)
-        return cast(
-            FloatArray,
-            (vectors[:, kept] / np.sqrt(values[kept])).T @ (span.T / scale).T,
-        )
-
-    @cached_property
-    def shaped(self) -> FloatArray:
-        """How much of each direction of ``shapes`` the residual holds, shape (m,)."""
-        return self.shapes @ self.residual
+    @property
+    def noise(self) -> float:
+        """Variance of the noise floor."""
+        return self.floor.rms**2
 
     @cached_property
     def power(self) -> float:
@@ -180,8 +132,8 @@ class Samples:
         At least what chance may leave of white noise of the floor's level, so that
         a share of nothing is no large number.
         """
-        chance = 3 * self.noise * np.sqrt(2 / len(self.residual))
-        return float(max(self.power - self.noise, chance))
+        least = 3 * self.noise * np.sqrt(2 / len(self.residual))
+        return float(max(self.power - self.noise, least, 1e-300))
 
     @cached_property
     def main_frequencies(self) -> FloatArray:
@@ -201,20 +153,26 @@ class Samples:
         """Length of each record in seconds."""
         return np.array([len(item.record) * item.record.dt for item in self.compared])
 
-    def share(self, explained: float, freedom: int) -> float:
+    def share(self, explained: float, freedom: float) -> float:
         """Give explained power, what noise buys taken off, over the gap's power."""
         bought = freedom * self.noise / len(self.residual)
         return float(np.clip((explained - bought) / self.gap_power, 0.0, 1.0))
 
 
-def take_samples(compared: Sequence[Compared], floor: Floor) -> Samples:
+def take_samples(
+    compared: Sequence[Compared],
+    floor: Floor,
+    contributions: Sequence[Contribution] = (),
+) -> Samples:
     """Choose the stride and gather the records.
 
     Raises
     ------
     InputError
-        If a record is too short to have a spectrum.
+        If there is no record, or one is too short to have a spectrum.
     """
+    if not compared:
+        raise InputError("locate: expected at least one record, got none")
     for item in compared:
         if len(item.record) < FEWEST:
             raise InputError(
@@ -228,17 +186,7 @@ def take_samples(compared: Sequence[Compared], floor: Floor) -> Samples:
     shortest = min(len(item.record) for item in compared)
     if shortest // stride < 100:
         stride = max(1, shortest // 100)
-    return Samples(tuple(compared), floor.rms**2, stride)
-
-
-def derivative(values: FloatArray, dt: float) -> FloatArray:
-    """Differentiate by central differences of fourth order, of second at the ends."""
-    slope = cast(FloatArray, np.gradient(values, dt))
-    if len(values) > 4:
-        slope[2:-2] = (
-            8 * (values[3:-1] - values[1:-3]) - (values[4:] - values[:-4])
-        ) / (12 * dt)
-    return slope
+    return Samples(tuple(compared), floor, stride, tuple(contributions))
 
 
 def _direction(u: FloatArray, half_width: float) -> FloatArray:

@@ -8,30 +8,40 @@ import numpy as np
 
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.compared import Compared
-from hystbench.gap.locate.regression import (
-    Form,
-    best,
-    fit_form,
-    fitted_p_value,
-    narrowest,
-)
+from hystbench.gap.locate.forms import fit_form, named_or, narrowest, p_value_of
+from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
 
 TIMES = 7
+"""Time constants that are tried."""
+BLOCKS = 25
+"""Means of a record in the picture, at most."""
 
 
-def slow_time_view(samples: Samples) -> View:
+def slow_time(samples: Samples) -> View:
     """Fit low-passed output (creep) and low-passed square of the input (heat).
 
-    The p-value is that of all of them together.
+    The p-value is that of both together.
     """
-    forms, times = slow_forms(samples)
-    form = best(list(forms.values()))
-    kind = next(name for name, one in forms.items() if one is form)
+    period = float(1 / np.min(samples.main_frequencies))
+    longest = float(np.max(samples.durations))
+    times = np.geomspace(min(0.2 * period, longest), 2 * longest, TIMES)
+    crept = _passed(samples, lambda item: item.simulated, times)
+    heated = _passed(samples, lambda item: item.record.u**2, times)
+    both = fit_form(samples, "creep and heat together", [*crept[1::2], *heated[1::2]])
+    forms = [
+        fit_form(samples, "creep", crept),
+        fit_form(samples, "the square of the input, as heat does", heated),
+        *(fit_form(samples, "creep", [each], searched=1) for each in crept),
+        *(fit_form(samples, "heat", [each], searched=1) for each in heated),
+        both,
+    ]
+    form = named_or(samples, "slow-time", forms)
     start, end = narrowest(samples.time, form.fitted**2)
     share = samples.share(form.explained, form.freedom)
+    like = form.words if form.named else f"like {form.words}"
     return View(
         view="slow-time",
         axis="time in the record",
@@ -39,49 +49,32 @@ def slow_time_view(samples: Samples) -> View:
         end=end,
         unit="s",
         share_of_gap_power=share,
-        p_value=fitted_p_value(samples, forms["creep and heat together"]),
+        p_value=p_value_of(samples, form, [both]),
         sentence=(
-            f"{percent(share)} of the gap follows the input with a memory, like "
-            f"{kind}; time constants from {number(times[0])} to {number(times[-1])} s "
-            f"tried; most of it lies between {number(start)} and {number(end)} s."
+            f"{percent(share)} of the gap follows the input with a memory, {like}; "
+            f"most of it lies between {number(start)} and {number(end)} s."
         ),
         saved=form.saved,
+        named=form.named,
+        pictures=(_picture(samples),),
     )
 
 
-def slow_forms(samples: Samples) -> tuple[dict[str, Form], FloatArray]:
-    """Fit every slow form that the input explains, by what it is in words."""
-    period = float(1 / np.min(samples.main_frequencies))
-    longest = float(np.max(samples.durations))
-    times = np.geomspace(min(0.2 * period, longest), 2 * longest, TIMES)
-
-    def passed(of: Callable[[Compared], FloatArray]) -> list[FloatArray]:
-        means = [block_means(of(item), samples.stride) for item in samples.compared]
-        steps = [item.record.dt * samples.stride for item in samples.compared]
-        return [
-            np.concatenate(
-                [
-                    low_pass(v, dt, tau)[places // samples.stride]
-                    for v, dt, places in zip(means, steps, samples.places, strict=True)
-                ]
-            )
-            for tau in times
-        ]
-
-    crept = passed(lambda item: item.simulated)
-    heated = passed(lambda item: item.record.u**2)
-    one = np.ones_like(samples.residual)
-    forms = {
-        "creep": best([fit_form(samples, [c], searched=1) for c in crept]),
-        "creep of several time constants": fit_form(samples, crept),
-        "the square of the input, as heat does": best(
-            [fit_form(samples, [h], searched=1) for h in heated]
-            + [fit_form(samples, [h, one], searched=1) for h in heated]
-        ),
-        "heat of several time constants": fit_form(samples, heated),
-        "creep and heat together": fit_form(samples, [*crept[1::2], *heated[1::2]]),
-    }
-    return forms, times
+def _passed(
+    samples: Samples, of: Callable[[Compared], FloatArray], times: FloatArray
+) -> list[FloatArray]:
+    """Send a signal, averaged between samples, through lags."""
+    means = [block_means(of(item), samples.stride) for item in samples.compared]
+    steps = [item.record.dt * samples.stride for item in samples.compared]
+    return [
+        np.concatenate(
+            [
+                low_pass(mean, dt, tau)[places // samples.stride]
+                for mean, dt, places in zip(means, steps, samples.places, strict=True)
+            ]
+        )
+        for tau in times
+    ]
 
 
 def block_means(values: FloatArray, size: int) -> FloatArray:
@@ -89,3 +82,28 @@ def block_means(values: FloatArray, size: int) -> FloatArray:
     starts = np.arange(0, len(values), size)
     counts = np.diff(np.append(starts, len(values)))
     return np.add.reduceat(values, starts) / counts
+
+
+def _picture(samples: Samples) -> Picture:
+    """Draw the mean residual over blocks of whole periods, record behind record."""
+    lines, start = [], 0.0
+    frequencies = samples.main_frequencies.tolist()
+    for k, (item, frequency) in enumerate(
+        zip(samples.compared, frequencies, strict=True)
+    ):
+        n, dt = len(item.record), item.record.dt
+        period = item.record.period_samples or round(1 / max(frequency * dt, 1 / n))
+        # Whole periods, so that what repeats cancels alike in every block.
+        size = min(n, max(1, period) * max(1, -(-n // (BLOCKS * max(1, period)))))
+        means = block_means(item.residual[: n // size * size], size)
+        at = start + (np.arange(len(means)) + 0.5) * size * dt
+        lines.append(series(("first", "second")[k % 2], at, means, item.record.name))
+        start += len(means) * size * dt
+    panel = Panel(
+        Axis("time, record behind record", "s"),
+        Axis("mean residual", samples.units[1]),
+        tuple(lines),
+        labelled_above=True,
+    )
+    words = "Mean of the residual over slow time, record behind record"
+    return Picture("slow", words, (panel,))

@@ -1,93 +1,117 @@
-"""Spectra of all records on one frequency axis."""
+"""Spectra of input, residual and simulation, of all records on one frequency axis."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft
 
+from hystbench.gap.compared import Compared
 from hystbench.gap.locate.samples import Samples
+from hystbench.gap.periods import settled
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]
 
-# Bins of the common axis, evenly spaced in the logarithm of frequency.
-BINS = 400
-# What a Hann window does to the variance of a cross-spectrum's sum: n sum w^4 over
-# the square of sum w^2.
-HANN_INFLATION = 35 / 18
+U, R, S = range(3)
+"""Input, residual and simulated output, as rows and columns of a spectral matrix."""
+SEGMENTS = 4
+"""Of a record without as many periods, that overlap by half."""
+BINS = 401
+"""Edges of the common axis, evenly spaced in the logarithm of frequency."""
+EXCITED = 1e-5
+"""Of the strongest bin's input power, that an excited bin holds."""
 
 
 @dataclass(frozen=True)
 class Spectra:
-    """Hann-windowed auto- and cross-spectra, summed over records in each bin.
-
-    Scaled so that the residual's spectrum sums to its mean square over all samples.
+    """Spectra summed over the lines of all records in each bin.
 
     Parameters
     ----------
-    frequency : ndarray, shape (m,)
-        Mean frequency of each bin in Hz, weighted by the simulated output's power.
     low, high : ndarray, shape (m,)
-        Edges of each bin in Hz.
-    residual, simulated, noise : ndarray, shape (m,)
-        Power of the residual, of the simulated output, and what the floor would give.
-    cross : ndarray of complex, shape (m,)
-        Residual times the conjugate of the simulated output.
+        Edges in Hz of the bins that hold lines.
+    matrix : ndarray of complex, shape (3, 3, m)
+        Auto- and cross-spectra of input, residual and simulation: row times the
+        conjugate of column. Sums over bins are mean squares over all samples.
+    noise : ndarray, shape (m,)
+        Mean square that the noise floor gives a bin.
     """
 
-    frequency: FloatArray
     low: FloatArray
     high: FloatArray
-    residual: FloatArray
-    simulated: FloatArray
+    matrix: ComplexArray
     noise: FloatArray
-    cross: ComplexArray
 
     @property
-    def linear(self) -> FloatArray:
-        """Power that a gain and a phase of each bin's own would explain."""
-        return np.abs(self.cross) ** 2 / np.maximum(self.simulated, 1e-300)
+    def frequency(self) -> FloatArray:
+        """Middle of each bin, in Hz."""
+        return np.asarray(np.sqrt(self.low * self.high))
+
+    def power(self, row: int) -> FloatArray:
+        """Mean square of a signal in each bin."""
+        return np.asarray(self.matrix[row, row].real)
+
+    @cached_property
+    def excited(self) -> NDArray[np.bool_]:
+        """Bins in which the input has power."""
+        power = self.power(U)
+        return np.asarray(power > EXCITED * float(np.max(power)))
+
+    def coherence(self, a: int, b: int) -> FloatArray:
+        """Coherence of two signals in each bin, from 0 to 1."""
+        both = np.maximum(self.power(a) * self.power(b), 1e-300)
+        return np.asarray(np.clip(np.abs(self.matrix[a, b]) ** 2 / both, 0.0, 1.0))
 
 
 def take_spectra(samples: Samples) -> Spectra:
-    """Work out the spectra of all records, every bin that any record has."""
-    frequencies, residuals, simulateds, crosses, noises = [], [], [], [], []
+    """Average the spectra of each record by Welch's method, and add the records."""
+    lines = [_lines(item) for item in samples.compared]
+    frequencies = np.concatenate([frequency for frequency, _ in lines])
+    edges = np.geomspace(0.999 * frequencies.min(), 1.001 * frequencies.max(), BINS)
     total = sum(len(item.record) for item in samples.compared)
-    for item in samples.compared:
-        n = len(item.record)
-        window = np.hanning(n)
-        length = fft.next_fast_len(n, real=True)
-        pair = np.stack([item.residual, item.simulated])
-        pair = pair - pair.mean(axis=1, keepdims=True)
-        r, s = fft.rfft(pair * window, length, axis=1)[:, 1:]
-        # One-sided, and a record weighs by its length.
-        scale = 2 * n / (length * float(np.sum(window**2)) * total)
-        frequencies.append(fft.rfftfreq(length, item.record.dt)[1:])
-        residuals.append(scale * np.abs(r) ** 2)
-        simulateds.append(scale * np.abs(s) ** 2)
-        crosses.append(scale * r * np.conj(s))
-        noises.append(np.full(len(r), samples.noise * 2 * n / (length * total)))
-    frequency = np.concatenate(frequencies)
-    edges = np.geomspace(frequency.min() * 0.999, frequency.max() * 1.001, BINS + 1)
-    bins = np.digitize(np.log(frequency), np.log(edges)) - 1
+    # The noise is white: each line of a record has as much of it.
+    weights = [
+        len(item.record) / total * np.vstack([matrix, np.full_like(matrix[:1], share)])
+        for item, (_, matrix) in zip(samples.compared, lines, strict=True)
+        for share in [samples.noise / matrix.shape[1]]
+    ]
+    place = np.digitize(frequencies, edges) - 1
+    held = np.zeros((len(edges) - 1, 10), dtype=np.complex128)
+    np.add.at(held, place, np.hstack(weights).T)
+    there = np.bincount(place, minlength=len(held)) > 0
+    *matrix, noise = held[there].T
+    found = np.array(matrix).reshape(3, 3, -1)
+    return Spectra(edges[:-1][there], edges[1:][there], found, noise.real)
 
-    def gather(values: FloatArray) -> FloatArray:
-        return np.bincount(bins, values, BINS).astype(np.float64)
 
-    simulated = np.concatenate(simulateds)
-    cross = np.concatenate(crosses)
-    weight = simulated + 1e-12 * np.mean(simulated) + 1e-300
-    used = gather(np.ones_like(frequency)) > 0
-    mean = gather(weight * frequency)[used] / gather(weight)[used]
-    return Spectra(
-        frequency=mean,
-        low=edges[:-1][used],
-        high=edges[1:][used],
-        residual=gather(np.concatenate(residuals))[used],
-        simulated=gather(simulated)[used],
-        noise=gather(np.concatenate(noises))[used],
-        cross=gather(cross.real)[used] + 1j * gather(cross.imag)[used],
+def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
+    """Average over whole periods where there are enough, else over segments.
+
+    Returns
+    -------
+    frequency : ndarray, shape (m,)
+    matrix : ndarray of complex, shape (9, m)
+    """
+    from scipy.signal import csd  # late: it takes long to load
+
+    record = item.record
+    signals = np.stack([record.u, item.residual, item.simulated])
+    n, period = len(record), record.period_samples
+    size, window, overlap = n // SEGMENTS, "hann", n // SEGMENTS // 2
+    if period and n >= SEGMENTS * period:
+        signals = settled(signals, period).reshape(3, -1)
+        size, window, overlap = period, "boxcar", 0
+    centred = signals - signals.mean(axis=1, keepdims=True)
+    frequency, matrix = csd(
+        centred[None],
+        centred[:, None],
+        1 / record.dt,
+        window=window,
+        nperseg=size,
+        noverlap=overlap,
+        detrend=False,
     )
+    return frequency[1:], matrix.reshape(9, -1)[:, 1:] * frequency[1]

@@ -2,104 +2,81 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.gap.floor import periodogram
-from hystbench.gap.locate.coherence import take_coherence
-from hystbench.gap.locate.coherence import told as told_coherence
-from hystbench.gap.locate.distortion import Distortion, told_repeating
-from hystbench.gap.locate.regression import (
+from hystbench.gap.locate.forms import (
     best,
-    fit_by_record,
     fit_form,
-    fitted_p_value,
+    named_or,
     narrowest,
+    p_value_of,
 )
 from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.spectra import HANN_INFLATION
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.gap.once import shows_a_path
 from hystbench.record import FloatArray
 
 BoolArray = NDArray[np.bool_]
 
-# Lines sought, at most; a mains line and its first harmonics.
-LINES = 3
-# Half-periods of the fastest drift within a record.
+DRIFT, LINE = "a drift", "a lone line"
 ORDERS = 4
-# Bins of a periodogram over which its own level is read.
+"""Half-periods of the fastest drift within a record."""
 NEIGHBOURS = 48
-# Variance of the mean over that of the median scaled to it, of exponential values.
+"""Bins of a periodogram over which its own level is read."""
+HANN = 35 / 18
+"""What a Hann window does to the variance of a mean over bins: n sum w^4 over the
+square of sum w^2."""
 MEDIAN_EFFICIENCY = float(np.log(2) ** 2)
+"""Variance of the mean over that of the median scaled to it, of exponential values."""
+CAUSED = 1e-5
+"""Of the strongest bin's power, that a line of the input holds."""
+STANDS_OUT = 10.0
+"""Times the level around it, that a line holds."""
 
 
-@dataclass(frozen=True)
-class Lines:
-    """Lone lines of the residual.
-
-    Parameters
-    ----------
-    frequencies : tuple of float
-        In Hz, the strongest first.
-    p_value : float
-        Chance that white noise holds a line as strong as the strongest.
-    """
-
-    frequencies: tuple[float, ...]
-    p_value: float
-
-
-def unexplained_view(samples: Samples, distortion: Distortion | None) -> View:
-    """Fit lone lines and drift, each record's own.
+def unexplained(samples: Samples) -> View:
+    """Fit a lone line and drift, each record's own.
 
     A line must stand out in the residual, at one frequency in at least half of the
-    records, where the input has none. For the p-value it must not be a harmonic of
-    the input's strongest line either: distortion lies there. A drift has fewer
-    half-periods in a record than the input has. The range is that of the line in Hz,
-    or of time in s for a drift. The p-value is the smaller of the line's (Fisher's
-    test) and the drift's (F test), doubled for the choice.
+    records, where the input has none. A drift has fewer half-periods in a record than
+    the input has. The range is that of the line in Hz, or of time in s for a drift. The
+    p-value is the smaller of the line's (Fisher's test) and the drift's (F test),
+    doubled for the choice.
     """
-    lines = find_lines(samples)
-    drifts = {order: _drift_columns(samples, order) for order in (1, ORDERS)}
-    drift = best([fit_by_record(samples, columns) for columns in drifts.values()])
-    common = [np.ones_like(samples.time), samples.time * _shown(samples)]
-    ramp = fit_form(samples, common)
-    forms = {"a drift": best([drift, ramp])}
-    if lines.frequencies:
-        waves = [_wave_columns(samples, one) for one in lines.frequencies]
-        count = len(waves)
-        lined = [
-            fit_by_record(
-                samples, [column for wave in waves[:top] for column in wave], top
-            )
-            for top in range(1, count + 1)
+    hertz, line_p = find_line(samples)
+    paths = _drift_columns(samples)
+    drift = fit_form(samples, DRIFT, paths, by_record=True)
+    slope = fit_form(samples, DRIFT, paths[:1], by_record=True)
+    ramp = samples.time * _shown(samples)
+    common = fit_form(samples, DRIFT, [np.ones_like(ramp), ramp])
+    forms = [drift, slope, common]
+    if hertz is not None:
+        phase = 2 * np.pi * hertz * samples.time
+        wave = [np.cos(phase), np.sin(phase)]
+        both = "a lone line and a drift"
+        forms += [
+            fit_form(samples, LINE, wave, 1, by_record=True),
+            fit_form(samples, both, [*wave, paths[0]], 1, by_record=True),
         ]
-        forms["a lone line"] = best(lined)
-        both = [fit_by_record(samples, [*waves[0], *drifts[1]], 1)]
-        forms["a lone line and a drift"] = best(both)
-    kind = max(forms, key=lambda name: forms[name].saved)
-    form = forms[kind]
-    again = fit_form(samples, [form.fitted], searched=form.freedom - 1)
-    form = best([form, again])
-    share = samples.share(form.explained, form.freedom)
-    test = fit_by_record(samples, drifts[ORDERS])
-    p_value = min(1.0, 2 * min(lines.p_value, fitted_p_value(samples, test)))
-    if kind == "a drift":
+    form = best(forms)
+    again = fit_form(samples, form.words, [form.fitted], form.freedom - 1)
+    form = named_or(samples, "unexplained", [form, again])
+    named = [one.effect for one in samples.contributions if one.view == "unexplained"]
+    slow = named == ["drift"] if form.named else form.words == DRIFT
+    if slow or hertz is None:
         start, end = narrowest(samples.time, form.fitted**2)
-        axis, unit = "time in the record", "s"
-        where = f"most of it between {number(start)} and {number(end)} s of a record"
+        axis, unit, within = "time in the record", "s", "of a record"
     else:
         # A record tells a line from its neighbours by the inverse of its length.
         resolution = float(1 / np.min(samples.durations))
-        first = lines.frequencies[0]
-        start, end = max(first - resolution, 0.0), first + resolution
-        axis, unit = "frequency", "Hz"
-        told = number(first)
-        where = f"at {told} Hz, between {number(start)} and {number(end)} Hz"
+        start, end = max(hertz - resolution, 0.0), hertz + resolution
+        axis, unit, within = "frequency", "Hz", f"at {number(hertz)} Hz"
+    p_value = min(1.0, 2 * min(line_p, p_value_of(samples, drift)))
+    share = samples.share(form.explained, form.freedom)
     return View(
         view="unexplained",
         axis=axis,
@@ -107,113 +84,104 @@ def unexplained_view(samples: Samples, distortion: Distortion | None) -> View:
         end=end,
         unit=unit,
         share_of_gap_power=share,
-        p_value=p_value,
+        p_value=p_value_of(samples, form) if form.named else p_value,
         sentence=(
-            f"{percent(share)} of the gap is {kind} that the input does not explain, "
-            f"{where}.{told_coherence(take_coherence(samples))}"
-            f"{told_repeating(distortion)}"
+            f"{percent(share)} of the gap is {form.words}, which the input does not "
+            f"explain, between {number(start)} and {number(end)} {unit} {within}."
         ),
         saved=form.saved,
+        named=form.named,
     )
 
 
-def _drift_columns(samples: Samples, orders: int) -> list[FloatArray]:
+def _drift_columns(samples: Samples) -> list[FloatArray]:
     """Give cosines of half-periods, zero where the input is as slow.
 
     Each begins at zero: an offset from the first sample on is no drift. A record of one
     loop has none: whatever is slower than the loop could be the loop's own error.
     """
-    duration = samples.durations[samples.record]
-    slowest = np.array(
-        [lowest_frequency(samples, i) for i in range(len(samples.compared))]
-    )
-    halves = np.maximum(samples.durations * slowest, 1.0)
-    allowed = halves[samples.record] * _shown(samples)
-    columns = []
-    for order in range(1, orders + 1):
-        wave = 1 - np.cos(np.pi * order * samples.time / duration)
-        columns.append(np.where(order <= allowed, wave, 0.0))
-    return columns
+    ends = zip(samples.compared, samples.durations, samples.slices, strict=True)
+    duration, halves = np.empty_like(samples.time), np.empty_like(samples.time)
+    for item, seconds, part in ends:
+        power, frequency = periodogram(item.record.u, item.record.dt)
+        total = np.cumsum(power[1:])
+        slowest = frequency[1:][np.searchsorted(total, 0.01 * total[-1])]
+        duration[part], halves[part] = seconds, max(seconds * slowest, 1.0)
+    halves *= _shown(samples)
+    return [
+        np.where(
+            order <= halves, 1 - np.cos(np.pi * order * samples.time / duration), 0.0
+        )
+        for order in range(1, ORDERS + 1)
+    ]
 
 
 def _shown(samples: Samples) -> BoolArray:
     """Mark the samples of records that show a path beside what the input does."""
-    shown = np.array([shows_a_path(item.record) for item in samples.compared])
-    return cast(BoolArray, shown[samples.record])
+    counts = [len(places) for places in samples.places]
+    shown = [shows_a_path(item.record) for item in samples.compared]
+    return np.repeat(np.array(shown), counts)
 
 
-def lowest_frequency(samples: Samples, index: int) -> float:
-    """Give the frequency in Hz below which a hundredth of the input's power lies."""
-    record = samples.compared[index].record
-    power, frequency = periodogram(record.u, record.dt)
-    total = np.cumsum(power[1:])
-    return float(frequency[1:][np.searchsorted(total, 0.01 * total[-1])])
+def find_line(samples: Samples) -> tuple[float | None, float]:
+    """Find the lone line that stands out most, over the records together.
 
-
-def _wave_columns(samples: Samples, frequency: float) -> list[FloatArray]:
-    """Give cosine and sine of a frequency."""
-    phase = 2 * np.pi * frequency * samples.time
-    return [np.cos(phase), np.sin(phase)]
-
-
-def find_lines(samples: Samples) -> Lines:
-    """Find lone lines by the whitened periodograms of all records together."""
-    top = min(0.5 / item.record.dt for item in samples.compared)
+    Returns
+    -------
+    frequency : float or None
+        In Hz; None where no record has a bin that is free.
+    p_value : float
+        Chance that white noise holds a line as strong as the strongest. A harmonic of
+        the input's strongest line does not count: distortion lies there.
+    """
     step = 2.0 / float(np.min(samples.durations))
-    cells = int(top / step)
-    if cells < 4:
-        return Lines((), 1.0)
-    height = np.zeros(cells)
-    seen = np.zeros(cells)
-    bins, strongest = 0, 0.0
-    peaks: list[tuple[FloatArray, FloatArray]] = []
+    top = min(0.5 / item.record.dt for item in samples.compared)
+    edges = np.arange(0.0, max(top, 2 * step), step)
+    height, seen = np.zeros(len(edges)), np.zeros(len(edges))
+    found, bins, strongest = [], 0, 0.0
     for item in samples.compared:
-        dt = item.record.dt
-        power, frequency = periodogram(item.residual, dt)
-        cause, _ = periodogram(item.record.u, dt)
-        white = power / _level(power)
-        cell = np.minimum((frequency / step).astype(np.int64), cells)
-        free = ~_input_lines(cause)
+        power, at = periodogram(item.residual, item.record.dt)
+        cause, _ = periodogram(item.record.u, item.record.dt)
+        free = ~_lines_of(cause)
         free[:3] = False
-        strength = np.zeros(cells + 1)
-        np.maximum.at(strength, cell[free], white[free])
-        height += np.log1p(strength[:cells])
-        seen += strength[:cells] > 0
-        peaks.append((frequency, np.where(free, white, 0.0)))
+        white = np.where(free, power / _level(power), 0.0)
+        strength = np.zeros(len(edges))
+        np.maximum.at(strength, np.searchsorted(edges, at, "right") - 1, white)
+        height += np.log1p(strength)
+        seen += strength > 0
         tested = white[free & ~_harmonics(cause)]
-        bins += len(tested)
-        strongest = max(strongest, float(np.max(tested, initial=0.0)))
-    count = len(samples.compared)
-    mean = np.where(seen >= max(0.5 * count, 1), height / np.maximum(seen, 1), 0.0)
-    found: list[float] = []
-    for cell_index in np.argsort(-mean)[: 4 * LINES]:
-        place = _refine(peaks, cell_index * step, (cell_index + 1) * step)
-        if place is not None and all(abs(place - one) > 2 * step for one in found):
-            found.append(place)
-        if len(found) == LINES:
-            break
+        bins, strongest = bins + len(tested), max([strongest, *tested])
+        found.append((at, white))
+    often = seen >= max(0.5 * len(samples.compared), 1)
     # A bin exceeds x times its level with probability exp(-x); as the level is itself
     # read off a few neighbours, the tail is that of F with 2 and 2 nu degrees.
-    nu = NEIGHBOURS * MEDIAN_EFFICIENCY / HANN_INFLATION
-    one = (1 + strongest / nu) ** -nu
-    p_value = -np.expm1(bins * np.log1p(-min(one, 1 - 1e-12)))
-    return Lines(tuple(found), float(np.clip(p_value, 0.0, 1.0)))
+    nu = NEIGHBOURS * MEDIAN_EFFICIENCY / HANN
+    one = min((1 + strongest / nu) ** -nu, 1 - 1e-12)
+    p_value = float(np.clip(-np.expm1(bins * np.log1p(-one)), 0.0, 1.0))
+    if not np.any(often):
+        return None, p_value
+    low = edges[np.argmax(np.where(often, height / np.maximum(seen, 1), 0.0))]
+    at, white = (np.concatenate(each) for each in zip(*found, strict=True))
+    near = (at >= low) & (at < low + step)
+    # The strongest bins, weighted by their power, lie about the line.
+    weights = np.where(near, white, 0.0) ** 2
+    total = float(np.sum(weights))
+    return (float(np.sum(weights * at) / total) if total > 0 else None), p_value
 
 
 def _level(power: FloatArray) -> FloatArray:
     """Give the mean level of noise around each bin, by medians of blocks."""
     blocks = max(1, len(power) // NEIGHBOURS)
-    edges = np.linspace(0, len(power), blocks + 1).astype(np.int64)
-    short = int(np.diff(edges).min())
-    medians = np.median(power[edges[:-1, np.newaxis] + np.arange(short)], axis=1)
+    parts = np.array_split(power, blocks)
+    medians = np.array([np.median(part) for part in parts])
     levels = np.log(np.maximum(medians / np.log(2), 1e-300))
-    centres = 0.5 * (edges[:-1] + edges[1:])
+    centres = (np.arange(blocks) + 0.5) * len(power) / blocks
     return cast(FloatArray, np.exp(np.interp(np.arange(len(power)), centres, levels)))
 
 
-def _input_lines(cause: FloatArray) -> BoolArray:
-    """Tell the bins in which the input has a line."""
-    lone = (cause > 1e-5 * np.max(cause)) & (cause > 10 * _level(cause))
+def _lines_of(cause: FloatArray) -> BoolArray:
+    """Tell the bins in which the input has a line, and their neighbours."""
+    lone = (cause > CAUSED * np.max(cause)) & (cause > STANDS_OUT * _level(cause))
     return np.convolve(lone, np.ones(3), mode="same") > 0
 
 
@@ -222,23 +190,3 @@ def _harmonics(cause: FloatArray) -> BoolArray:
     strongest = int(np.argmax(cause[1:])) + 1
     order = np.arange(len(cause)) / strongest
     return np.abs(order - np.round(order)) * strongest < 2.5
-
-
-def _refine(
-    peaks: list[tuple[FloatArray, FloatArray]], low: float, high: float
-) -> float | None:
-    """Place a line between bins by parabolas through the peaks, the strong most."""
-    places, weights = [], []
-    for frequency, white in peaks:
-        inside = np.flatnonzero((frequency >= low) & (frequency < high))
-        if not len(inside):
-            continue
-        top = int(inside[np.argmax(white[inside])])
-        if not 0 < top < len(white) - 1 or white[top] <= 0:
-            continue
-        left, mid, right = np.log(np.maximum(white[top - 1 : top + 2], 1e-300))
-        bend = left - 2 * mid + right
-        shift = 0.5 * (left - right) / bend if bend < 0 else 0.0
-        places.append(frequency[top] + np.clip(shift, -0.5, 0.5) * frequency[1])
-        weights.append(white[top])
-    return float(np.average(places, weights=weights)) if places else None

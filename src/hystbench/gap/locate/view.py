@@ -3,7 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
+
+from hystbench.gap.locate.picture import Picture
+
+Kind = Literal[
+    "frequency",
+    "amplitude",
+    "rate",
+    "branch",
+    "slow-time",
+    "delay",
+    "unexplained",
+    "record",
+    "level",
+]
 
 SIGNIFICANT = 0.01
 """Of a p-value, for a part of a view to be told as there."""
@@ -18,8 +32,6 @@ class View:
     Parameters
     ----------
     view : str
-        Kind: frequency, amplitude, rate, branch, slow-time, delay, unexplained,
-        record or level.
     axis : str
         What ``start`` and ``end`` are values of.
     start, end : float or str
@@ -35,10 +47,15 @@ class View:
     sentence : str
         The same in words.
     saved : float
-        What the ranking goes by: see :func:`hystbench.gap.locate.locate`.
+        Description length that it saves: see :func:`hystbench.gap.locate.locate`.
+    named : bool
+        Whether it shows what a named effect adds.
+    pictures : tuple of Picture
+    not_drawn : tuple of str
+        Pictures that these records do not give, and why.
     """
 
-    view: str
+    view: Kind
     axis: str
     start: float | str
     end: float | str
@@ -47,6 +64,9 @@ class View:
     p_value: float
     sentence: str
     saved: float
+    named: bool = False
+    pictures: tuple[Picture, ...] = ()
+    not_drawn: tuple[str, ...] = ()
 
     def to_mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``where``."""

@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
 
 from hystbench.figures.style import BLACK, BLUE, GREY, ORANGE, PAGE, axis_label
-from hystbench.gap.report.diagram_layout import (
+from hystbench.gap.report.diagram_layout import layout
+from hystbench.gap.report.diagram_shapes import (
     NAME,
     NAME_LINE,
     NUMBER,
@@ -23,7 +24,6 @@ from hystbench.gap.report.diagram_layout import (
     Label,
     Line,
     Sum,
-    layout,
 )
 from hystbench.gap.report.parts import Part, Stage, Whose, in_one_line, stages
 from hystbench.model import Model

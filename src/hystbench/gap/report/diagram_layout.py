@@ -12,125 +12,35 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from textwrap import wrap
 
-from hystbench.gap.report.parts import Part, Stage, Whose
+from hystbench.gap.report.diagram_shapes import (
+    NAME,
+    NAME_LETTERS,
+    NAME_LINE,
+    NUMBER,
+    NUMBER_LETTERS,
+    NUMBER_LINE,
+    PAD,
+    RADIUS,
+    Box,
+    Diagram,
+    Drawn,
+    Label,
+    Line,
+    Point,
+    Sum,
+    text_width,
+)
+from hystbench.gap.report.parts import Part, Stage
 
-#: Type of names and of numbers (points), and the height of a line (inches).
-NAME, NUMBER = 8.0, 7.0
-NAME_LINE, NUMBER_LINE = 0.15, 0.13
-#: Letters of a line, at most: longer words are broken.
-NAME_LETTERS, NUMBER_LETTERS = 18, 24
-#: Widths of letters, in times of the type's size. Most are narrower than this says.
-NARROW, USUAL, BROAD = 0.42, 0.67, 1.0
-_NARROW, _BROAD = frozenset("ijltfrI.,:;'|()[]/- ·"), frozenset("mwMWOQ@%&")
-
-PAD = 0.07
-"""Between a box and what stands in it."""
 LEAD = 0.2
 """Length of a line with an arrow."""
 STUB = 0.1
 """Length of a line without one."""
 SPACE = 0.12
 """Between boxes above one another."""
-RADIUS = 0.07
-"""Of the circle where signals are summed."""
 ROWS = 0.22
 """Between rows, twice: a line runs in the middle."""
 MARGIN = 0.06
-
-Point = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Box:
-    """A box with words and numbers below each other, from its upper edge on.
-
-    Parameters
-    ----------
-    x, y : float
-        Its left lower corner.
-    width, height : float
-    words, numbers : tuple of str
-        Lines of text.
-    whose : {"simulator", "added", "put in"}
-    """
-
-    x: float
-    y: float
-    width: float
-    height: float
-    words: tuple[str, ...]
-    numbers: tuple[str, ...]
-    whose: Whose
-
-
-@dataclass(frozen=True)
-class Line:
-    """A line through points; with an arrow at its end or without."""
-
-    points: tuple[Point, ...]
-    arrow: bool = False
-
-
-@dataclass(frozen=True)
-class Sum:
-    """A circle where signals are summed.
-
-    With ``minus`` what comes from below is subtracted.
-    """
-
-    x: float
-    y: float
-    minus: bool = False
-
-
-@dataclass(frozen=True)
-class Label:
-    """Lines of text without a box, in the middle of a width."""
-
-    x: float
-    y: float
-    width: float
-    words: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """What is drawn, anywhere."""
-
-    boxes: tuple[Box, ...] = ()
-    lines: tuple[Line, ...] = ()
-    sums: tuple[Sum, ...] = ()
-    labels: tuple[Label, ...] = ()
-
-    def moved(self, x: float, y: float) -> Drawn:
-        """Move all to the right and up."""
-        return Drawn(
-            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.boxes),
-            tuple(
-                replace(item, points=tuple((a + x, b + y) for a, b in item.points))
-                for item in self.lines
-            ),
-            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.sums),
-            tuple(replace(item, x=item.x + x, y=item.y + y) for item in self.labels),
-        )
-
-    def __add__(self, other: Drawn) -> Drawn:
-        """Draw both."""
-        return Drawn(
-            self.boxes + other.boxes,
-            self.lines + other.lines,
-            self.sums + other.sums,
-            self.labels + other.labels,
-        )
-
-
-@dataclass(frozen=True)
-class Diagram:
-    """A whole diagram, in inches from its left lower corner."""
-
-    width: float
-    height: float
-    drawn: Drawn
 
 
 @dataclass(frozen=True)
@@ -189,15 +99,6 @@ def layout(stages: Sequence[Stage], source: str, output: str, page: float) -> Di
         drawn += Drawn(lines=(Line(way, row[0].arrow),))
     height = 2 * MARGIN - below
     return Diagram(page, height, drawn.moved(0.0, height - MARGIN))
-
-
-def text_width(text: str, size: float) -> float:
-    """Tell how wide a line of text is at most, in inches, for type of some points."""
-    letters = (
-        NARROW if letter in _NARROW else BROAD if letter in _BROAD else USUAL
-        for letter in text
-    )
-    return sum(letters) * size / 72
 
 
 def _rows(groups: Sequence[_Group], most: float) -> list[list[_Group]]:
@@ -300,6 +201,7 @@ def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
     left = start + RADIUS + LEAD + (inner - group.width) / 2
     end = start + RADIUS + LEAD + inner + STUB
     width = end + STUB
+    loop, reach = _branches(boxes, end, start, -group.down)
     drawn = group.drawn.moved(left, 0.0) + Drawn(
         lines=(
             Line(((start + RADIUS, 0.0), (left, 0.0)), group.arrow),
@@ -307,26 +209,7 @@ def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
         ),
         sums=(Sum(start, 0.0, minus=True),),
     )
-    y, before, last = -group.down, 0.0, len(boxes) - 1
-    for k, box in enumerate(boxes):
-        middle = y - SPACE - box.height / 2
-        x = (start + end - box.width) / 2
-        placed = replace(box, x=x, y=middle - box.height / 2)
-        foot = (start, before - RADIUS)
-        back: tuple[Line, ...] = (
-            Line(((end, before), (end, middle), (x + box.width, middle)), arrow=True),
-        )
-        if k == last:
-            back += (Line(((x, middle), (start, middle), foot), arrow=True),)
-        else:  # forces are summed on their way back
-            back += (
-                Line(((x, middle), (start + RADIUS, middle)), arrow=True),
-                Line(((start, middle + RADIUS), foot), arrow=True),
-            )
-            drawn += Drawn(sums=(Sum(start, middle),))
-        drawn += Drawn(boxes=(placed,), lines=back)
-        y, before = middle - box.height / 2, middle
-    return _Group(width, group.up, -y, drawn)
+    return _Group(width, group.up, -reach, drawn + loop)
 
 
 def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
@@ -335,7 +218,7 @@ def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
     inner = max(group.width, *(box.width for box in boxes))
     left = STUB + LEAD + (inner - group.width) / 2
     end = STUB + LEAD + inner + LEAD + RADIUS
-    width = end + RADIUS
+    above, reach = _branches(boxes, STUB, end, group.up)
     drawn = group.drawn.moved(left, 0.0) + Drawn(
         lines=(
             Line(((0.0, 0.0), (left, 0.0)), group.arrow),
@@ -343,27 +226,49 @@ def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
         ),
         sums=(Sum(end, 0.0),),
     )
-    y, before, last = group.up, 0.0, len(boxes) - 1
+    return _Group(end + RADIUS, reach, group.down, drawn + above, arrow=False)
+
+
+def _branches(
+    boxes: Sequence[Box], tap: float, total: float, edge: float
+) -> tuple[Drawn, float]:
+    """Stack boxes on ways from where a signal is tapped to where they are summed.
+
+    Parameters
+    ----------
+    boxes : sequence of Box
+    tap, total : float
+        Where, along the signal's line, the ways begin and end.
+    edge : float
+        How far from the line the stack begins; below zero it goes down.
+
+    Returns
+    -------
+    drawn : Drawn
+    reach : float
+        How far from the line it ends.
+    """
+    up = 1 if edge > 0 else -1
+    onward = 1 if total > tap else -1
+    drawn, before = Drawn(), 0.0
     for k, box in enumerate(boxes):
-        middle = y + SPACE + box.height / 2
-        x = (STUB + end - box.width) / 2
-        placed = replace(box, x=x, y=middle - box.height / 2)
-        head = (end, before + RADIUS)
-        branch: tuple[Line, ...] = (
-            Line(((STUB, before), (STUB, middle), (x, middle)), arrow=True),
-        )
-        if k == last:
-            way = ((x + box.width, middle), (end, middle), head)
-            branch += (Line(way, arrow=True),)
-        else:
-            branch += (
-                Line(((x + box.width, middle), (end - RADIUS, middle)), arrow=True),
-                Line(((end, middle - RADIUS), head), arrow=True),
+        middle = edge + up * (SPACE + box.height / 2)
+        x = (tap + total - box.width) / 2
+        near, far = (x, x + box.width)[::onward]
+        ways: list[tuple[Point, ...]] = [((tap, before), (tap, middle), (near, middle))]
+        head = (total, before + up * RADIUS)
+        if k == len(boxes) - 1:
+            ways.append(((far, middle), (total, middle), head))
+        else:  # what comes from further out is added first
+            lines = (
+                Line(((far, middle), (total - onward * RADIUS, middle)), arrow=True),
+                Line(((total, middle - up * RADIUS), head), arrow=True),
             )
-            drawn += Drawn(sums=(Sum(end, middle),))
-        drawn += Drawn(boxes=(placed,), lines=branch)
-        y, before = middle + box.height / 2, middle
-    return _Group(width, y, group.down, drawn, arrow=False)
+            drawn += Drawn(lines=lines, sums=(Sum(total, middle),))
+        placed = replace(box, x=x, y=middle - box.height / 2)
+        drawn += Drawn((placed,), tuple(Line(way, arrow=True) for way in ways))
+        edge, before = middle + up * box.height / 2, middle
+    return drawn, edge
 
 
 def _with_spill(group: _Group, part: Part, caught: bool) -> _Group:

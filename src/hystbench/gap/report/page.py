@@ -12,7 +12,7 @@ from hystbench.gap.locate import LEVEL
 from hystbench.gap.report import diagram, pictures, words
 from hystbench.gap.report.pictures import Picture, draw, embedded
 from hystbench.gap.report.read import Content
-from hystbench.gap.report.where_drawn import pictures_of
+from hystbench.gap.report.where import pictures_of
 from hystbench.record import column_name
 from hystbench.report.markup import one_micro
 
@@ -69,7 +69,7 @@ def page(content: Content) -> str:
     environment.filters["listed"] = words.listed
     named = with_optional(content.gap)  # as the vocabulary has it
     gap = with_optional(for_readers(content.gap))
-    drawn, missing = pictures_of(content)
+    drawn, missing = pictures_of(content.curves)
     page = environment.get_template(TEMPLATE).render(
         gap=gap,
         sentence=words.verdict_sentence(named),
@@ -84,7 +84,7 @@ def page(content: Content) -> str:
         input_column=_input_column(gap),
         where_pictures=drawn,
         missing=missing,
-        shares=_shares(gap),
+        level=LEVEL,
         ladder=_ladder(gap),
         ranking=_ranking(gap),
         ranked=_ranked(item for item in gap["ranking"] if not item["look"]),
@@ -167,24 +167,6 @@ def _input_column(gap: dict[str, Any]) -> str:
         return ""
     channel = gap["simulator"]["input"]
     return column_name(channel["name"], channel["unit"])
-
-
-def _shares(gap: dict[str, Any]) -> Picture | None:
-    if not gap["where"]:
-        return None
-    names = [item["view"].replace("-", " ") for item in gap["where"]]
-    shares = [100 * item["share_of_gap_power"] for item in gap["where"]]
-    sure = [item["p_value"] * len(names) < LEVEL for item in gap["where"]]
-    return draw(
-        pictures.bars,
-        names,
-        shares,
-        "share of the gap's power (%)",
-        sure,
-        words="Share of the gap's power in each view; grey where it may be chance, "
-        f"as the p-value times the number of views is not below {LEVEL}",
-        height=0.5 + 0.22 * len(names),
-    )
 
 
 def _ranking(gap: dict[str, Any]) -> Picture | None:

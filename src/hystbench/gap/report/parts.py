@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -15,9 +15,9 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.device_kinds import behaviour_of
+from hystbench.errors import InputError, nearest
 from hystbench.figures.style import unit_text
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Effect
 from hystbench.model import Model
 
 Whose = Literal["simulator", "added", "put in"]
@@ -89,6 +89,14 @@ class _Owner:
     of_block: bool
     """Whether they are numbers of a block that is not the effect's own."""
 
+    @classmethod
+    def of(
+        cls, item: Mapping[str, Any], whose: Whose, numbers: Mapping[str, _Number]
+    ) -> _Owner:
+        """Give the owner for an effect of gap.json."""
+        effect = effects().get(item["name"])
+        return cls(item["name"], whose, numbers, bool(effect and effect.numbers))
+
     @property
     def part(self) -> Part:
         """Its name and first numbers; those that are zero say nothing."""
@@ -113,7 +121,7 @@ def stages(model: Model, gap: Mapping[str, Any]) -> tuple[Stage, ...]:
         With its effects.
     gap : mapping
         What gap.json holds: its ``effects`` and ``built_in`` tell which blocks were
-        added, by the names and numbers of them.
+        added.
 
     Returns
     -------
@@ -207,87 +215,49 @@ def _told(stage: Stage) -> str:
 
 
 def _owners(model: Model, gap: Mapping[str, Any]) -> dict[int, list[_Owner]]:
-    """Find the effects that each block of the chain stands for."""
-    put_in = (gap.get("built_in") or {"effects": []})["effects"]
+    """Find the effects that each block of the chain stands for.
+
+    What the user put in was fitted again since its numbers were told: blocks that have
+    its name and that the search did not add are its own, with their numbers of today.
+    """
     found: dict[int, list[_Owner]] = {}
-    given: tuple[tuple[Whose, Any], ...] = (
-        ("added", gap["effects"]),
-        ("put in", put_in),
-    )
-    for whose, items in given:
-        for item in items:
-            effect = effects().get(item["name"])
-            of_block = bool(effect and effect.numbers)
-            taken = {k for k, own in found.items() if not all(x.of_block for x in own)}
-            again = whose == "put in"
-            for k, numbers in _blocks_of(item, model.chain, taken, again):
-                own = _Owner(item["name"], whose, numbers, of_block)
+    places = {label: k for k, (label, _) in enumerate(model.labelled())}
+    for item in gap["effects"]:
+        for label in item.get("blocks", ()):
+            if label not in places:
+                raise InputError(
+                    f"gap.json: {item['name']}: no block {label!r} in model.yaml; "
+                    f"{nearest(label, places)}"
+                )
+            k = places[label]
+            own = _Owner.of(item, "added", _told_of(item, model.chain[k]))
+            found.setdefault(k, []).append(own)
+    for item in (gap.get("built_in") or {"effects": []})["effects"]:
+        effect = effects().get(item["name"])
+        names = {item["name"], *(effect.laws if effect else ())}
+        for k, block in enumerate(model.chain):
+            if block.name in names and all(x.of_block for x in found.get(k, [])):
+                own = _Owner.of(item, "put in", _now_of(item, block))
                 found.setdefault(k, []).append(own)
     return found
 
 
-def _blocks_of(
-    item: Mapping[str, Any], chain: Sequence[Block], taken: set[int], again: bool
-) -> Iterator[tuple[int, dict[str, _Number]]]:
-    """Find the blocks of an effect: those that have its name and its numbers.
-
-    Where they were fitted ``again`` since their numbers were told, as those that the
-    user put in, the name alone decides.
-    """
-    effect = effects().get(item["name"])
-    told: dict[str, list[_Number]] = {}
-    for key, about in item["parameters"].items():
-        name = key.partition("#")[0]
-        told.setdefault(name, []).append((about["value"], about["unit"]))
-    if offsets := _offsets(effect, told):
-        yield from _gains(offsets, chain)
-        return
-    names = {item["name"], *(effect.laws if effect else ())}
-    named = [k for k, block in enumerate(chain) if block.name in names]
-    same = {k: _same_numbers(chain[k], told) for k in named if k not in taken}
-    if again and not any(same.values()):
-        same = {k: _numbers_now(chain[k], told) for k in same}
-    yield from ((k, numbers) for k, numbers in same.items() if numbers)
-
-
-def _same_numbers(
-    block: Block, told: Mapping[str, list[_Number]]
-) -> dict[str, _Number]:
-    """Give the numbers of a block that were told; none where one is another."""
-    found = {}
-    for name in told.keys() & block.parameters().keys():
-        value = block.parameters()[name].plain(getattr(block, name))
-        units = [unit for other, unit in told[name] if other == value]
-        if not units:
-            return {}
-        found[name] = (value, units[0])
-    return {name: found[name] for name in told if name in found}
-
-
-def _numbers_now(block: Block, told: Mapping[str, list[_Number]]) -> dict[str, _Number]:
+def _told_of(item: Mapping[str, Any], block: Block) -> dict[str, _Number]:
+    """Give the numbers of an effect that are some number of a block."""
     known = block.parameters()
+    own = [known[name].plain(getattr(block, name)) for name in known]
     return {
-        name: (known[name].plain(getattr(block, name)), told[name][0][1])
-        for name in told
-        if name in known
+        key.partition("#")[0]: (about["value"], about["unit"])
+        for key, about in item["parameters"].items()
+        if about["value"] in own
     }
 
 
-def _offsets(
-    effect: Effect | None, told: Mapping[str, list[_Number]]
-) -> dict[str, _Number]:
-    """Give the numbers of an effect whose blocks are plain gains with an offset."""
-    if effect is None:
-        return {}
-    labels = {label for form in effect.offsets.values() for label, _ in form}
-    return {name: told[name][0] for name in told} if {*told} <= labels else {}
-
-
-def _gains(
-    offsets: Mapping[str, _Number], chain: Sequence[Block]
-) -> Iterator[tuple[int, dict[str, _Number]]]:
-    for name, about in offsets.items():
-        for k, block in enumerate(chain):
-            if block.name == "gain" and getattr(block, "offset", None) == about[0]:
-                yield k, {name: about}
-                break
+def _now_of(item: Mapping[str, Any], block: Block) -> dict[str, _Number]:
+    """Give the numbers of an effect as a block has them today."""
+    known = block.parameters()
+    return {
+        name: (known[name].plain(getattr(block, name)), about["unit"])
+        for name, about in item["parameters"].items()
+        if name in known
+    }

@@ -1,4 +1,4 @@
-"""The view by level: how modes move when the input grows, and what that speaks for.
+"""A mode followed from level to level: what moves, and the class that follows.
 
 A linear device has the same modes at every level. What moves, and how, tells the class
 of what is missing [1]_ [2]_.
@@ -14,21 +14,13 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from scipy import special
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.locate.dominant import Found, find_modes
-from hystbench.gap.locate.listed import listed
-from hystbench.gap.locate.modes import LINES, Mode, fit_mode, lines_of
-from hystbench.gap.locate.regression import saved
-from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.view import View, number, percent
-from hystbench.quantities import quantity_of
+from hystbench.gap.locate.mode import Mode
+from hystbench.gap.locate.view import number
 from hystbench.record import FloatArray
 
 Class = Literal[
@@ -52,23 +44,14 @@ WORDS: dict[Class, str] = {
     "none": "a linear mode, as far as these levels show",
 }
 
-APART = 1.2
-"""Of two input levels, rms over rms, at least."""
-FEWEST = 3
-"""Levels that show how something moves."""
 SURE = 3.0
 """Standard errors by which a number has to move."""
 STEADY = np.array([1e-4, 1e-2, 1e-2, 1e-2])
 """Smallest relative error of frequency, damping twice, and gain that is believed: from
 one record to the next temperature alone moves them by as much."""
-BLURRED = 0.5
-"""Relative error of damping or gain above which there is no peak to speak of."""
 BENDS = 0.75
 """Share of a rise in frequency squared that lies in the lower half of the mean square
 of the motion: half of it of a cubic spring, next to all of it of a clearance."""
-NUMBERS = 8
-"""Of a mode at a level: its pole, and three complex numbers of its band."""
-_INTEGRALS = {"position": 0, "velocity": 1, "acceleration": 2}
 
 
 @dataclass(frozen=True)
@@ -192,142 +175,6 @@ class Moving:
     def _of_levels(self) -> str:
         seen = len(self.modes)
         return "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
-
-
-def take_levels(samples: Samples) -> tuple[Moving, ...]:
-    """Fit the dominant modes at each level of the input.
-
-    Returns
-    -------
-    tuple of Moving
-        Empty where fewer than three levels have a broadband input, or no mode is seen
-        at three of them.
-    """
-    levels = _levels(samples.compared)
-    if len(levels) < FEWEST:
-        return ()
-    lines = [[lines_of(item) for item in level] for level in levels]
-    inputs = np.array([np.mean([_rms(one) for one in level]) for level in levels])
-    measured = quantity_of("output", levels[0][0].record.output.unit)
-    integrals = _INTEGRALS.get(measured, 1)
-    found, start = _start(levels)
-    moving: list[Moving] = []
-    for mode in found.modes:
-        fits = dict(_followed(lines, start, mode, integrals))
-        if len(fits) >= FEWEST:
-            places = sorted(fits)
-            modes = tuple(fits[place] for place in places)
-            one = Moving(inputs[places], modes, integrals, len(levels))
-            if not any(_same(one, other) for other in moving):
-                moving.append(one)
-    return tuple(moving)
-
-
-def levels_view(samples: Samples, moving: Sequence[Moving]) -> View:
-    """Tell how modes move with the level.
-
-    The share is what a mode of each level's own takes away of the gap within its band.
-    The p-value is that of frequency, damping and gain being the same at every level.
-    """
-    inputs = moving[0].inputs
-    total = len(samples.compared)
-    explained = sum(m.missed - m.left for each in moving for m in each.modes) / total
-    freedom = NUMBERS * sum(len(each.modes) for each in moving)
-    chi_squares, freedoms = zip(*(each.chi_square for each in moving), strict=True)
-    share = samples.share(explained, freedom)
-    unit = samples.compared[0].record.input.unit
-    told = "; ".join(each.sentence for each in moving)
-    return View(
-        view="level",
-        axis="rms of the input",
-        start=float(inputs[0]),
-        end=float(inputs[-1]),
-        unit=unit,
-        share_of_gap_power=share,
-        p_value=float(special.chdtrc(sum(freedoms), sum(chi_squares))),
-        sentence=(
-            f"From {number(inputs[0])} to {number(inputs[-1])} {unit} rms of the input "
-            f"{told}. A mode of each level's own takes away "
-            f"{percent(share)} of the gap."
-        ),
-        saved=saved(samples, explained, freedom),
-    )
-
-
-def levels_curve(moving: Sequence[Moving]) -> dict[str, Any] | None:
-    """Give what the picture draws, by mode; None where no mode was followed."""
-    if not moving:
-        return None
-    return {
-        "modes": [
-            {
-                "kind": each.kind,
-                "input": listed(each.inputs),
-                **{
-                    name: listed(each.numbers[:, k])
-                    for k, name in enumerate(("frequency", "width", "damping", "gain"))
-                },
-                **{
-                    f"{name}_error": listed(each.errors[:, k] * each.numbers[:, k])
-                    for k, name in enumerate(("frequency", "width", "damping", "gain"))
-                },
-            }
-            for each in moving
-        ]
-    }
-
-
-def _levels(compared: Sequence[Compared]) -> list[list[Compared]]:
-    """Group records of a broadband input by its rms, the smallest first."""
-    broad = [
-        item for item in compared if int(np.sum(lines_of(item).excited)) >= 2 * LINES
-    ]
-    levels: list[list[Compared]] = []
-    for item in sorted(broad, key=_rms):
-        if levels and _rms(item) < APART * _rms(levels[-1][0]):
-            levels[-1].append(item)
-        else:
-            levels.append([item])
-    return levels
-
-
-def _rms(item: Compared) -> float:
-    return float(np.std(item.record.u))
-
-
-def _start(levels: Sequence[Sequence[Compared]]) -> tuple[Found, int]:
-    """Find the modes where the device is more nearly linear: lowest or highest level.
-
-    A clearance and friction matter least at the highest, a spring at the lowest.
-    """
-    ends = (0, len(levels) - 1)
-    found = [(find_modes([one.record for one in levels[k]]), k) for k in ends]
-    return min(found, key=lambda item: item[0].left)
-
-
-def _followed(
-    lines: Sequence[Sequence[Any]],
-    start: int,
-    mode: tuple[float, float],
-    integrals: int,
-) -> list[tuple[int, Mode]]:
-    """Fit a mode at each level, each from its neighbour, as long as it has a peak."""
-    order = range(len(lines)) if start == 0 else range(len(lines) - 1, -1, -1)
-    found = []
-    for place in order:
-        fitted = fit_mode(lines[place], *mode, integrals)
-        if fitted is None or float(np.max(fitted.errors)) > BLURRED:
-            continue
-        mode = (fitted.frequency, fitted.damping)
-        found.append((place, fitted))
-    return found
-
-
-def _same(one: Moving, other: Moving) -> bool:
-    """Tell whether two starts led to one mode: they lie within its width anywhere."""
-    place = np.searchsorted(other.inputs, one.inputs).clip(max=len(other.inputs) - 1)
-    frequency, damping = other.numbers[place, :2].T
-    return bool(np.any(np.abs(one.numbers[:, 0] - frequency) < damping * frequency))
 
 
 def _verb(way: int) -> str:

@@ -1,0 +1,218 @@
+"""What a form explains of the residual, what it costs, and what chance would give."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import fft, special
+
+from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.view import Kind
+from hystbench.record import FloatArray
+
+FACTS = 300
+"""The residual counts as so many independent facts, however finely sampled: an error of
+a model is not white (docs/gap.md, "A score that saturates")."""
+HOLD = 0.8
+"""Of what a view explains, that its range holds."""
+SMOOTH = 17
+"""Bins over which the spectrum of what is left is smoothed."""
+DEPENDENT = 1e-5
+"""Of the largest singular value of columns of one length: below it there is none."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """A fitted form: some function of an axis, with its number of free parameters.
+
+    Parameters
+    ----------
+    words : str
+        What it is, behind "of the gap is".
+    fitted : ndarray, shape (n,)
+        What the form says of the residual, in its unit.
+    explained : float
+        Mean square that leaves the residual with it.
+    freedom : float
+    saved : float
+        Description length saved, in nats.
+    weights : ndarray, shape (columns,)
+        Of the last record, where each has its own.
+    added : tuple of ndarray
+        What a named effect adds to each record; none of a form of the view's own.
+    """
+
+    words: str
+    fitted: FloatArray
+    explained: float
+    freedom: float
+    saved: float
+    weights: FloatArray
+    added: tuple[FloatArray, ...] = ()
+
+    @property
+    def named(self) -> bool:
+        """Whether it is what a named effect adds."""
+        return bool(self.added)
+
+
+def saved(samples: Samples, explained: float, freedom: float) -> float:
+    """Give the description length that a form saves, in nats.
+
+    ``facts / 2 * log(power before / power after) - freedom / 2 * log(facts)``: the
+    Bayesian information criterion with a number of facts that does not grow with the
+    sampling rate. Power after is never less than the noise: fitting noise saves
+    nothing.
+    """
+    after = max(samples.power - explained, samples.noise, 1e-300)
+    before = max(samples.power, after)
+    facts = min(FACTS, len(samples.residual))
+    return float(
+        0.5 * facts * np.log(before / after) - 0.5 * freedom * np.log(max(facts, 2))
+    )
+
+
+def fit_form(
+    samples: Samples,
+    words: str,
+    columns: Sequence[FloatArray],
+    searched: float = 0,
+    by_record: bool = False,
+) -> Form:
+    """Fit columns to the residual by least squares.
+
+    Parameters
+    ----------
+    samples : Samples
+    words : str
+    columns : sequence of ndarray, shape (n,)
+    searched : float
+        Parameters inside the columns that were searched for, counted as freedom.
+    by_record : bool
+        Whether each record has coefficients of its own.
+    """
+    design = np.stack(columns, axis=1)
+    fitted = np.empty_like(samples.residual)
+    freedom = searched
+    for part in samples.slices if by_record else (slice(None),):
+        own = design[part]
+        scale = np.linalg.norm(own, axis=0)
+        scale = np.where(scale > 0, scale, 1.0)
+        own = own / scale
+        found, _, rank, _ = np.linalg.lstsq(own, samples.residual[part], DEPENDENT)
+        fitted[part] = own @ found
+        freedom += int(rank)
+    explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
+    gained = saved(samples, explained, freedom)
+    return Form(words, fitted, explained, freedom, gained, found / scale)
+
+
+def best(forms: Sequence[Form]) -> Form:
+    """Give the form that saves most."""
+    return max(forms, key=lambda form: form.saved)
+
+
+def named_or(samples: Samples, view: Kind, forms: Sequence[Form]) -> Form:
+    """Give what named effects add in a view; without any the best form of its own."""
+    named = [
+        replace(
+            fit_form(samples, f"what {item.effect} adds", [column], item.freedom - 1),
+            added=item.added,
+        )
+        for item in samples.contributions
+        if item.view == view
+        for column in [samples.thinned(item.added)]
+    ]
+    return best(named or forms)
+
+
+def p_value_of(samples: Samples, form: Form, tests: Sequence[Form] = ()) -> float:
+    """Give the F test's p-value: of what is named, or the least of some forms.
+
+    The tests have no searched parameters; the least of several is multiplied by their
+    number.
+    """
+    used = [form] if form.named or not tests else tests
+    return min(1.0, len(used) * min(_fitted_p_value(samples, one) for one in used))
+
+
+def _fitted_p_value(samples: Samples, form: Form) -> float:
+    rest = samples.residual - form.fitted
+    count = effective_count(samples, rest, form.fitted)
+    share = form.explained / max(samples.power, 1e-300)
+    return f_test(share, form.freedom, count)
+
+
+def f_test(share: float, freedom: float, count: float) -> float:
+    """Give the p-value of a share of variance explained.
+
+    ``F = (share / freedom) / ((1 - share) / (count - freedom))`` with ``count`` the
+    effective number of samples. With fewer samples than parameters nothing is
+    significant.
+    """
+    left = count - freedom
+    if left < 1 or freedom <= 0:
+        return 1.0
+    # The survival function of F through the incomplete beta function.
+    return float(special.betainc(left / 2, freedom / 2, np.clip(1.0 - share, 0.0, 1.0)))
+
+
+def effective_count(samples: Samples, rest: FloatArray, fitted: FloatArray) -> float:
+    """Count the independent samples among autocorrelated ones.
+
+    A fit picks up the rest where both have power. With the spectra S of the rest,
+    smoothed over its neighbours, and F of what was fitted, the count is
+    ``n mean(S) mean(F) / mean(S F)``: n for a white rest, few for a slow fit to a slow
+    rest (Bartlett 1946, in the frequency domain). It is never more than n.
+    """
+    rests, fits = [], []
+    for part in samples.slices:
+        power = np.abs(fft.rfft(rest[part])) ** 2
+        window = np.ones(min(SMOOTH, len(power)))
+        covered = np.convolve(np.ones_like(power), window, mode="same")
+        rests.append(np.convolve(power, window, mode="same") / covered)
+        fits.append(np.abs(fft.rfft(fitted[part])) ** 2)
+    s, f = np.concatenate(rests), np.concatenate(fits)
+    shared = float(np.mean(s * f))
+    return len(rest) * min(1.0, float(s.mean() * f.mean()) / shared if shared else 1.0)
+
+
+def hats(values: FloatArray, knots: int) -> list[FloatArray]:
+    """Give the piecewise-linear basis over evenly spread knots; it adds to one."""
+    low, high = float(np.min(values)), float(np.max(values))
+    places = np.linspace(low, high if high > low else low + 1.0, knots)
+    return [np.interp(values, places, row) for row in np.eye(knots)]
+
+
+def narrowest(
+    axis: FloatArray, weights: FloatArray, bins: int = 50
+) -> tuple[float, float]:
+    """Give the range of fewest samples that holds most of the weight.
+
+    Parameters
+    ----------
+    axis, weights : ndarray, shape (n,)
+    bins : int
+        Bins of as many samples each.
+    """
+    order = np.argsort(axis)
+    starts = np.unique(np.linspace(0, len(axis), bins + 1)[:-1].astype(np.int64))
+    first, last = narrowest_bins(np.add.reduceat(weights[order], starts))
+    end = starts[last + 1] if last + 1 < len(starts) else len(axis) - 1
+    return float(axis[order[starts[first]]]), float(axis[order[end]])
+
+
+def narrowest_bins(held: FloatArray, hold: float = HOLD) -> tuple[int, int]:
+    """Give the first and the last of the fewest neighbours that hold most."""
+    sums = np.concatenate([[0.0], np.cumsum(held)])
+    wanted = (hold - 1e-12) * sums[-1]
+
+    def most(count: int) -> float:
+        return float(np.max(sums[count:] - sums[:-count]))
+
+    count = 1 + bisect_left(range(1, len(held)), wanted, key=most)
+    first = int(np.argmax(sums[count:] - sums[:-count]))
+    return first, first + count - 1

@@ -1,0 +1,237 @@
+"""One mode in the frequency domain, fitted in a band around it, level by level.
+
+In a band around a lightly damped mode a spectrum obeys ``Y = (B U + T) / D`` with
+``D = s^2 + 2 zeta w s + w^2``; the polynomials B and T are short and complex, as they
+stand for all other modes and for the ends of the record [1]_.
+
+References
+----------
+.. [1] T. McKelvey, G. Guerin, "Non-parametric frequency response estimation using a
+   local rational model", IFAC Proceedings 45 (2012) 49-54.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from hystbench.gap.locate.lines import ComplexArray, Lines
+from hystbench.record import FloatArray
+
+DEGREE = 2
+"""Of the local polynomials, in the distance from the middle of the band."""
+WIDE = 6.0
+"""Half the width of a band, in damping ratios: nine tenths of a mode's energy."""
+NARROWEST, WIDEST = 0.08, 0.5
+"""Ends of half the width of a band, as shares of its frequency."""
+LINES = 16
+"""Fewest excited lines of a band: twice the numbers that are fitted."""
+DAMPINGS, FREQUENCIES = 12, 25
+"""Of the grid in which a mode is searched."""
+EDGE = 1e-3
+"""Of a range: a fit that comes so near to its end has none, relative to its value."""
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A mode at one level of the input.
+
+    Parameters
+    ----------
+    frequency : float
+        In Hz.
+    damping : float
+        Damping ratio of the fitted pole.
+    power_damping : float
+        Damping ratio by power: what the input puts in, over the mean square velocity.
+        A spring, however curved, takes no power: it may widen a peak, and does not
+        change this.
+    gain : float
+        Acceleration a unit of input, of the mode alone: one over its mass. It does
+        not depend on its stiffness.
+    errors : ndarray, shape (4,)
+        Standard errors of the four, relative to them. What follows the input but not
+        by a linear filter counts as noise.
+    reach : float
+        RMS of the output in the band.
+    held, missed, left : float
+        Mean square in the band of the output, of what the simulation misses of it, and
+        of what the mode as fitted here misses; summed over the level's records.
+    """
+
+    frequency: float
+    damping: float
+    power_damping: float
+    gain: float
+    errors: FloatArray
+    reach: float
+    held: float
+    missed: float
+    left: float
+
+
+def fit_mode(
+    level: Sequence[Lines], frequency: float, damping: float, integrals: int
+) -> Mode | None:
+    """Fit a mode in a band that follows it, starting from where it was a level below.
+
+    Parameters
+    ----------
+    level : sequence of Lines
+        Records of one level.
+    frequency : float
+        In Hz.
+    damping : float
+    integrals : int
+        How often the output has to be integrated for a position: two for an
+        acceleration.
+
+    Returns
+    -------
+    Mode, optional
+        None where the input excites too few lines of the band, or no peak is in it.
+    """
+    found: Mode | None = None
+    half = float(np.clip(2 * WIDE * damping, 2 * NARROWEST, WIDEST))
+    for search in (True, False, False):
+        band = _Band.of(level, frequency, half, integrals)
+        found = None if band is None else band.fitted(frequency, damping, search)
+        if found is None:
+            return None
+        frequency, damping = found.frequency, found.damping
+        half = float(np.clip(WIDE * damping, NARROWEST, WIDEST))
+    return found
+
+
+@dataclass(frozen=True)
+class _Band:
+    """Lines of one level in a band; s is ``j f / centre``."""
+
+    centre: float
+    lines: tuple[Lines, ...]
+    integrals: int
+
+    @classmethod
+    def of(
+        cls, level: Sequence[Lines], centre: float, half: float, integrals: int
+    ) -> _Band | None:
+        parts = []
+        for one in level:
+            near = one.within(
+                (np.abs(one.frequency / centre - 1) <= half) & one.excited
+            )
+            away = near.frequency / centre - 1
+            # Lines on both sides of the middle, half way out at least.
+            if len(away) >= LINES and away.min() < -half / 2 < half / 2 < away.max():
+                parts.append(near)
+        return cls(centre, tuple(parts), integrals) if parts else None
+
+    def fitted(self, frequency: float, damping: float, search: bool) -> Mode | None:
+        """Fit the mode from a start; none where it leaves the band or is too sharp."""
+        from scipy.optimize import least_squares  # late: it takes long to load
+
+        low = min(float(one.frequency[0]) for one in self.lines) / self.centre
+        high = max(float(one.frequency[-1]) for one in self.lines) / self.centre
+        ends = np.log([[low, self._sharpest], [high, 1.0]])
+        start = np.log([frequency / self.centre, damping])
+        if search:
+            grid = product(
+                np.log(np.linspace(low, high, FREQUENCIES))[1:-1],
+                np.linspace(ends[0, 1], np.log(0.6), DAMPINGS),
+            )
+            start = min(map(np.array, grid), key=lambda at: _square(self._residual(at)))
+        inside = np.clip(start, ends[0] + EDGE, ends[1] - EDGE)
+        best = least_squares(self._residual, inside, x_scale=0.1, bounds=ends)
+        if np.any(np.abs(best.x - ends) < EDGE):
+            return None
+        nu, zeta = np.exp(best.x).tolist()
+        return self._mode(nu, zeta, best.fun, best.jac)
+
+    @property
+    def _sharpest(self) -> float:
+        """Damping ratio of a peak as wide as the lines are apart.
+
+        One that is sharper stands on a single line, and may be that line's noise.
+        """
+        steps = [float(np.median(np.diff(one.frequency))) for one in self.lines]
+        return min(steps) / (2 * self.centre)
+
+    def _linear(self, nu: float, zeta: float) -> list[ComplexArray]:
+        """Give the columns of B, then of T, of each record."""
+        found = []
+        for one in self.lines:
+            s = 1j * one.frequency / self.centre
+            powers = np.vander(s - 1j, DEGREE + 1, increasing=True)
+            powers = powers / (s**2 + 2 * zeta * nu * s + nu**2)[:, None]
+            columns = powers * one.u[:, None]
+            found.append(np.hstack([columns, powers]) if one.ends else columns)
+        return found
+
+    def _residual(self, at: FloatArray) -> FloatArray:
+        """Give what B and T cannot explain for a pole: real and imaginary parts."""
+        parts = []
+        for columns, one in zip(self._linear(*np.exp(at)), self.lines, strict=True):
+            basis, _ = np.linalg.qr(columns)
+            parts.append(one.y - basis @ (basis.conj().T @ one.y))
+        whole = np.concatenate(parts)
+        return np.concatenate([whole.real, whole.imag])
+
+    def _mode(
+        self, nu: float, zeta: float, residual: FloatArray, slopes: FloatArray
+    ) -> Mode:
+        """Give the numbers of the mode, and how sure they are."""
+        linear = self._linear(nu, zeta)
+        facts = len(residual) - 2 - 2 * sum(columns.shape[1] for columns in linear)
+        noise = _square(residual) / max(facts, 1)
+        errors = np.sqrt(noise * np.diag(np.linalg.pinv(slopes.T @ slopes)))
+        # The numerator at the pole, over all records alike, weighted by their power.
+        here = np.array([1.0, 1j * (nu - 1), (1j * (nu - 1)) ** 2])
+        value, weights, spread = 0.0 + 0.0j, 0.0, 0.0
+        for columns, one in zip(linear, self.lines, strict=True):
+            found = np.linalg.lstsq(columns, one.y, rcond=None)[0]
+            inverse = np.linalg.pinv(columns.conj().T @ columns)
+            weight = float(np.sum(np.abs(columns[:, 0]) ** 2))
+            value += weight * complex(here @ found[: DEGREE + 1])
+            own = inverse[: DEGREE + 1, : DEGREE + 1]
+            spread += weight**2 * 2 * noise * float(np.real(here @ own @ here.conj()))
+            weights += weight
+        value, of_gain = value / weights, np.sqrt(spread) / max(abs(value), 1e-300)
+        taken, moved, blurred = self._power(value, nu, noise)
+        frequency = nu * self.centre
+        scale = (2 * np.pi) ** (2 - self.integrals)
+        gain = abs(value) * self.centre**2 * scale / frequency**self.integrals
+        # A pole that is damped more has a numerator that is larger alike.
+        gain_error = float(np.hypot(of_gain, errors[1]))
+        held = sum(float(np.sum(np.abs(one.y) ** 2)) for one in self.lines)
+        return Mode(
+            frequency,
+            zeta,
+            taken / (2 * nu * moved),
+            float(gain),
+            np.array([*errors, np.hypot(blurred, gain_error), gain_error]),
+            float(np.sqrt(held / len(self.lines))),
+            held,
+            sum(float(np.sum(np.abs(one.missed) ** 2)) for one in self.lines),
+            _square(residual),
+        )
+
+    def _power(
+        self, value: complex, nu: float, noise: float
+    ) -> tuple[float, float, float]:
+        """Give power put in, mean square velocity, and the relative error of both."""
+        taken = moved = spread = 0.0
+        for one in self.lines:
+            s = 1j * one.frequency / self.centre
+            shape = value * (s / (1j * nu)) ** self.integrals
+            velocity = s * one.y / shape
+            taken += float(np.real(np.vdot(one.u, velocity)))
+            moved += float(np.sum(np.abs(velocity) ** 2))
+            spread += float(np.sum(np.abs(one.u * s / shape) ** 2)) * noise
+        return taken, moved, float(np.sqrt(spread) / max(abs(taken), 1e-300))
+
+
+def _square(values: FloatArray) -> float:
+    return float(values @ values)
