@@ -19,6 +19,7 @@ from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
 from hystbench.gap.evidence import Evidence
 from hystbench.gap.scene import Scene
 from hystbench.model import Model, load_model
+from hystbench.quantities import Quantities
 from hystbench.record import Channel
 from tests.conftest import run_hystbench
 from tests.gap.made import multisine, play_sum, record, sine, steady, write_folder
@@ -513,3 +514,34 @@ def test_of_many_poles_the_denominator_is_not_free(monkeypatch):
     model, _ = load_base("linear", evidence(known))
     assert "transfer-function.numerator" in model.free
     assert "transfer-function.denominator" not in model.free
+
+
+def impedance_records(noise=0.0):
+    """The force of a mass on a spring along two motions, from its formula."""
+    random = np.random.default_rng(4)
+    made = []
+    for place in range(2):
+        t = np.arange(1500) * 1e-3
+        w = 2 * np.pi * random.uniform(5, 40, 6)
+        size, phase = random.uniform(0.2, 1.0, 6), random.uniform(0, 6, 6)
+        q = size @ np.sin(np.outer(w, t) + phase[:, None])
+        v = (size * w) @ np.cos(np.outer(w, t) + phase[:, None])
+        a = -(size * w**2) @ np.sin(np.outer(w, t) + phase[:, None])
+        force = 2e-4 * a + 0.05 * v + 30.0 * q + 4.0
+        force += noise * random.standard_normal(len(t))
+        made.append(record(q, force, name=f"motion {place}", dt=1e-3))
+    return made
+
+
+def test_where_a_motion_makes_a_force_the_base_is_an_impedance():
+    """Its force grows with the square of the frequency: no ratio that runs does so."""
+    about = {"quantities": Quantities("position", "force")}
+    found = identified_linear(evidence(*impedance_records(0.01), **about))
+    (block,) = found.model.chain
+    values = (block.mass, block.damping, block.stiffness, block.bias)
+    assert values == pytest.approx((2e-4, 0.05, 30.0, 4.0), rel=0.01)
+    assert found.fit_rms == pytest.approx(0.01, rel=0.05)
+    # Of what is not known to be a motion and a force it is none.
+    unknown = identified_linear(evidence(*impedance_records(0.01)))
+    assert {item.name for item in unknown.model.chain} <= {"transfer-function", "gain"}
+    assert unknown.fit_rms > found.fit_rms

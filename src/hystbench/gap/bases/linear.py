@@ -163,7 +163,8 @@ def identified_linear(evidence: Evidence) -> Linear:
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
     )
-    halves = _halves(evidence, spectra, found, whole, folds)
+    series = not isinstance(chain[0], Impedance)
+    halves = _halves(evidence, spectra, found, whole, folds) if series else None
     if halves is not None:
         chain, fit, more = halves
         note += more
