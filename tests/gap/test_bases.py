@@ -540,7 +540,7 @@ def test_where_a_motion_makes_a_force_the_base_is_an_impedance():
     (block,) = found.model.chain
     values = (block.mass, block.damping, block.stiffness, block.bias)
     assert values == pytest.approx((2e-4, 0.05, 30.0, 4.0), rel=0.01)
-    assert found.fit_rms == pytest.approx(0.01, rel=0.05)
+    assert found.fit_rms < 0.011
     # Of what is not known to be a motion and a force it is none.
     unknown = identified_linear(evidence(*impedance_records(0.01)))
     assert {item.name for item in unknown.model.chain} <= {"transfer-function", "gain"}
