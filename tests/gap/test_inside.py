@@ -174,3 +174,22 @@ def test_a_limit_of_the_amplifier_before_a_mass_on_a_spring_is_found_there():
     limit, *_ = best.fitted.state.chain
     assert limit.limit == pytest.approx(3.0, rel=0.02)
     assert best.fitted.state.added[0].place == "before"
+
+
+def test_a_slider_without_a_clearance_is_friction_and_no_rival_of_it():
+    """A slider whose clearance goes to nothing fits as well, with two numbers more."""
+    t = TIME
+    x = 2 * np.sin(2 * np.pi * 1.3 * t) + 0.4 * np.sin(9.1 * t)
+    way = np.zeros(len(t))
+    for k in range(1, len(t)):  # slides at 0.1 mm: a stop operator
+        way[k] = np.clip(way[k - 1] + x[k] - x[k - 1], -0.1, 0.1)
+    noise = NOISE * np.random.default_rng(0).standard_normal(len(t))
+    y = 0.03 * np.gradient(x, DT) + 40.0 * way + noise
+    (begun,) = one_coordinate(
+        (record("run", x, y),), Quantities("position", "force"), "linear"
+    )
+    score = Score(begun.sample, np.zeros((len(begun.sample), 0)), NOISE**2)
+    every = search(
+        best_host([begun], score), score, offered=["friction", "slider-with-gap"]
+    )
+    assert {item.effects for item in every} == {(), ("friction",)}

@@ -220,6 +220,8 @@ class Effect(ABC):
     """Of its blocks, the parameters that are numbers of the effect; by default all."""
     laws: ClassVar[tuple[str, ...]] = ()
     """Blocks of other laws of the effect, beside the one that has its name."""
+    vanishing: ClassVar[str] = ""
+    """Of its block inside the dynamics: without this number it is another effect."""
 
     @abstractmethod
     def variants(self, scene: Scene) -> Iterator[Variant]:

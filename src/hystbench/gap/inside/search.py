@@ -13,14 +13,14 @@ from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
-from hystbench.gap.effects import among
+from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.base import Changed, Law, Moved
-from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted
+from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.say import Say, silent
 from hystbench.gap.score import Score
 from hystbench.gap.state import Added, Free, State
-from hystbench.gap.thresholds import FURTHER, PAYS
+from hystbench.gap.thresholds import FURTHER, PAYS, TIE
 
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
@@ -238,9 +238,26 @@ def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
 def _to_the_end(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
     """Fit hypotheses to the end; the least score first, none that runs away."""
     done = [replace(item, fitted=fitted(item.fitted.state, score)) for item in begun]
-    return sorted(
-        (item for item in done if np.isfinite(item.score)), key=lambda item: item.score
+    kept = (
+        item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
     )
+    return sorted(kept, key=lambda item: item.score)
+
+
+def _vanishes(item: Hypothesis, score: Score) -> bool:
+    """Tell whether an effect does as well without the number that makes it itself.
+
+    A slider without its clearance is dry friction, which is tried as such.
+    """
+    state = item.fitted.state
+    for added in state.added:
+        name = effects()[added.effect].vanishing
+        for place in added.blocks if name else ():
+            chain = list(state.chain)
+            chain[place] = replace(chain[place], **{name: 0.0})
+            if judged(state.with_chain(tuple(chain)), score) < item.score + TIE:
+                return True
+    return False
 
 
 def with_law(state: State, effect: str, law: Law) -> State:
