@@ -15,7 +15,7 @@ from hystbench.blocks.held import Hold
 from hystbench.gap.augmented import augmented, blocks_of
 from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.compared import Compared
-from hystbench.gap.effects import among
+from hystbench.gap.effects import among, effects
 from hystbench.gap.experiment import Experiment
 from hystbench.gap.floor import Floor
 from hystbench.gap.folds import make_folds
@@ -311,7 +311,7 @@ def contributions(ladder: Sequence[Rung]) -> list[Contribution]:
         )
         known = {item.effect for item in old.state.added}
         found += [
-            Contribution(item.effect, added, item.charge)
+            Contribution(item.effect, effects()[item.effect].shows, added, item.charge)
             for item in new.state.added
             if item.effect not in known
         ]

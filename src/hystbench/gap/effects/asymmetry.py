@@ -21,6 +21,7 @@ class Asymmetry(Effect):
     """An even term behind the hysteresis, before it or beside it, or a field bias."""
 
     name = "asymmetry"
+    shows = "amplitude"
     place = "material"
     offsets: ClassVar = {"bias": (("bias", "U"), ("zero", "Y"))}
     laws: ClassVar = ("butterfly",)

@@ -12,6 +12,7 @@ class Backlash(Effect):
     """A play operator behind the mechanics."""
 
     name = "backlash"
+    shows = "branch"
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

@@ -13,6 +13,7 @@ class CalibrationError(Effect):
     """A gain and an offset behind the last block."""
 
     name = "calibration-error"
+    shows = "amplitude"
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

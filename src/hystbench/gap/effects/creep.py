@@ -16,6 +16,7 @@ class Creep(Effect):
     """One slow element, three a decade and a half apart, or all over some decades."""
 
     name = "creep"
+    shows = "slow-time"
     place = "mechanics"
     laws: ClassVar = ("logarithmic-creep",)
 

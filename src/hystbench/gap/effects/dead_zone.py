@@ -20,6 +20,7 @@ class DeadZone(Effect):
     """A dead zone of up to half of the largest input."""
 
     name = "dead-zone"
+    shows = "amplitude"
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

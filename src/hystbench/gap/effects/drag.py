@@ -12,6 +12,7 @@ class Drag(ForceEffect):
     """Drag of a fluid in turbulent flow."""
 
     name = "drag"
+    shows = "rate"
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer it weak."""

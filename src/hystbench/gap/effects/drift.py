@@ -16,6 +16,7 @@ class Drift(Effect):
     """A ramp or a slow path, of its own in every record."""
 
     name = "drift"
+    shows = "unexplained"
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

@@ -19,6 +19,7 @@ class DriveLag(Effect):
     """A lag before everything else."""
 
     name = "drive-lag"
+    shows = "frequency"
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

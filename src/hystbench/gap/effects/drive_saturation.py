@@ -14,6 +14,7 @@ class DriveSaturation(Effect):
     """A limit below the largest input of the records."""
 
     name = "drive-saturation"
+    shows = "amplitude"
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

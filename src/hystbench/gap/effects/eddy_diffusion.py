@@ -21,6 +21,7 @@ class EddyDiffusion(Effect):
     """Magnetic diffusion before the material, in a slab, a rod or a half-space."""
 
     name = "eddy-diffusion"
+    shows = "frequency"
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

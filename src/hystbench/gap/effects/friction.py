@@ -18,6 +18,7 @@ class Friction(Effect):
     """Smooth Coulomb friction of what moves."""
 
     name = "friction"
+    shows = "branch"
     place = "mechanics"
     laws = ("friction-force", "smooth-friction")
 

@@ -12,6 +12,7 @@ class Gravity(ForceEffect):
     """A pendulum."""
 
     name = "gravity"
+    shows = "amplitude"
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer a weight that makes half of the spring, and one that works against it.

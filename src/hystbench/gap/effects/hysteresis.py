@@ -29,6 +29,7 @@ class Hysteresis(Effect):
     """
 
     name = "hysteresis"
+    shows = "branch"
     place = "material"
     laws: ClassVar = (PLAYS,)
 

@@ -16,6 +16,7 @@ class HysteresisShape(Effect):
     """
 
     name = "hysteresis-shape"
+    shows = "branch"
     place = "material"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

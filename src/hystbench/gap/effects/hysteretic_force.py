@@ -12,6 +12,7 @@ class HystereticForce(ForceEffect):
     """Bouc and Wen's hysteresis as a force."""
 
     name = "hysteretic-force"
+    shows = "branch"
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer it weak, with short and long ways to yield."""

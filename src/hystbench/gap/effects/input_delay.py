@@ -12,6 +12,7 @@ class InputDelay(Effect):
     """A delay before everything else, up to a twentieth of the longest record."""
 
     name = "input-delay"
+    shows = "delay"
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

@@ -28,6 +28,7 @@ class MainsPickup(Effect):
     """A tone near a mains frequency, with a new phase in every record."""
 
     name = "mains-pickup"
+    shows = "unexplained"
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

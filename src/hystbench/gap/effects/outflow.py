@@ -11,6 +11,7 @@ class Outflow(StoreEffect):
     """Outflow with a power of the level: a half for a free outlet (Torricelli)."""
 
     name = "outflow"
+    shows = "amplitude"
     numbers = ("exponent",)
 
     def stored(self, filled: Filled) -> Iterator[Changed]:

@@ -16,6 +16,7 @@ class Overflow(StoreEffect):
     """Overflow of the last store, of the others, and of all."""
 
     name = "overflow"
+    shows = "amplitude"
     numbers = ("height", "caught")
 
     def stored(self, filled: Filled) -> Iterator[Changed]:

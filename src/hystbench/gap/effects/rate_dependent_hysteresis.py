@@ -18,6 +18,7 @@ class RateDependentHysteresis(Effect):
     """Thresholds that grow with rate, or a field that the rate takes away."""
 
     name = "rate-dependent-hysteresis"
+    shows = "rate"
     place = "material"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

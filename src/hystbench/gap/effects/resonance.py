@@ -27,6 +27,7 @@ class Resonance(Effect):
     """
 
     name = "resonance"
+    shows = "frequency"
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

@@ -19,6 +19,7 @@ class Saturation(Effect):
     """An odd, soft limit behind the hysteresis or of the field, of any sharpness."""
 
     name = "saturation"
+    shows = "amplitude"
     place = "material"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

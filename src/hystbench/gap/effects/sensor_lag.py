@@ -19,6 +19,7 @@ class SensorLag(Effect):
     """A first-order lag behind the last block."""
 
     name = "sensor-lag"
+    shows = "frequency"
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

@@ -13,6 +13,7 @@ class SensorNonlinearity(Effect):
     """A square and a cube behind the last block."""
 
     name = "sensor-nonlinearity"
+    shows = "amplitude"
     place = "sensor"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

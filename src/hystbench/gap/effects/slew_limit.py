@@ -15,6 +15,7 @@ class SlewLimit(Effect):
     """A rate below the fastest of the records' inputs."""
 
     name = "slew-limit"
+    shows = "rate"
     place = "drive"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

@@ -12,6 +12,7 @@ class SliderWithGap(ForceEffect):
     """A slider behind a clearance."""
 
     name = "slider-with-gap"
+    shows = "branch"
     vanishing = "gap"
 
     def inside(self, moved: Moved) -> Iterator[Law]:

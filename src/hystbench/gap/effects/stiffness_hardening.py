@@ -33,6 +33,7 @@ class StiffnessHardening(Effect):
     """A cubic spring in the place of one of the chain's linear modes."""
 
     name = "stiffness-hardening"
+    shows = "frequency"
     place = "mechanics"
     laws = ("stiffness", "exponential-stiffness")
 

@@ -13,6 +13,7 @@ class Stop(ForceEffect):
     """Contact beyond a clearance, on one side or both."""
 
     name = "stop"
+    shows = "amplitude"
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer both sides, and either one, met early and late."""

@@ -12,6 +12,7 @@ class ThermalDrift(Effect):
     """Displacement that follows the input's square, slowly."""
 
     name = "thermal-drift"
+    shows = "slow-time"
     place = "mechanics"
 
     def variants(self, scene: Scene) -> Iterator[Variant]:

@@ -2,44 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hystbench.gap.locate.view import Kind
 from hystbench.record import FloatArray
-
-VIEWS: Mapping[str, Kind] = {
-    "asymmetry": "amplitude",
-    "backlash": "branch",
-    "calibration-error": "amplitude",
-    "creep": "slow-time",
-    "dead-zone": "amplitude",
-    "drag": "rate",
-    "drift": "unexplained",
-    "drive-lag": "frequency",
-    "drive-saturation": "amplitude",
-    "eddy-diffusion": "frequency",
-    "friction": "branch",
-    "gravity": "amplitude",
-    "hysteresis": "branch",
-    "hysteresis-shape": "branch",
-    "hysteretic-force": "branch",
-    "input-delay": "delay",
-    "mains-pickup": "unexplained",
-    "outflow": "amplitude",
-    "overflow": "amplitude",
-    "rate-dependent-hysteresis": "rate",
-    "resonance": "frequency",
-    "saturation": "amplitude",
-    "sensor-lag": "frequency",
-    "sensor-nonlinearity": "amplitude",
-    "slew-limit": "rate",
-    "slider-with-gap": "branch",
-    "stiffness-hardening": "frequency",
-    "stop": "amplitude",
-    "thermal-drift": "slow-time",
-}
-"""By effect, what an engineer looks at first."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +15,8 @@ class Contribution:
     Parameters
     ----------
     effect : str
+    view : str, optional
+        Where it shows, what an engineer looks at first; None where that is not known.
     added : tuple of ndarray, shape (n,)
         In the unit of the output, a record each.
     freedom : float
@@ -56,10 +24,6 @@ class Contribution:
     """
 
     effect: str
+    view: Kind | None
     added: tuple[FloatArray, ...]
     freedom: float = 1.0
-
-    @property
-    def view(self) -> Kind | None:
-        """Where it shows; None of an effect that the table does not know."""
-        return VIEWS.get(self.effect)
