@@ -159,9 +159,6 @@ SHORTFALL = _object(
     {"fit": OPTIONAL, "hold_out": OPTIONAL, "sentence": {"type": "string"}}
 )
 
-# What accounts for the gap and yet is no name, as it is new in every record and
-# predicts no other. Empty unless such effects are all that pays, and enough.
-
 # A delay, a gain or an offset that some fit records have of their own, by record: no
 # effect. `share_of_gap_power` is above the noise floor, on the fit records.
 RECORD_VALUES = _object(
