@@ -18,7 +18,8 @@ KINDS = (
     *("stiffness", "sinh", "stop", "friction"),
     *("drag", "hysteretic", "gravity", "slider", "smooth"),
 )
-"""Laws of the kernel, in the order of mechanism.c."""
+"""Laws of the kernel, by the number that they have in kernels/forces.c and, exported,
+in export/inside.py."""
 ROW = 6
 """Numbers of a row of the kernel."""
 

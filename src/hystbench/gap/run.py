@@ -1,4 +1,4 @@
-"""``hystbench gap``: decide on the fit records, then read the hold-out records once."""
+"""``hystbench gap``: decide on the fit records, then show the hold-out records once."""
 
 from __future__ import annotations
 

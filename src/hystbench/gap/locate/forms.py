@@ -15,7 +15,7 @@ from hystbench.record import FloatArray
 
 FACTS = 300
 """The residual counts as so many independent facts, however finely sampled: an error of
-a model is not white (docs/gap.md, "A score that saturates")."""
+a model is not white (docs/gap-method.md, "The score")."""
 HOLD = 0.8
 """Of what a view explains, that its range holds."""
 SMOOTH = 17
