@@ -23,6 +23,14 @@ FAMILIES = {
     "preisach": ("Preisach plant", style.ORANGE, "s"),
     "jiles-atherton": ("Jiles-Atherton plant", style.GREEN, "^"),
 }
+#: The same of machines, in a contest of their own.
+MACHINES = {
+    "mass-spring": ("mass on a spring", style.BLUE, "o"),
+    "free-mass": ("free mass", style.ORANGE, "s"),
+    "pendulum": ("pendulum", style.GREEN, "^"),
+    "impedance": ("impedance", style.VERMILION, "D"),
+    "tank": ("tank", style.PURPLE, "v"),
+}
 #: How much of an effect's place its families take.
 _SPREAD = 0.8
 _ACROSS = 4
@@ -43,15 +51,16 @@ def draw_shares(figures: Mapping[str, str], *, table: Path) -> Figure:
     rows = [row for row in _read(table, "figure") if float(row["ratio_db"]) == RATIO_DB]
     if not rows:
         raise InputError(f"{table}: no effect of the blind contest")
+    families = _families(rows)
     effects = sorted({row["effect"] for row in rows})
     drawn = Figure(figsize=(style.PAGE, 1.1 + 0.3 * len(effects)))
     panels = drawn.subplots(1, len(figures), sharey=True, squeeze=False)[0]
     for axes, (figure, title) in zip(panels, figures.items(), strict=True):
         for row in rows:
             if row["figure"] == figure and row["share"]:
-                _, color, marker = FAMILIES[row["family"]]
-                place = list(FAMILIES).index(row["family"])
-                y = style.in_row(place, len(FAMILIES), _SPREAD)
+                _, color, marker = families[row["family"]]
+                place = list(families).index(row["family"])
+                y = style.in_row(place, len(families), _SPREAD)
                 y += effects.index(row["effect"])
                 low, share, high = _percent(row)
                 axes.plot([low, high], [y, y], color=color, linewidth=0.8)
@@ -81,7 +90,7 @@ def draw_power(*, table: Path) -> Figure:
     panels = figure.subplots(lines, _ACROSS, sharex=True, sharey=True, squeeze=False)
     for axes, effect in zip(panels.flat, effects, strict=False):
         axes.set_title("all effects" if effect == "all" else effect, fontsize=7)
-        for family in FAMILIES:
+        for family in _families(rows):
             mine = [r for r in rows if (r["effect"], r["family"]) == (effect, family)]
             _curve(axes, mine, family)
     for axes in panels.flat[len(effects) :]:
@@ -98,9 +107,10 @@ def draw_power(*, table: Path) -> Figure:
 
 
 def _curve(axes: Axes, rows: list[dict[str, str]], family: str) -> None:
-    _, color, marker = FAMILIES[family]
+    families = MACHINES if family in MACHINES else FAMILIES
+    _, color, marker = families[family]
     # side by side where intervals would hide each other
-    shift = 0.5 * (list(FAMILIES).index(family) - 1)
+    shift = 0.5 * (list(families).index(family) - 1)
     x = [float(row["ratio_db"]) + shift for row in rows]
     for place, row in zip(x, rows, strict=True):
         low, _, high = _percent(row)
@@ -144,10 +154,16 @@ def draw_reliability(*, table: Path) -> Figure:
 
 def _read(table: Path, *more: str) -> list[dict[str, str]]:
     columns = ("effect", "family", "ratio_db", *more, *_INTERVAL)
-    rows = [row for row in read_rows(table, columns) if row["family"] in FAMILIES]
+    known = {**FAMILIES, **MACHINES}
+    rows = [row for row in read_rows(table, columns) if row["family"] in known]
     if not rows:
         raise InputError(f"{table}: no effect of the blind contest")
     return rows
+
+
+def _families(rows: Sequence[Mapping[str, str]]) -> dict[str, tuple[str, str, str]]:
+    """Give the families that a table is of: a contest is of actuators or machines."""
+    return MACHINES if any(row["family"] in MACHINES for row in rows) else FAMILIES
 
 
 def _percent(row: Mapping[str, str]) -> tuple[float, float, float]:
@@ -161,6 +177,6 @@ def _handles(rows: Sequence[Mapping[str, str]], line: str) -> list[Line2D]:
     there = {row["family"] for row in rows}
     return [
         style.key(label, color=color, marker=marker, linestyle=line)
-        for family, (label, color, marker) in FAMILIES.items()
+        for family, (label, color, marker) in _families(rows).items()
         if family in there
     ]

@@ -13,7 +13,8 @@ def case(folder, kind, hidden, named=None, family="gpi", sure=0.9):
     """Write a case; without an answer where ``named`` is None."""
     folder.mkdir()
     effects = [{"name": name, "parameters": {}} for name in hidden]
-    truth = {"kind": kind, "family": family, "gnr_asked_db": 20.0, "effects": effects}
+    truth = {"kind": kind, "family": family, "effects": effects}
+    truth["gnr_asked_db"] = None if kind == "none" else 20.0
     (folder / "truth.yaml").write_text(yaml.safe_dump(truth))
     if named is not None:
         answer = [{"name": name, "confidence": sure} for name in named]
@@ -64,10 +65,12 @@ def test_the_job_writes_a_row_a_group(tmp_path):
         case(tmp_path / "a", "single", ["creep"], ["creep"]),
         case(tmp_path / "b", "single", ["creep"], ["drift"]),
         case(tmp_path / "c", "unlisted", ["unlisted"], ["drift"], sure=0.7),
+        case(tmp_path / "d", "none", [], []),
     ]
     out = tmp_path / "score.csv"
     run_hystbench("job", "blind-elsewhere", *map(str, cases), "--out", str(out))
-    first, second = score(cases).to_dict("records")
+    none, first, second = score(cases).to_dict("records")
     assert (first["cases"], first["right"], first["confidently_wrong"]) == (2, 0.5, 0.5)
+    assert (none["kind"], none["cases"], none["right"]) == ("none", 1, 1.0)
     assert (second["kind"], second["confidently_wrong"]) == ("unlisted", 0.0)
     assert out.read_text().splitlines()[0].startswith("kind,base,ratio_db,cases,right")

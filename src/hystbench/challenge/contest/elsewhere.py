@@ -29,9 +29,10 @@ def told(case: Path) -> dict[str, Any]:
     Parameters
     ----------
     case : Path
-        A folder with ``truth.yaml`` (``kind``, ``family``, ``gnr_asked_db`` and
-        ``effects``, each with its ``name``) and ``result/gap.json``. Where that is
-        missing the case is lost.
+        A folder with ``truth.yaml`` (``kind``, ``family``, ``gnr_asked_db``, null with
+        nothing hidden, and ``effects``, each with its ``name``) and
+        ``result/gap.json``. Where that is missing the case is lost. A plant of a family
+        with ``gpi`` in its name has an exact base.
 
     Returns
     -------
@@ -43,7 +44,7 @@ def told(case: Path) -> dict[str, Any]:
         loop is neither required nor wrong.
     """
     truth = load_yaml(case / "truth.yaml")
-    exactly = str(truth["family"]) == "gpi"
+    exactly = "gpi" in str(truth["family"])
     hidden = {OURS.get(item["name"], item["name"]) for item in truth["effects"]}
     file = case / "result" / "gap.json"
     gap: Mapping[str, Any] = read_json(file) if file.exists() else {}
@@ -62,7 +63,7 @@ def told(case: Path) -> dict[str, Any]:
     return {
         "kind": kind,
         "base": "exact" if exactly else "foreign",
-        "ratio_db": float(truth["gnr_asked_db"]),
+        "ratio_db": truth["gnr_asked_db"],
         "right": right,
         "exact": right and {*named} == wanted,
         "confidently_wrong": any(
@@ -93,7 +94,7 @@ def score(cases: Sequence[Path]) -> pd.DataFrame:
         raise InputError("CASES: none; expected folders with truth.yaml and result/")
     rows = []
     groups = pd.DataFrame([told(case) for case in cases]).groupby(
-        ["kind", "base", "ratio_db"], sort=True
+        ["kind", "base", "ratio_db"], sort=True, dropna=False
     )
     for (kind, base, ratio), group in groups:
         share = wilson(int(group["right"].sum()), len(group))
