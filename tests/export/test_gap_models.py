@@ -138,12 +138,15 @@ def test_in_straight_lines_code_is_the_simulation(off):
 
 
 #: Where the code takes a curve through signals with corners: behind play operators, or
-#: behind friction, a store that spills, or a force against a clearance.
-CORNERS = 2e-4
+#: behind friction, a store that spills, or a force against a clearance; or where it
+#: leaves out the low-pass filter behind the forces of a motion.
+CORNERS = 1e-3
+#: Not the ends of a record: there the curve through all its samples turns.
+INNER = slice(40, -40)
 
 
 def test_late_by_more_samples_it_is_nearer_the_simulation_as_it_stands(off):
-    rms = {late: float(np.sqrt(np.mean(off[late][3:-40] ** 2))) for late in LATE}
+    rms = {late: float(np.sqrt(np.mean(off[late][INNER] ** 2))) for late in LATE}
     for late in LATE[1:]:
-        assert off[late][3:-40].max() <= CORNERS
+        assert off[late][INNER].max() <= CORNERS
     assert rms[15] <= 1e-7 or rms[15] < rms[2] < rms[0]
