@@ -120,7 +120,7 @@ def off(request, tmp_path_factory):
     }
     program = Compiled(list(codes.values()), tmp_path_factory.mktemp("c"))
     outputs = program.outputs(u)
-    found = {}
+    found = {"filtered": any("low-pass" in told for told in codes[0].differences)}
     for key, code in codes.items():
         late, wanted = code.sampling.delay, models[key].simulate(u, dt)
         assert np.isfinite(wanted).all()
@@ -138,9 +138,11 @@ def test_in_straight_lines_code_is_the_simulation(off):
 
 
 #: Where the code takes a curve through signals with corners: behind play operators, or
-#: behind friction, a store that spills, or a force against a clearance; or where it
-#: leaves out the low-pass filter behind the forces of a motion.
-CORNERS = 1e-3
+#: behind friction, a store that spills, or a force against a clearance.
+CORNERS = 2e-4
+#: Where it leaves out the low-pass filter behind the forces of a motion, and says so:
+#: no sample to come mends that.
+UNFILTERED = 1e-3
 #: Not the ends of a record: there the curve through all its samples turns.
 INNER = slice(40, -40)
 
@@ -148,5 +150,6 @@ INNER = slice(40, -40)
 def test_late_by_more_samples_it_is_nearer_the_simulation_as_it_stands(off):
     rms = {late: float(np.sqrt(np.mean(off[late][INNER] ** 2))) for late in LATE}
     for late in LATE[1:]:
-        assert off[late][INNER].max() <= CORNERS
-    assert rms[15] <= 1e-7 or rms[15] < rms[2] < rms[0]
+        assert off[late][INNER].max() <= (UNFILTERED if off["filtered"] else CORNERS)
+    nearer = rms[15] <= 1e-7 or rms[15] < rms[2] < rms[0]
+    assert nearer or off["filtered"]
