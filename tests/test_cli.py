@@ -38,9 +38,11 @@ def test_help_lists_the_commands_and_imports_none_of_them():
 
 @pytest.mark.parametrize("arguments", [(), ("gap",), ("job",), ("job", "filter")])
 def test_h_is_help_everywhere(arguments):
-    short = run_hystbench(*arguments, "-h")
+    # In processes of their own: click keeps the help option of a command that another
+    # test has called without its group, and then has no -h.
+    short = start_hystbench(*arguments, "-h")
     assert short.returncode == 0
-    assert short.stdout == run_hystbench(*arguments, "--help").stdout
+    assert short.stdout == start_hystbench(*arguments, "--help").stdout
     assert short.stdout.startswith("Usage: hystbench")
 
 
