@@ -7,7 +7,7 @@ from hystbench import group as group_module
 from hystbench.cli import COMMANDS, run
 from hystbench.group import group, job_lines
 from hystbench.options import SettingsType
-from tests.conftest import run_hystbench, start_hystbench
+from tests.conftest import start_hystbench
 
 
 @pytest.mark.parametrize("name", COMMANDS)
