@@ -46,6 +46,7 @@ class BuildKernels(build_ext):
 
 HERE = "src/hystbench/kernels"
 SOURCES = [
+    "curve.c",
     "drive.c",
     "envelope.c",
     "hardening.c",

@@ -17,6 +17,7 @@ from hystbench.files import atomic_path
 from hystbench.units import plain
 
 FloatArray = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 Mask = NDArray[np.bool_]
 Origin = Literal["twin", "measured"]
 Use = Literal["fit", "hold-out"]

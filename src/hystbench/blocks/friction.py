@@ -9,7 +9,8 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, TINY, number
-from hystbench.blocks.step import CENTRAL, Sampling, Step, about_sample, foretold
+from hystbench.blocks.curve import CENTRAL, about_sample
+from hystbench.blocks.step import Sampling, Step, foretold
 from hystbench.record import FloatArray
 
 
@@ -58,7 +59,7 @@ class Friction(Block):
             constants,
             history,
             watches=True,
-            forward=True,
+            gains=1,
             rates=1,
             differs=foretold(CENTRAL, points, sampling.late),
         )

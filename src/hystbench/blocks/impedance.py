@@ -3,35 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from math import factorial
 from typing import Any, ClassVar
 
 import numpy as np
 
-from hystbench.blocks.band_limited import coarser, finer
+from hystbench.blocks.curve import (
+    AHEAD,
+    COARSER,
+    POINTS,
+    about_sample,
+    coarser,
+    low_pass_taps,
+    through_samples,
+    weighed,
+)
 from hystbench.blocks.force import Force, Motion, against, exported
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
-from hystbench.blocks.step import (
-    Sampling,
-    Step,
-    about_sample,
-    foretold,
-    smooth_curve,
-    through_samples,
-)
+from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.record import FloatArray
 
 INPUTS = ("position", "velocity")
 REACH = 4
 """Samples on either side that a rate is taken from, where they are there."""
-FINER = 8
-"""Steps in a sampling interval of a band-limited motion: friction reverses between
-samples, and what of its jump is below half the sampling rate is right to a percent."""
-RINGS = 16
-"""Samples at each end of a record within which the band-limited curve, turned about the
-end, is too wavy for a second derivative."""
+
+
+def _derivative(order: int, power: int) -> float:
+    """Give a derivative of ``t^power`` at zero."""
+    return float(factorial(order)) if power == order else 0.0
 
 
 def _differences(order: int) -> FloatArray:
@@ -42,14 +43,12 @@ def _differences(order: int) -> FloatArray:
     polynomial through the samples on both sides, five at least; the middle column is
     for the sample itself.
     """
-    around = np.arange(-REACH, REACH + 1.0)
-    weights = np.zeros((REACH + 1, len(around)))
+    weights = np.zeros((REACH + 1, 2 * REACH + 1))
     for place, row in enumerate(weights):
-        taken = (around >= -place) & (around <= max(place, REACH - place))
-        powers = np.vander(around[taken], increasing=True).T
-        of = np.zeros(len(powers))
-        of[order] = factorial(order)
-        row[taken] = np.linalg.solve(powers, of)
+        later = max(place, REACH - place)
+        of = partial(_derivative, order)
+        newest_first = through_samples(place + later + 1, of, -later)
+        row[REACH - place : REACH + later + 1] = newest_first[::-1]
     return weights
 
 
@@ -65,9 +64,10 @@ class Impedance(HeldBlock):
     taken from nine samples, to the eighth order in the sampling interval [2]_, and from
     fewer near the ends of a record (second differences of three make the force of a
     mass too small by 1 % at 18 samples a period, which looks like another force). Of
-    a band-limited motion F is taken eight times finer, and of F what passes a low-pass
-    filter at half the sampling rate: what an instrument records that samples without
-    aliasing. ``zero-order`` is as ``linear``.
+    a band-limited motion rates are those of the smooth curve through its samples. F is
+    then taken eight times finer, as friction reverses between samples, and of F what
+    passes a low-pass filter at half the sampling rate: what an instrument records that
+    samples without aliasing. ``zero-order`` is as ``linear``.
 
     References
     ----------
@@ -135,21 +135,27 @@ class Impedance(HeldBlock):
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Do so with forces inside."""
         points, ahead, dt = sampling.curve_points, sampling.ahead, sampling.dt
+        smooth, exact = self.holding == "band-limited", ahead >= AHEAD
         rate, curvature = (
-            np.ravel([about_sample(row, points, ahead) for row in rows])
+            [about_sample(row, points, ahead) for row in rows]
             for rows in (RATE, CURVATURE)
         )
         way = np.zeros(points)
         way[ahead : ahead + 2] = 0.5
-        told = [foretold(RATE[-1], points, ahead)]
-        if self.holding == "band-limited":
-            told.append(smooth_curve(points, ahead))
-            way = through_samples(points, lambda m: (-1.0) ** m / (m + 1), -ahead)
+        told = "" if smooth and exact else foretold(RATE[-1], points, ahead)
+        between = exact and smooth and bool(forces)
+        if smooth:
+            way = _way(points, ahead)
             for rows, order in ((rate, 1), (curvature, 2)):
+                if exact:
+                    rows += [rows[-1]] * (AHEAD + 1 - REACH)
                 of = partial(_derivative, order)
-                rows[-points:] = through_samples(points, of, -ahead)
-            if forces:
-                told.append("takes its forces at samples, without a low-pass filter")
+                rows[-1] = through_samples(points, of, -ahead)
+            if not exact:
+                told = f"{told}; {smooth_curve(points, ahead)}".removeprefix("; ")
+                if forces:
+                    told += "; takes its forces at samples, without a low-pass filter"
+        taps = low_pass_taps() if between else np.ones(1)
         constants = {
             "mass": self.mass,
             "damping": self.damping,
@@ -158,53 +164,70 @@ class Impedance(HeldBlock):
             "velocity": int(self.input == "velocity"),
             "points": points,
             "ahead": ahead,
-            "rate": rate / dt,
-            "curvature": curvature / dt**2,
+            "last": len(rate) - 1,
+            "rate": np.ravel(rate) / dt,
+            "curvature": np.ravel(curvature) / dt**2,
             "way": way * dt,
+            "fine": COARSER if between else 0,
+            "dt": dt,
+            "width": len(taps),
+            "taps": taps,
             **exported(forces),
         }
         memory = max(len(forces), 1)
-        states = {"place": 1, "memory": memory, "history": 1 + points}
+        states = {
+            "place": 2,
+            "between": 2,
+            "memory": memory,
+            "filtered": 1 + len(taps),
+            "history": 1 + points,
+        }
         return Step(
             "impedance",
             constants,
             states,
-            forward=True,
+            gains=AHEAD if smooth else REACH,
             rates=REACH,
-            differs="; ".join(filter(None, told)),
+            differs=told,
         )
 
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Give the motion and the forces that it meets, as for :meth:`driven`."""
         z = np.ascontiguousarray(z, dtype=np.float64)
-        q, v, curved = self._moved(z, dt)
         if self.holding != "band-limited" or len(z) < 3:
+            q, v, curved = self._moved(z, dt)
             return Motion(q, v, curved, against(forces, q, v))
+        way, *slopes = weighed(z, _of_curve())
+        rate, curvature = _rate(z, dt), _curvature(z, dt)
+        # The curve is turned about its ends, which gives its derivatives a kink there.
+        inner = slice(AHEAD + 1, -AHEAD)
+        rate[inner], curvature[inner] = slopes[0][inner] / dt, slopes[1][inner] / dt**2
+        if self.input == "position":
+            q, v, curved = z, rate, curvature
+        else:
+            way[0] = 0.0
+            q, v, curved = np.cumsum(way * dt), z.copy(), rate
         force = np.zeros(len(z))
         if forces:
-            force = coarser(against(forces, *self._between(z, q, dt)), FINER)
-        smooth = self._moved(finer(z, FINER), dt / FINER)
-        inner = slice(RINGS, -RINGS)
-        for near, fine in ((v, smooth[1]), (curved, smooth[2])):
-            near[inner] = fine[::FINER][inner]
-        return Motion(smooth[0][::FINER], v, curved, force)
+            force = coarser(against(forces, *self._between(z, q, dt)))
+        return Motion(q, v, curved, force)
 
     def _between(
         self, z: FloatArray, q: FloatArray, dt: float
     ) -> tuple[FloatArray, FloatArray]:
-        """Give position and velocity ``FINER`` times finer.
+        """Give position and velocity ``COARSER`` times finer.
 
         The velocity takes straight lines: the mean one of an interval is that in the
         middle of it. A device that stops between two samples rests soon after; the
         band-limited curve would go on to and fro, and friction with it.
         """
         samples = np.arange(len(z))
-        fine = np.arange((len(z) - 1) * FINER + 1) / FINER
+        fine = np.arange((len(z) - 1) * COARSER + 1) / COARSER
         if self.input == "velocity":
             velocity = np.interp(fine, samples, z)
         else:
             velocity = np.interp(fine, samples[:-1] + 0.5, np.diff(z) / dt)
-        steps = (velocity[1:] + velocity[:-1]) / 2 * (dt / FINER)
+        steps = (velocity[1:] + velocity[:-1]) / 2 * (dt / COARSER)
         return np.append(q[0], q[0] + np.cumsum(steps)), velocity
 
     def _moved(
@@ -217,9 +240,19 @@ class Impedance(HeldBlock):
         return np.concatenate([np.zeros(min(len(z), 1)), way]), z.copy(), _rate(z, dt)
 
 
-def _derivative(order: int, power: int) -> float:
-    """Give a derivative of ``t^power`` at zero."""
-    return float(factorial(order)) if power == order else 0.0
+def _way(points: int, ahead: int) -> FloatArray:
+    """Weights of the samples for the curve's integral over an interval, per sample."""
+    return through_samples(points, lambda m: (-1.0) ** m / (m + 1), -ahead)
+
+
+@lru_cache(maxsize=1)
+def _of_curve() -> FloatArray:
+    """Weights for the curve's integral over an interval, and its first derivatives."""
+    derivatives = [
+        through_samples(POINTS, partial(_derivative, order), -AHEAD)
+        for order in (1, 2)
+    ]
+    return np.array([_way(POINTS, AHEAD), *derivatives])
 
 
 def _weighed(x: FloatArray, rows: FloatArray, order: int) -> FloatArray:

@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.band_limited import sine_series
+from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.parameter import number
-from hystbench.blocks.step import Sampling, Step, smooth_curve, value_at
+from hystbench.blocks.step import Sampling, Step, smooth_curve
 from hystbench.record import FloatArray
 
 
@@ -18,9 +18,9 @@ from hystbench.record import FloatArray
 class InputDelay(HeldBlock):
     """Pure delay: ``v(t) = z(t - delay_s)``; before the record z rests at its start.
 
-    Exact for a band-limited input, which is what ``hold`` is by default: the delay is
-    a phase. The curve through the samples then knows samples to come. For straight
-    lines (``linear``) the value is taken from them; for a staircase (``zero-order``)
+    With a band-limited input, which is what ``hold`` is by default, the value is taken
+    from the smooth curve through the samples of :mod:`hystbench.blocks.curve`. For
+    straight lines (``linear``) the value is taken from them; for a staircase (``zero-order``)
     it is its mean over the interval that follows, which comes to the same.
 
     References
@@ -47,9 +47,10 @@ class InputDelay(HeldBlock):
         if self.holding != "band-limited" or len(z) < 3:
             between: FloatArray = np.interp(place - shift, place, z)
             return between
-        series = sine_series(z)
-        turn = np.exp(-2j * np.pi * series.frequency_hz(dt) * self.delay_s)
-        v = series.line(len(z), shift) + series.sines(len(z), turn)
+        whole = min(int(shift), len(z))
+        taps = value_at(POINTS, whole - shift - AHEAD)
+        v = np.full(len(z), z[0])
+        v[whole:] = weighed(z, taps[np.newaxis])[0, : len(z) - whole]
         v[place < shift] = z[0]
         return v
 
@@ -57,10 +58,12 @@ class InputDelay(HeldBlock):
         """Keep samples, and take the delayed one from a curve through a few of them.
 
         With straight lines that is through two of them, else through as many on both
-        sides as there are.
+        sides as there are: what the delay has left behind is known.
         """
-        shift = self.delay_s / sampling.dt
-        points = sampling.points if self.holding == "band-limited" else 2
+        smooth, shift = self.holding == "band-limited", self.delay_s / sampling.dt
+        known = min(int(shift) + sampling.ahead, AHEAD)
+        shift += sampling.ahead
+        points = max(sampling.points, 2 * known + 2) if smooth else 2
         first = max(int(shift) - points // 2 + 1, 0)
         constants = {
             "shift": shift,
@@ -69,5 +72,6 @@ class InputDelay(HeldBlock):
             "taps": value_at(points, first - shift),
         }
         states = {"count": 1, "kept": first + points}
-        differs = smooth_curve(points) if points > 2 else ""
-        return Step("input_delay", constants, states, differs=differs)
+        differs = smooth_curve(points, known) if smooth else ""
+        gains = max(AHEAD - int(self.delay_s / sampling.dt), 0) if smooth else 0
+        return Step("input_delay", constants, states, gains=gains, differs=differs)

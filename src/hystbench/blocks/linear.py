@@ -5,15 +5,15 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
-from hystbench import operators
-from hystbench.blocks.band_limited import ComplexArray, sine_series
+from hystbench import kernels, operators
+from hystbench.blocks.curve import AHEAD, POINTS, continued, through_samples
 from hystbench.blocks.held import HeldBlock, Hold
-from hystbench.blocks.step import Sampling, Step, smooth_curve, through_samples
-from hystbench.record import FloatArray
+from hystbench.blocks.step import Sampling, Step, smooth_curve
+from hystbench.record import ComplexArray, FloatArray
 
 
 class StateSpace(NamedTuple):
@@ -60,9 +60,7 @@ class LinearBlock(HeldBlock):
         -------
         ndarray of complex, shape (n,)
         """
-        system = self.continuous()
-        output, _ = _sines(system, frequency_hz, np.zeros(len(frequency_hz)))
-        return output
+        return _response(self.continuous(), frequency_hz)
 
 
 def lag(time_constant_s: float) -> StateSpace:
@@ -95,9 +93,8 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     """Compute the response of a linear system from rest.
 
     The result is exact for the input that the hold describes: a staircase
-    (``zero-order``), straight lines between samples (``linear``), or the
-    band-limited signal through the samples (``band-limited``) as
-    :func:`~hystbench.blocks.band_limited.sine_series` finds it.
+    (``zero-order``), straight lines between samples (``linear``), or the smooth curve
+    of :mod:`hystbench.blocks.curve` through the samples (``band-limited``).
 
     Parameters
     ----------
@@ -113,14 +110,15 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     ndarray, shape (n,)
     """
     if hold != "band-limited" or len(v) < 3:
-        return _step_by_step(system, v, dt, hold, np.zeros(len(system.b)))
-    # The sines as if they always had been, and what their not having been costs:
-    # a free motion from the opposite of the state that they would have at the start.
-    series = sine_series(v)
-    response, state = _sines(system, series.frequency_hz(dt), series.amplitudes())
-    line = series.line(len(v))
-    free = _step_by_step(system, line, dt, "linear", -state)
-    return free + series.sines(len(v), response)
+        return _step_by_step(system, v, dt, hold)
+    phi, drive = _curve_steps(*_bytes(system), dt)
+    n, padded = len(v), len(drive[0])
+    y, path = np.empty(n), continued(v)
+    c = kernels.pad(system.c)
+    name = "hb_curve_modes" if phi.ndim == 1 else "hb_curve_space"
+    sizes = (n, POINTS, AHEAD + 1, padded // kernels.WIDTH)
+    kernels.call(name, *sizes, phi, drive, c, float(system.d), path, y)
+    return y
 
 
 def discretise(
@@ -182,8 +180,8 @@ def linear_step(
 ) -> Step:
     """Give the step ``x(k) = phi x(k-1) + sum_j b_j v(k-j)``, ``y = c x + d v``.
 
-    The result is exact for a staircase and for straight lines; a band-limited input is
-    taken as the polynomial through its newest samples.
+    A band-limited input is taken as the polynomial through the newest samples: the
+    simulation's where so many to come are known as that takes.
 
     Parameters
     ----------
@@ -195,14 +193,13 @@ def linear_step(
     """
     smooth, ahead = hold == "band-limited", sampling.ahead
     points = sampling.curve_points if smooth else 2
-    phi, moments = moments_of(system, sampling.dt, points)
     diagonal = system.is_diagonal
     if hold == "zero-order":
+        phi, moments = moments_of(system, sampling.dt, points)
         drive = np.array([np.zeros(len(system.b)), moments[0]])
     else:
-        # The moments count from the start of the interval, one before its end.
-        start = -1.0 - (ahead if smooth else 0)
-        drive = through_samples(points, lambda m: moments[m], start)
+        later = ahead if smooth else 0
+        phi, drive = curve_drive(system, sampling.dt, points, later)
     if not smooth:  # of no use alone, but in step with what stands beside it
         points = 2 + ahead
         drive = np.concatenate([np.zeros((ahead, len(system.b))), drive])
@@ -224,7 +221,7 @@ def linear_step(
     states = {**dict.fromkeys(own, len(system.b)), "history": 1 + points, "offset": 1}
     differs = smooth_curve(points, ahead) if smooth else ""
     function = "modes" if diagonal else "linear"
-    return Step(function, constants, states, forward=smooth, differs=differs)
+    return Step(function, constants, states, gains=AHEAD * smooth, differs=differs)
 
 
 def moments_of(
@@ -298,74 +295,113 @@ class Steps(NamedTuple):
     following: FloatArray  # shape (m,)
 
 
-def _steps(system: StateSpace, dt: float, hold: Hold) -> Steps:
-    keys = (system.a.tobytes(), system.b.tobytes(), system.c.tobytes())
-    return _known_steps(*keys, system.d, dt, hold)
+def _bytes(system: StateSpace) -> tuple[bytes, bytes, bytes, float]:
+    return system.a.tobytes(), system.b.tobytes(), system.c.tobytes(), system.d
+
+
+def _from_bytes(a: bytes, b: bytes, c: bytes, d: float) -> StateSpace:
+    drive, output = np.frombuffer(b), np.frombuffer(c)
+    matrix = np.frombuffer(a).reshape(len(drive), len(drive))
+    return StateSpace(matrix, drive, output, d)
 
 
 @lru_cache(maxsize=256)
-def _known_steps(
+def _steps(
     a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold
 ) -> Steps:
     """Discretise, once for records of the same rate and for every candidate."""
-    drive, output = np.frombuffer(b), np.frombuffer(c)
-    matrix = np.frombuffer(a).reshape(len(drive), len(drive))
-    system = StateSpace(matrix, drive, output, d)
+    system = _from_bytes(a, b, c, d)
     if system.is_diagonal:
         phi, now, following = discretise_modes(system, dt, hold)
         moved = phi * following
     else:
         phi, now, following = discretise(system, dt, hold)
         moved = phi @ following
-    return Steps(phi, now + moved, output, d + float(output @ following), following)
+    direct = d + float(system.c @ following)
+    return Steps(phi, now + moved, system.c, direct, following)
+
+
+@lru_cache(maxsize=256)
+def _curve_steps(
+    a: bytes, b: bytes, c: bytes, d: float, dt: float
+) -> tuple[FloatArray, FloatArray]:
+    """Do so for the curve: padded, the columns of A or its diagonal, and the drive.
+
+    Returns
+    -------
+    phi : ndarray, shape (m, m) or (m,)
+    drive : ndarray, shape (POINTS, m)
+        What each sample of the window adds to the state, the oldest first.
+    """
+    system = _from_bytes(a, b, c, d)
+    phi, newest_first = curve_drive(system, dt, POINTS, AHEAD)
+    size = len(system.b)
+    drive = np.zeros((POINTS, kernels.padded(size)))
+    drive[:, :size] = newest_first[::-1]
+    if system.is_diagonal:
+        return kernels.pad(np.diagonal(phi)), drive
+    columns = np.zeros((drive.shape[1], drive.shape[1]))
+    columns[:size, :size] = phi.T
+    return columns, drive
+
+
+def curve_drive(
+    system: StateSpace, dt: float, points: int, ahead: int
+) -> tuple[FloatArray, FloatArray]:
+    """Integrate over an interval, driven by the polynomial through samples around it.
+
+    Parameters
+    ----------
+    system : StateSpace
+    dt : float
+    points, ahead : int
+        Samples that the polynomial goes through; so many of them are later than the
+        end of the interval.
+
+    Returns
+    -------
+    phi : ndarray, shape (m, m)
+        What is left of the state.
+    drive : ndarray, shape (points, m)
+        What each sample adds to the state, the newest first.
+    """
+    phi, moments = moments_of(system, dt, points)
+    # The moments count from the start of the interval, one before its end.
+    return phi, through_samples(points, lambda m: moments[m], -1.0 - ahead)
 
 
 def _step_by_step(
-    system: StateSpace, v: FloatArray, dt: float, hold: Hold, start: FloatArray
+    system: StateSpace, v: FloatArray, dt: float, hold: Hold
 ) -> FloatArray:
-    phi, b, c, d, following = _steps(system, dt, hold)
-    first = start - following * v[0]
+    phi, b, c, d, following = _steps(*_bytes(system), dt, hold)
+    first = -following * v[0]
     if phi.ndim == 1:
         return operators.modes(phi, b, c, d, v, first)
     y, _ = operators.state_space(phi, b, c, d, v, first)
     return y
 
 
-def _sines(
-    system: StateSpace, frequency_hz: FloatArray, amplitudes: FloatArray
-) -> tuple[ComplexArray, FloatArray]:
-    """Frequency response, and the state at time zero under a sum of sines.
+def _response(system: StateSpace, frequency_hz: FloatArray) -> ComplexArray:
+    """Evaluate the frequency response.
 
     ``(jwI - A)^-1 B`` is solved by back substitution on A's Schur form, for all
     frequencies at once.
     """
+    s = 2j * np.pi * frequency_hz
     if system.is_diagonal:
-        return _sines_of_modes(system, frequency_hz, amplitudes)
+        parts = system.b[:, None] / (s - np.diag(system.a)[:, None])
+        modes: ComplexArray = system.d + system.c @ parts
+        return modes
     from scipy.linalg import schur  # late: a filter's process never needs it
 
     triangle, basis = schur(system.a, output="complex")
     b, c = basis.conj().T @ system.b, system.c @ basis
-    s = 2j * np.pi * frequency_hz
     states: list[ComplexArray] = []  # the last first
     response = np.full(len(s), system.d, dtype=np.complex128)
-    start = np.zeros(len(b), dtype=np.complex128)
     for i in reversed(range(len(b))):
         driven = np.full(len(s), b[i])
         for j, state in zip(range(len(b) - 1, i, -1), states, strict=True):
             driven += triangle[i, j] * state
         states.append(driven / (s - triangle[i, i]))
         response += c[i] * states[-1]
-        start[i] = amplitudes @ states[-1]
-    return response, cast("FloatArray", (basis @ start).imag.copy())
-
-
-def _sines_of_modes(
-    system: StateSpace, frequency_hz: FloatArray, amplitudes: FloatArray
-) -> tuple[ComplexArray, FloatArray]:
-    """Do the same mode by mode: ``b / (jw - p) = -b (p + jw) / (w^2 + p^2)``."""
-    w = 2 * np.pi * frequency_hz
-    poles = np.diag(system.a)
-    parts = np.add.outer(poles * poles, w * w)
-    np.divide(system.b[:, None], parts, out=parts)
-    real = system.d - (system.c * poles) @ parts
-    return real - 1j * w * (system.c @ parts), -(parts @ (amplitudes * w))
+    return response

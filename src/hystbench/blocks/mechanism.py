@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.band_limited import held_lines
+from hystbench.blocks.curve import AHEAD, held_lines
 from hystbench.blocks.force import Force, Motion, exported, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import StateSpace, discretise
@@ -173,10 +173,13 @@ class Mechanism(HeldBlock):
         }
         states = {"motion": 2, "memory": max(len(forces), 1), "history": 1 + points}
         smooth = segments > 1
-        differs = smooth_curve(points, ahead) if smooth else ""
-        past = TURNED if self.start == "moving" else ""
         return Step(
-            "mechanism", constants, states, forward=smooth, past=past, differs=differs
+            "mechanism",
+            constants,
+            states,
+            gains=AHEAD * smooth,
+            past=TURNED if self.start == "moving" else "",
+            differs=smooth_curve(points - 1, ahead) if smooth else "",
         )
 
     def _shown(self) -> FloatArray:

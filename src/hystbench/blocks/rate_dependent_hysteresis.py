@@ -8,18 +8,18 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.band_limited import finer
+from hystbench.blocks.curve import (
+    AHEAD,
+    CENTRAL,
+    POINTS,
+    central_difference,
+    finer,
+    value_at,
+    weighed,
+)
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, choice, number
-from hystbench.blocks.step import (
-    CENTRAL,
-    Sampling,
-    Step,
-    central_difference,
-    foretold,
-    smooth_curve,
-    value_at,
-)
+from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
@@ -41,7 +41,8 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
 
     The rate is a central difference, one-sided at the ends. Where v turns it is zero
     for an instant only, and the thresholds are narrow for as long: with a band-limited
-    hold all are computed on a grid that is ``OVERSAMPLING`` times finer.
+    hold all are computed on a grid that is ``OVERSAMPLING`` times finer, the rate of
+    the curve that leads up to each sample.
 
     References
     ----------
@@ -85,6 +86,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
     ) -> FloatArray:
         """Drive the hysteresis with larger thresholds or with less field."""
         fine = OVERSAMPLING if self.holding == "band-limited" and len(v) > 2 else 1
+        given = v
         if fine > 1:
             place = np.arange((len(v) - 1) * fine + 1) / fine
             v, u = finer(v, fine), np.interp(place, np.arange(len(u)), u)
@@ -93,7 +95,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         if self.form == "acting-field":
             v = self._acting(v, dt / fine)
         else:
-            rate = np.gradient(v, dt / fine)
+            rate = np.gradient(v, dt) if fine == 1 else _rates(given, fine) / dt
             effect = self.coefficient * np.abs(rate) ** self.exponent
             if self.form == "excess-field":
                 v = v - np.copysign(effect, rate)
@@ -120,7 +122,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         fine = OVERSAMPLING if self.holding == "band-limited" else 1
         ahead = sampling.ahead
         places = np.arange(1 - fine, 1) / fine - ahead
-        rates = [central_difference(points, place, 1 / fine) for place in places]
+        rates = _rate_weights(points, ahead, fine)
         constants = {
             "form": FORMS.index(self.form),
             "coefficient": self.coefficient,
@@ -130,20 +132,37 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
             "points": points,
             "ahead": ahead,
             "values": np.array([value_at(points, place) for place in places]).ravel(),
-            "rates": np.array(rates).ravel() / sampling.dt,
+            "rates": rates.ravel() / sampling.dt,
         }
         states = {"history": 1 + points, "growth_before": 1, "field": 2}
         function = "rate_dependent_hysteresis"
-        told = [smooth_curve(points, ahead)] if fine > 1 else []
-        if self.form != "acting-field":
-            told.append(foretold(CENTRAL, points, ahead))
+        told = ""
+        if fine > 1:
+            told = smooth_curve(points, ahead)
+        elif self.form != "acting-field":
+            told = foretold(CENTRAL, points, ahead)
         return Step(
             function,
             constants,
             states,
             grows=True,
             drives=fine,
-            forward=bool(told),
-            rates=int(self.form != "acting-field"),
-            differs="; ".join(filter(None, told)),
+            gains=AHEAD if fine > 1 else int(self.form != "acting-field"),
+            rates=int(fine == 1 and self.form != "acting-field"),
+            differs=told,
         )
+
+
+def _rate_weights(points: int, ahead: int, fine: int) -> FloatArray:
+    """Weights of the samples for the rate at each step of an interval, per sample.
+
+    Shape (fine, points); the last is for the interval's end.
+    """
+    places = np.arange(1 - fine, 1) / fine - ahead
+    return np.array([central_difference(points, place, 1 / fine) for place in places])
+
+
+def _rates(v: FloatArray, fine: int) -> FloatArray:
+    """Give the rate ``fine`` times finer, per sample of the record."""
+    rates = weighed(v, _rate_weights(POINTS, AHEAD, fine))
+    return np.concatenate([rates[-1:, 0], rates.T[1:].ravel()])

@@ -7,15 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from hystbench.blocks.curve import CENTRAL, about_sample
 from hystbench.blocks.parameter import HUGE, choice, number
-from hystbench.blocks.step import (
-    CENTRAL,
-    PASSED,
-    Sampling,
-    Step,
-    about_sample,
-    foretold,
-)
+from hystbench.blocks.step import PASSED, Sampling, Step, foretold
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.errors import InputError
 from hystbench.rdgpi.model import STARTS, RateDependentGPI
@@ -89,7 +83,7 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
             "rdgpi",
             constants,
             states,
-            forward=True,
+            gains=1,
             rates=1,
             past=PASSED if self.start == "settled" else "",
             differs=foretold(CENTRAL, points, ahead),

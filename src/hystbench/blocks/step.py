@@ -7,22 +7,17 @@ written twice, in C and in Python, in :mod:`hystbench.export`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.polynomial import polyfromroots
 
+from hystbench.blocks.curve import AHEAD, CENTRAL, about_sample, corner
 from hystbench.record import FloatArray
 
 LARGEST_POINTS = 8
 """Samples that a curve goes through at most where none to come is known."""
-CENTRAL = np.array([-0.5, 0.0, 0.5])
-"""Weights of a sample and its neighbours for the central difference, per sample."""
-LARGEST_AHEAD = 15
-"""Samples to come that a block gains by at most: a curve through so many on both sides
-is within a millionth of a sine's amplitude up to a fifth of the sampling rate."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +69,9 @@ class Step:
     watches : bool
         Whether its state ``history`` is of the model's input; it is filled, with as
         many samples as the constant ``points`` says, before anything else is done.
-    forward : bool
-        Whether the step is nearer to the simulation where samples to come are known.
+    gains : int
+        Samples to come with which the step is the simulation's, or as near as it gets;
+        none where it needs none.
     rates : int
         Samples to come that make a rate which it takes exact; none where it takes none.
     grows : bool
@@ -98,7 +94,7 @@ class Step:
     constants: Mapping[str, Any] = field(default_factory=dict)
     states: Mapping[str, int] = field(default_factory=dict)
     watches: bool = False
-    forward: bool = False
+    gains: int = 0
     rates: int = 0
     grows: bool = False
     drives: int = 0
@@ -113,82 +109,14 @@ def polynomial(*coefficients: float) -> Step:
     return Step("polynomial", {"count": count, "coefficients": np.array(coefficients)})
 
 
-def through_samples(
-    points: int, moment: Callable[[int], float | FloatArray], origin: float = 0.0
-) -> FloatArray:
-    """Find what a linear functional takes of the polynomial through the newest samples.
-
-    Parameters
-    ----------
-    points : int
-        Samples, the newest at time 0 and the others at -1, -2 and so on.
-    moment : callable
-        Gives the functional of ``(t - origin)^m`` from m.
-    origin : float
-        A time where the functional looks: about it powers are well told apart.
-
-    Returns
-    -------
-    ndarray, shape (points,) or (points, k)
-        Weights of the samples, the newest first; ``(points, k)`` for k functionals.
-    """
-    places = -np.arange(points) - origin
-    # The polynomials that are one at a sample and zero at the others.
-    basis = np.empty((points, points))
-    for k, place in enumerate(places):
-        others = np.delete(places, k)
-        basis[k] = polyfromroots(others) / np.prod(place - others)
-    weights: FloatArray = basis @ np.array([moment(m) for m in range(points)])
-    return weights
-
-
-def value_at(points: int, place: float) -> FloatArray:
-    """Weights of the samples for the curve's value at a time, the newest at 0."""
-    return through_samples(points, lambda m: float(m == 0), place)
-
-
-def about_sample(weights: FloatArray, points: int, ahead: int) -> FloatArray:
-    """Weights of the newest samples for a difference about one of them.
-
-    Where the samples that it takes are known it is that of these alone.
-
-    Parameters
-    ----------
-    weights : ndarray, shape (2 k + 1,)
-        Of the sample, the k before it and the k after it, the oldest first.
-    points, ahead : int
-        Samples that a curve goes through; so many of them are later.
-
-    Returns
-    -------
-    ndarray, shape (points,)
-        The newest first.
-    """
-    reach = len(weights) // 2
-    if ahead < reach:
-        around = np.arange(-reach, reach + 1.0)
-        return through_samples(points, lambda m: float(weights @ around**m), -ahead)
-    taken = np.zeros(points)
-    taken[ahead - reach : ahead + reach + 1] = weights[::-1]
-    return taken
-
-
-def central_difference(points: int, place: float, half_width: float) -> FloatArray:
-    """Weights of the samples for a central difference of the curve, per sample."""
-
-    def moment(m: int) -> float:
-        return (half_width**m - (-half_width) ** m) / (2 * half_width)
-
-    return through_samples(points, moment, place)
-
-
 def line_corners(hold: str, points: int, ahead: int = 0) -> tuple[int, int, FloatArray]:
     """Give what straight lines between two samples take of the newest samples.
 
     Parameters
     ----------
     hold : {"zero-order", "linear", "band-limited"}
-        A band-limited input is taken as :func:`straight_lines` twice as fine.
+        A band-limited input is taken as
+        :func:`~hystbench.blocks.curve.held_lines` twice as fine.
     points : int
         Samples that a band-limited curve goes through.
     ahead : int
@@ -206,28 +134,19 @@ def line_corners(hold: str, points: int, ahead: int = 0) -> tuple[int, int, Floa
     if hold != "band-limited":
         points = 2 + ahead
         return 1, points, np.eye(points)[[ahead + 1, ahead]].ravel()
-    each = [_smooth_corner(points, at - ahead) for at in (-1.0, -0.5, 0.0)]
-    return 2, points, np.concatenate(each)
-
-
-def _smooth_corner(points: int, place: float) -> FloatArray:
-    """Weights of the samples for a corner of :func:`straight_lines`, twice as fine.
-
-    ``1 / sinc^2`` of a frequency w is ``1 + (w h)^2 / 12 + (w h)^4 / 240 + ...`` with
-    the corners h apart: so much of the curve's second and fourth derivative, with
-    their signs, is added to its value.
-    """
-    h = 0.5
-    share = {0: 1.0, 2: -(h**2) / 12 * 2, 4: h**4 / 240 * 24}
-    return through_samples(points, lambda m: share.get(m, 0.0), place)
+    middle, end = (corner(points, place - ahead) for place in (-0.5, 0.0))
+    each = [np.append(0.0, end), np.append(middle, 0.0), np.append(end, 0.0)]
+    return 2, points + 1, np.concatenate(each)
 
 
 def smooth_curve(points: int, ahead: int = 0) -> str:
-    """Say what becomes of a band-limited input."""
+    """Say what becomes of a band-limited input; nothing where it is the simulation's."""
+    if ahead >= AHEAD:
+        return ""
     later = f" ({ahead} of them later)" if ahead else ""
     return (
         "takes its input between two samples from the polynomial through the newest "
-        f"{points}{later}, and not from all samples of a record"
+        f"{points}{later}, and not from as many on either side"
     )
 
 

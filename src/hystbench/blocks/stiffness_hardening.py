@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.band_limited import held_lines
+from hystbench.blocks.curve import AHEAD, held_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
@@ -82,7 +82,8 @@ class StiffnessHardening(HeldBlock):
             "corners": corners,
         }
         states = {"mode": 2, "history": 1 + points}
-        differs = smooth_curve(points, ahead) if smooth else ""
+        differs = smooth_curve(points - 1, ahead) if smooth else ""
+        gains = AHEAD * smooth
         return Step(
-            "stiffness_hardening", constants, states, forward=smooth, differs=differs
+            "stiffness_hardening", constants, states, gains=gains, differs=differs
         )

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.band_limited import held_lines
+from hystbench.blocks.curve import AHEAD, held_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
 from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
@@ -80,13 +80,17 @@ class Store(HeldBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Fill and empty it over the interval that has passed."""
-        segments, points, corners = line_corners(self.holding, sampling.points)
+        ahead, smooth = sampling.ahead, self.holding == "band-limited"
+        segments, points, corners = line_corners(
+            self.holding, sampling.curve_points, ahead
+        )
         parts = self._parts(sampling.dt / segments)
         constants = {
             "gain": self.gain,
             "bias": self.bias,
             "segments": segments,
             "points": points,
+            "ahead": ahead,
             "corners": corners,
             "ramp": float(self.holding != "zero-order"),
             "parts": parts,
@@ -99,8 +103,8 @@ class Store(HeldBlock):
             "caught": self.caught,
         }
         states = {"level": 1, "history": 1 + points}
-        differs = smooth_curve(points) if segments > 1 else ""
-        return Step("store", constants, states, differs=differs)
+        differs = smooth_curve(points - 1, ahead) if smooth else ""
+        return Step("store", constants, states, gains=AHEAD * smooth, differs=differs)
 
     def _parts(self, dt: float) -> int:
         """Steps of an interval: none empties more than a part of the store."""

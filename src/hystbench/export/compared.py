@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.step import LARGEST_AHEAD, Sampling
+from hystbench.blocks.curve import AHEAD
+from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
 from hystbench.export import python
 from hystbench.export.described import Described, describe
@@ -82,7 +83,7 @@ WAYS = {
     "no option": (Sampling(1.0), False),
     "--points 2": (Sampling(1.0, points=2), False),
     "--delay 1": (Sampling(1.0, delay=1), False),
-    f"--delay {LARGEST_AHEAD}": (Sampling(1.0, delay=LARGEST_AHEAD), False),
+    f"--delay {AHEAD}": (Sampling(1.0, delay=AHEAD), False),
     "hold: linear --delay 4": (Sampling(1.0, delay=4), True),
 }
 COLUMNS = ("dataset", "blocks", "records", *WAYS)
@@ -124,7 +125,7 @@ def _off(model: Model, record: Record, asked: Sampling) -> Off:
     u, dt = record.u[:SAMPLES], record.dt
     sampling = replace(asked, dt=dt, duration_s=(len(u) - 1) * dt, delay=0)
     code = describe(model, sampling)
-    if any(piece.step.forward for piece in code.pieces):
+    if any(piece.step.gains for piece in code.pieces):
         code = describe(model, replace(sampling, delay=asked.delay))
     if any(piece.step.past for piece in code.all_pieces()):
         code = begun(code, model, u)

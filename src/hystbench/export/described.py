@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import keyword
 import re
 import sys
@@ -15,7 +14,6 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven, Host
 from hystbench.blocks.other_modes import OtherModes, Superposed
 from hystbench.blocks.step import (
-    LARGEST_AHEAD,
     LARGEST_POINTS,
     UNKNOWN_PAST,
     Sampling,
@@ -220,20 +218,25 @@ def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
     """
     gain: list[int] = []
     for place, piece in enumerate(pieces):
-        if piece.step.forward and not (piece.step.watches and gain):
+        if piece.step.gains and not (piece.step.watches and gain):
             gain.append(place)
     if not gain:
         raise InputError(
             f"--delay: {delay}; expected none, as no step of this model is nearer to "
             "the simulation where samples to come are known"
         )
-    if delay > LARGEST_AHEAD * len(gain):
-        each = f", {LARGEST_AHEAD} for each block that gains" * (len(gain) > 1)
+    turns = [
+        (turn, place)
+        for turn in range(max(pieces[place].step.gains for place in gain))
+        for place in gain
+        if turn < pieces[place].step.gains
+    ]
+    if delay > len(turns):
         raise InputError(
-            f"--delay: {delay}; expected at most {LARGEST_AHEAD * len(gain)}{each}"
+            f"--delay: {delay}; expected at most {len(turns)}, with which the code is "
+            "the simulation or as near as it gets"
         )
-    rounds = itertools.product(range(LARGEST_AHEAD), gain)
-    first = sorted(rounds, key=lambda turn: turn[0] >= pieces[turn[1]].step.rates)
+    first = sorted(turns, key=lambda turn: turn[0] >= pieces[turn[1]].step.rates)
     taken = [place for _, place in first[:delay]]
     return [taken.count(place) for place in range(len(pieces))]
 
@@ -284,8 +287,8 @@ def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
         around = of_block(outer, outer, sampling)
         if isinstance(step, Superposed):  # both get the same input, and stay in step
             beside = of_step(step.inner, sampling)
-            gains = around.step.forward or beside.step.forward
-            both = replace(around.step, forward=gains)
+            gains = max(around.step.gains, beside.step.gains)
+            both = replace(around.step, gains=gains)
             return replace(around, step=both, inner=beside)
         times = max(around.step.drives, 1)
         inner = of_step(step.inner, replace(sampling, dt=sampling.dt / times, ahead=0))

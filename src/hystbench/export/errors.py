@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hystbench.blocks import step
-from hystbench.blocks.step import CENTRAL, LARGEST_AHEAD, Sampling, about_sample
+from hystbench.blocks.curve import AHEAD, CENTRAL, about_sample
+from hystbench.blocks.step import Sampling
 from hystbench.export import python
 from hystbench.export.described import describe
 from hystbench.model import Model
@@ -56,7 +57,7 @@ CASES = (
     Case("friction, noise of 0.1 %", (_FRICTION,), 100, NOISE),
     Case("a lag, noise of 0.1 %", (_LAG,), 100, NOISE),
 )
-WAYS = ((6, 0), (3, 0), (2, 0), (6, 1), (6, LARGEST_AHEAD))
+WAYS = ((6, 0), (3, 0), (2, 0), (6, 1), (6, AHEAD))
 """Points and delay, as ``hystbench export`` takes them."""
 
 

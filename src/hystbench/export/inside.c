@@ -37,19 +37,62 @@ static double hb_mechanism(double gain, double bias, int segments, int points,
     return shown[0] * x + shown[1] * w + shown[2] * force + shown[3] * p;
 }
 
-/* The force that a motion takes; rate and curvature take samples on both sides. */
+/* Forces on a motion, fine times in an interval, behind a low-pass filter of width taps.
+ * The interval ends one sample before the newest of those that are known. A velocity is
+ * straight between samples; that of a position is between the middles of intervals.
+ * between: where the motion is, and how fast. */
+static double hb_force_between(int velocity, int fine, double dt, int width,
+                               const double *taps, int count, const double *forces,
+                               int known, const double *samples, double *between,
+                               double *memory, double *filtered)
+{
+    const int first = known == 2; /* of the record: the place where it begins */
+    double from, middle, to;
+    if (velocity) {
+        from = samples[first ? 1 : 2], to = samples[1], middle = (from + to) / 2;
+    } else {
+        const double next = (samples[0] - samples[1]) / dt;
+        middle = first ? next : (samples[1] - samples[2]) / dt;
+        const double last = known > 3 ? (samples[2] - samples[3]) / dt : middle;
+        from = (last + middle) / 2, to = (middle + next) / 2;
+    }
+    for (int i = first ? fine : 1; i <= fine; i++) {
+        const double t = 2.0 * i / fine;
+        const double v = t < 1 ? from + (middle - from) * t
+                               : middle + (to - middle) * (t - 1);
+        const double moved = first ? 0 : (between[1] + v) / 2 * (dt / fine);
+        if (first)
+            between[0] = velocity ? 0 : samples[1];
+        else
+            between[0] += moved;
+        between[1] = v;
+        const double force = hb_all_forces(count, forces, between[0], v, moved, memory);
+        hb_remember(width, filtered, force);
+    }
+    return hb_weighted(width, taps, filtered + 1);
+}
+
+/* The force that a motion takes. rate and curvature take samples on both sides: rows of
+ * weights for the first sample, the second and so on, the last one for all that follow.
+ * fine: how often forces are taken in an interval; 0 where at samples. */
 static double hb_impedance(double mass, double damping, double stiffness, double bias,
-                           int velocity, int points, int ahead,
+                           int velocity, int points, int ahead, int last,
                            const double *rate, const double *curvature,
-                           const double *way, int count, const double *forces,
-                           double *place, double *memory, double *history, double z)
+                           const double *way, int fine, double dt, int width,
+                           const double *taps, int count, const double *forces,
+                           double *place, double *between, double *memory,
+                           double *filtered, double *history, double z)
 {
     const int moves = history[0] > ahead;
     hb_remember(points, history, z);
+    double force = 0;
+    if (fine && history[0] > 1)
+        force = hb_force_between(velocity, fine, dt, width, taps, count, forces,
+                                 (int)history[0], history + 1, between, memory, filtered);
     if (history[0] <= ahead) return 0;
     z = history[1 + ahead];
-    const int nth = (int)history[0] - 1 - ahead; /* weights of the first, second, ... */
-    const int row = (nth < 4 ? nth : 4) * points;
+    const int row = (place[1] < last ? (int)place[1] : last) * points;
+    place[1] += 1;
     const double before = place[0];
     const double slope = hb_weighted(points, rate + row, history + 1);
     double q = z, v = slope, a = slope;
@@ -60,7 +103,6 @@ static double hb_impedance(double mass, double damping, double stiffness, double
         a = hb_weighted(points, curvature + row, history + 1);
     }
     place[0] = q;
-    const double moved = moves ? q - before : 0;
-    const double force = hb_all_forces(count, forces, q, v, moved, memory);
+    if (!fine) force = hb_all_forces(count, forces, q, v, moves ? q - before : 0, memory);
     return mass * a + damping * v + stiffness * q + force + bias;
 }

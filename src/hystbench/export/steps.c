@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define HB_PI 3.14159265358979323846
-#define HB_POINTS 8 /* samples that a curve goes through at most */
+#define HB_POINTS 32 /* samples that a curve goes through at most */
 
 static double hb_weighted(int count, const double *weights, const double *values)
 {
@@ -502,13 +502,14 @@ static double hb_outflow(double rate, double exponent, double h)
 
 /* Runge-Kutta method of second order, over straight lines as for the mechanism. */
 static double hb_store(double gain, double bias, int segments, int points,
-                       const double *corners, double ramp, int parts, double t,
+                       int ahead, const double *corners, double ramp, int parts, double t,
                        double rate, double exponent, double height, double start,
                        int outflow, double caught, double *level, double *history,
                        double z)
 {
-    const int moves = history[0] > 0;
+    const int moves = history[0] > ahead;
     hb_remember(points, history, gain * z + bias);
+    if (history[0] <= ahead) return 0;
     double h = moves ? *level : hb_least(start, height), over = 0;
     for (int i = 0; i < segments && moves; i++) {
         const double now = hb_weighted(points, corners + i * points, history + 1);

@@ -505,6 +505,7 @@ def store(
     bias,
     segments,
     points,
+    ahead,
     corners,
     ramp,
     parts,
@@ -520,8 +521,10 @@ def store(
     z,
 ):
     """Fill and empty a store by a Runge-Kutta method of second order."""
-    moves, over = history[0] > 0, 0.0
+    moves, over = history[0] > ahead, 0.0
     remember(points, history, gain * z + bias)
+    if history[0] <= ahead:
+        return 0.0
     h = level[0] if moves else min(start, height)
     places = corners.reshape(segments + 1, points) @ history[1:]
     for i in range(segments if moves else 0):

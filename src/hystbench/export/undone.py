@@ -14,7 +14,8 @@ from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
-from hystbench.blocks.step import Sampling, Step, polynomial, through_samples
+from hystbench.blocks.curve import AHEAD, through_samples
+from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.blocks.wrapping import Hysteresis
 from hystbench.record import FloatArray
 
@@ -155,7 +156,7 @@ def field(by: RateDependentHysteresis, sampling: Sampling) -> Step:
         "applied_field",
         constants,
         {"history": 1 + points},
-        forward=smooth,
+        gains=AHEAD * smooth,
         differs=told if smooth else "",
     )
 
@@ -196,7 +197,7 @@ def _derivatives(order: int, w: float, sampling: Sampling) -> Step:
         "at_samples",
         {"points": points, "taps": taps},
         {"history": 1 + points},
-        forward=True,
+        gains=AHEAD,
         differs=f"takes {many} of the curve through the newest {points}, within "
         f"{100 * NEAR:g} % to {top:.3g} Hz",
     )

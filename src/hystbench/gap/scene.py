@@ -10,7 +10,7 @@ from typing import Any, cast
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock, attached
-from hystbench.blocks.band_limited import finer
+from hystbench.blocks.curve import finer
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from hystbench.blocks.band_limited import ComplexArray
+from hystbench.record import ComplexArray
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import path_from
 from hystbench.gap.bases.spectral import stable

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hystbench.blocks.band_limited import ComplexArray
+from hystbench.record import ComplexArray
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import TransferFunction, path_from
 from hystbench.errors import InputError

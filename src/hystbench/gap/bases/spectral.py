@@ -20,7 +20,7 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from hystbench.blocks.band_limited import ComplexArray
+from hystbench.record import ComplexArray
 from hystbench.blocks.held import Hold
 from hystbench.record import FloatArray
 

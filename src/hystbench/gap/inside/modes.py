@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.blocks.band_limited import ComplexArray
+from hystbench.record import ComplexArray
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.mechanism import Mechanism
