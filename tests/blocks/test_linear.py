@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.blocks import registry
-from hystbench.blocks.band_limited import sine_series
 from hystbench.blocks.creep import Creep
+from hystbench.blocks.curve import finer
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.eddy_diffusion import EddyDiffusion
 from hystbench.blocks.linear import (
@@ -168,9 +168,7 @@ def test_steady_state_of_a_fast_sine(name, hold, error):
 
 
 @pytest.mark.parametrize("name", [*CASES, "eddy-diffusion"])
-@pytest.mark.parametrize(
-    "n", [3, 98, 304]
-)  # the last two are continued to a longer record
+@pytest.mark.parametrize("n", [3, 10, 304])  # the first two are no longer than a curve
 def test_band_limited_is_the_limit_of_straight_lines(name, n):
     # Straight lines on a finer grid converge as its step squared, start and end too.
     diffusion = EddyDiffusion(time_constant_s=0.003)
@@ -179,7 +177,7 @@ def test_band_limited_is_the_limit_of_straight_lines(name, n):
     exact = respond(system, v, DT, "band-limited")
     errors = []
     for fine in (8, 32):
-        lines = respond(system, interpolate(v, fine), DT / fine, "linear")[::fine]
+        lines = respond(system, finer(v, fine), DT / fine, "linear")[::fine]
         errors.append(np.abs(lines - exact).max())
     scale = np.abs(exact).max()
     assert errors[1] < 3e-4 * scale
@@ -209,39 +207,6 @@ def test_modes_are_discretised_as_any_other_system(rates):
             np.testing.assert_allclose(phi[i], a[0, 0], rtol=1e-9, atol=1e-13)
             np.testing.assert_allclose(now[i], b[0], rtol=1e-9, atol=1e-13)
             np.testing.assert_allclose(following[i], c[0], rtol=1e-9, atol=1e-13)
-
-
-def interpolate(v, factor):
-    """Sum up line and sines one by one, as SineSeries says, on a finer grid."""
-    series = sine_series(v)
-    places = np.arange((len(v) - 1) * factor + 1) / factor
-    waves = np.sin(np.pi * np.outer(places, np.arange(series.half + 1)) / series.half)
-    return series.start + series.slope * places + waves @ series.amplitudes()
-
-
-@given(st.lists(st.floats(-1, 1), min_size=3, max_size=200), st.integers(1, 4))
-def test_the_band_limited_curve_passes_through_the_samples(samples, factor):
-    v = np.array(samples)
-    fine = interpolate(v, factor)
-    np.testing.assert_allclose(fine[::factor], v, rtol=0, atol=1e-11)
-
-
-def test_the_band_limited_curve_of_a_sine_is_the_sine():
-    # Whole periods: the odd continuation is the sine itself.
-    fine = interpolate(np.sin(2 * np.pi * 3 * np.arange(33) / 32), 8)
-    expected = np.sin(2 * np.pi * 3 * np.arange(257) / 256)
-    np.testing.assert_allclose(fine, expected, atol=1e-12)
-
-
-@pytest.mark.parametrize("n", [3, 98, 304])
-def test_samples_of_the_sines_are_those_of_the_sum(n):
-    v = np.random.default_rng(2).normal(size=n)
-    series = sine_series(v)
-    count = 4 * (n - 1) + 1
-    fast = series.line(count, factor=4) + series.sines(
-        count, np.ones(series.half + 1), 4
-    )
-    np.testing.assert_allclose(fast, interpolate(v, 4), rtol=0, atol=1e-11)
 
 
 @pytest.mark.parametrize(

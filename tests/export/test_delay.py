@@ -9,8 +9,9 @@ import pytest
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
 from hystbench.export import python
-from hystbench.export.described import describe
+from hystbench.export.described import describe, exact_delay
 from tests.blocks.examples import EXAMPLES
+from tests.conftest import run_hystbench
 
 from .compiled import Compiled
 from .test_steps import CHAINS, DT, INPUT, ROUND, TIME, chain_of, model_of
@@ -35,12 +36,30 @@ def gaining():
             try:
                 found[name, delay] = late(model, delay)
             except InputError:
-                assert not any(piece.step.forward for piece in plain.pieces)
+                assert delay > exact_delay(plain)
     assert {name.split()[0] for name, _ in found} >= {
         "friction", "rdgpi", "rate-dependent-hysteresis", "resonance", "drive-lag",
         "stiffness-hardening", "transfer-function",
     }  # fmt: skip
     return found
+
+
+#: Rates of what is inside hysteresis that depends on the rate: no delay reaches there.
+NESTED = {"growth inside growth"}
+NOISY = INPUT + 0.05 * np.random.default_rng(8).standard_normal(len(INPUT))
+
+
+@pytest.fixture(scope="module")
+def exact(tmp_path_factory):
+    """Give code with the delay that it asks for, that delay, and what it makes."""
+    found = {}
+    for name, model in MODELS.items():
+        delay = exact_delay(describe(model, Sampling(DT, duration_s=TIME[-1])))
+        if delay:
+            found[name] = (late(model, delay), delay)
+    codes = [code for code, _ in found.values()]
+    run = Compiled(codes, tmp_path_factory.mktemp("c")).outputs(NOISY)
+    return {name: (code, d, run[code.name]) for name, (code, d) in found.items()}
 
 
 @pytest.mark.parametrize("delay", DELAYS)
@@ -90,12 +109,10 @@ def test_what_looks_at_the_input_stays_in_step_with_what_enters(blocks, tmp_path
     """All of these are exact once the next sample is known."""
     model = model_of("mixed", chain_of(*blocks))
     noisy = np.random.default_rng(0).standard_normal(300)
-    for delay in (1, 3):
-        run = Compiled([late(model, delay)], tmp_path)
-        y, wanted = run.outputs(noisy)["mixed"], model.simulate(noisy, DT)
-        np.testing.assert_allclose(
-            y[delay:], wanted[:-delay], rtol=0, atol=1e-9 * np.ptp(wanted)
-        )
+    assert exact_delay(describe(model, Sampling(DT))) == 1
+    run = Compiled([late(model, 1)], tmp_path)
+    y, wanted = run.outputs(noisy)["mixed"], model.simulate(noisy, DT)
+    np.testing.assert_allclose(y[1:], wanted[:-1], rtol=0, atol=1e-9 * np.ptp(wanted))
 
 
 def test_a_measured_input_is_nearer_with_samples_on_both_sides(tmp_path):
@@ -123,7 +140,7 @@ def test_python_is_the_c(gaining, tmp_path):
 @pytest.mark.parametrize(
     ("sampling", "said"),
     [
-        (Sampling(DT, delay=16), "--delay: 16; expected at most 15$"),
+        (Sampling(DT, delay=16), "--delay: 16; expected at most 15, with which"),
         (Sampling(DT, delay=-1), "--delay: -1; expected 0 or more samples"),
     ],
 )
@@ -144,10 +161,8 @@ def test_a_force_of_a_motion_is_exact_once_the_next_four_samples_are_known(tmp_p
     noisy = INPUT + 1e-3 * np.random.default_rng(2).standard_normal(len(INPUT))
     model = model_of("felt", chain_of(("impedance", EXAMPLES["impedance"])))
     wanted = model.simulate(noisy, DT)
-    for delay in (4, 5):
-        y = Compiled([late(model, delay)], tmp_path).outputs(noisy)["felt"][delay:]
-        apart = np.abs(y - wanted[:-delay])
-        assert apart.max() <= 1e-9 * np.ptp(wanted)
+    y = Compiled([late(model, 4)], tmp_path).outputs(noisy)["felt"][4:]
+    assert np.abs(y - wanted[:-4]).max() <= 1e-9 * np.ptp(wanted)
     (told,) = describe(model, Sampling(DT)).differences
     assert "times as large as with --delay 4" in told
 
@@ -167,18 +182,38 @@ def test_modes_stay_in_step_with_the_mechanism_beside_them(tmp_path):
     assert np.abs(y - wanted).max() <= 1e-9 * np.ptp(wanted)
 
 
-@pytest.mark.parametrize("share", [0.05, 0.1, 0.2])
-def test_a_long_delay_is_the_simulation_to_a_fifth_of_the_sampling_rate(
-    share, tmp_path
-):
-    """Up to the record's end, where the simulation turns about its last sample."""
-    u = np.sin(2 * np.pi * share * np.arange(1000))
-    lags = ("drive-lag", "sensor-lag")
-    values = {"time_constant_s": 1e-3, "hold": "band-limited"}
-    model = model_of("lags", chain_of(*((name, values) for name in lags)))
-    wanted = model.simulate(u, DT)[:-30]
-    off = Compiled([late(model, 30)], tmp_path).outputs(u)["lags"][30:] - wanted
-    assert np.abs(off)[50:-50].max() <= 1e-6  # of the input's amplitude
+@pytest.mark.parametrize("name", CHAINS)
+def test_late_enough_code_is_the_simulation(name, exact, tmp_path):
+    """Of noise up to half the sampling rate, and up to the record's end."""
+    if name not in exact:
+        pytest.skip("gains nothing by a delay; tested without one")
+    model, delay, y = exact[name]
+    wanted = MODELS[name].simulate(NOISY, DT)[:-delay]
+    off = np.abs(y[delay:] - wanted).max() / np.ptp(wanted)
+    told = " ".join(model.differences)
+    if name in NESTED:
+        assert "from the polynomial through the newest" in told
+        return
+    assert off <= 1e-9
+    assert "curve" not in told and "polynomial" not in told and "foretells" not in told
+
+
+def test_the_command_finds_the_delay(tmp_path):
+    file = tmp_path / "model.yaml"
+    model_of("lags", chain_of(SMOOTH, LINEAR, FRICTION, SMOOTH)).save(file)
+    asked = ("export", file, "--to", "c", "--dt", DT, "--out", tmp_path / "c")
+    done = run_hystbench(*asked, "--delay", "exact")
+    assert done.returncode == 0, done.stderr
+    assert "late by 30 samples" in done.stdout
+    for wrong, said in (("later", "'later'; expected a number"), ("-1", "expected a")):
+        refused = run_hystbench(*asked, "--delay", wrong)
+        assert refused.returncode == 2 and said in refused.stderr
+        assert refused.stderr.count("\n") == 1
+    turned = run_hystbench(*asked, "--delay", "exact", "--inverse", "--limit-low", 0,
+                           "--limit-high", 1)  # fmt: skip
+    assert (
+        turned.returncode == 2 and "expected a number with --inverse" in turned.stderr
+    )
 
 
 def test_a_delay_that_gains_nothing_is_refused():

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.step import Sampling
-from hystbench.export.compared import in_straight_lines
-from hystbench.export.described import describe
+from hystbench.export.described import describe, exact_delay
 from hystbench.export.past import begun
 from hystbench.model import Model, load_model
 from tests.blocks.examples import EXAMPLES
@@ -92,40 +91,39 @@ def model_and_input(name) -> tuple[Model, float, np.ndarray]:
 
 
 def code_of(model, dt, u, delay):
+    """Make code as late as is asked, or as it gains by; none for that."""
     sampling = Sampling(dt, duration_s=(len(u) - 1) * dt)
     code = describe(model, sampling)
-    if delay and any(piece.step.forward for piece in code.pieces):
-        code = describe(model, replace(sampling, delay=delay))
+    most = exact_delay(code)
+    late = most if delay is None else min(delay, most)
+    if late:
+        code = describe(model, replace(sampling, delay=late))
     if any(piece.step.past for piece in code.all_pieces()):
         code = begun(code, model, u)
     return code
 
 
-#: In straight lines four samples late, so that rates and curvatures are known from the
-#: first on; and as it stands, by how many samples it is late.
-STRAIGHT, LATE = "straight", (0, 2, 15)
+LATE = (0, 2, None)
 
 
 @pytest.fixture(scope="module", params=MODELS)
 def off(request, tmp_path_factory):
-    """How far code is off, as a share of the range, by what it is made of.
+    """How far code is off, as a share of the range, by how late it is.
 
     One program of C holds all that is made of a model.
     """
     model, dt, u = model_and_input(request.param)
-    models = {STRAIGHT: in_straight_lines(model), **dict.fromkeys(LATE, model)}
     codes = {
-        key: replace(code_of(item, dt, u, 4 if key == STRAIGHT else key), name=f"m{k}")
-        for k, (key, item) in enumerate(models.items())
+        late: replace(code_of(model, dt, u, late), name=f"m{k}")
+        for k, late in enumerate(LATE)
     }
-    program = Compiled(list(codes.values()), tmp_path_factory.mktemp("c"))
-    outputs = program.outputs(u)
-    found = {"filtered": any("low-pass" in told for told in codes[0].differences)}
-    for key, code in codes.items():
-        late, wanted = code.sampling.delay, models[key].simulate(u, dt)
-        assert np.isfinite(wanted).all()
-        away = outputs[code.name][late:] - wanted[: len(u) - late]
-        found[key] = np.abs(away) / np.ptp(wanted)
+    outputs = Compiled(list(codes.values()), tmp_path_factory.mktemp("c")).outputs(u)
+    wanted, found = model.simulate(u, dt), {}
+    assert np.isfinite(wanted).all()
+    for late, code in codes.items():
+        samples = code.sampling.delay
+        away = outputs[code.name][samples:] - wanted[: len(u) - samples]
+        found[late] = np.abs(away) / np.ptp(wanted)
     return found
 
 
@@ -133,23 +131,22 @@ def test_every_model_has_an_input():
     assert {path.stem for path in FOLDER.glob("*.yaml")} == set(WRITTEN)
 
 
-def test_in_straight_lines_code_is_the_simulation(off):
-    assert off[STRAIGHT].max() <= 1e-9
+def test_late_enough_code_is_the_simulation(off):
+    assert off[None].max() <= 1e-9
 
 
 #: Where the code takes a curve through signals with corners: behind play operators, or
-#: behind friction, a store that spills, or a force against a clearance.
-CORNERS = 2e-4
-#: Where it leaves out the low-pass filter behind the forces of a motion, and says so:
-#: no sample to come mends that.
-UNFILTERED = 1e-3
-#: Not the ends of a record: there the curve through all its samples turns.
-INNER = slice(40, -40)
+#: behind friction, a store that spills, or a force against a clearance; and where it
+#: leaves out the low-pass filter behind the forces of a motion, and says so.
+CORNERS = 1e-3
 
 
-def test_late_by_more_samples_it_is_nearer_the_simulation_as_it_stands(off):
-    rms = {late: float(np.sqrt(np.mean(off[late][INNER] ** 2))) for late in LATE}
-    for late in LATE[1:]:
-        assert off[late][INNER].max() <= (UNFILTERED if off["filtered"] else CORNERS)
-    nearer = rms[15] <= 1e-7 or rms[15] < rms[2] < rms[0]
-    assert nearer or off["filtered"]
+#: Not the beginning of a record: forces remember a rate that was not known there.
+BEGUN = slice(40, None)
+
+
+def test_less_late_it_is_near(off):
+    assert off[2][BEGUN].max() <= CORNERS
+    rms = [float(np.sqrt(np.mean(off[late][BEGUN] ** 2))) for late in LATE]
+    assert rms[2] <= 1e-9
+    assert rms[0] <= 1e-7 or rms[1] < rms[0]

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.blocks.band_limited import interpolate
+from hystbench.blocks.curve import finer
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import finding as finding_module
@@ -230,7 +230,7 @@ def test_what_the_simulation_misses_by_its_steps_is_measured():
     found = decide("made", base, start, floor, Named(start)).content["fit"]
     missed = []
     for one in start.records:
-        fine = interpolate(one.u, 64)
+        fine = finer(one.u, 64)
         exact = chain[0].simulate(fine, fine, one.dt / 64)[::64]
         missed.append(chain[0].simulate(one.u, one.u, one.dt) - exact)
     size = float(np.sqrt(np.mean(np.concatenate(missed) ** 2)))

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.gap.scene import Scene
 from hystbench.model import Model
@@ -128,7 +127,7 @@ def test_plain_is_the_model_and_fine_steps_through_the_hysteresis_alone():
     same(Scene(chain, records(), "band-limited").output, from_scratch(chain))
     finer = []
     for one in records():
-        u = interpolate(one.u, 8)
+        u = finer(one.u, 8)
         finer.append(model.simulate(u, one.dt / 8)[::8])
     same(Scene(chain, records(), "band-limited", fine=True).output, finer)
 

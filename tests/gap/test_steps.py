@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.blocks.band_limited import interpolate
+from hystbench.blocks.curve import finer
 from hystbench.gap import name as naming
 from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
@@ -23,7 +23,7 @@ NOISE = 0.02
 
 def steps_of(chain, one):
     """What a loop misses at the samples, by far more steps of it than ours."""
-    fine = interpolate(one.u, 64)
+    fine = finer(one.u, 64)
     exact = chain[0].simulate(fine, fine, one.dt / 64)[::64]
     return float(
         np.sqrt(np.mean((chain[0].simulate(one.u, one.u, one.dt) - exact) ** 2))

@@ -17,6 +17,7 @@ os.sched_setaffinity(0, allowed[: int(sys.argv[1])])
 import numpy as np  # noqa: E402
 
 from hystbench import kernels, operators  # noqa: E402
+from hystbench.blocks.creep import Creep  # noqa: E402
 from hystbench.blocks.friction_force import FrictionForce  # noqa: E402
 from hystbench.blocks.gravity import Gravity  # noqa: E402
 from hystbench.blocks.hysteretic_force import HystereticForce  # noqa: E402
@@ -27,6 +28,7 @@ from hystbench.blocks.preisach import Preisach  # noqa: E402
 from hystbench.blocks.rate_dependent_hysteresis import (  # noqa: E402
     RateDependentHysteresis,
 )
+from hystbench.blocks.resonance import Resonance  # noqa: E402
 from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
 from hystbench.blocks.stiffness import Stiffness  # noqa: E402
 from hystbench.blocks.stiffness_hardening import StiffnessHardening  # noqa: E402
@@ -146,8 +148,13 @@ def blocks(x):
     yield "mechanism", (machine.driven(x, DT, forces),)
     held = Mechanism(mass=1e-4, damping=5e-3, stiffness=10.0, start="settled")
     yield "settled mechanism", (held.driven(x + 1.0, DT, forces),)
-    back = Impedance(mass=1e-4, damping=5e-3, stiffness=10.0)
+    back = Impedance(mass=1e-4, damping=5e-3, stiffness=10.0, hold="band-limited")
     yield "impedance", (back.driven(x, DT, forces),)
+    smooth = {"hold": "band-limited"}
+    mode = Resonance(frequency_hz=300.0, damping_ratio=0.05, **smooth)
+    yield "resonance along a curve", (mode.simulate(x, x, DT),)
+    creep = Creep(magnitudes=[0.1, 0.2], time_constants_s=[0.01, 0.1], **smooth)
+    yield "creep along a curve", (creep.simulate(x, x, DT),)
     tank = Store(gain=4.0, rate=2.0, bias=1.0, height=1.0)
     yield tank.name, (tank.simulate(x, x, DT),)
 

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.parameter import HUGE, TINY, number
 from hystbench.blocks.curve import CENTRAL, about_sample
+from hystbench.blocks.parameter import HUGE, TINY, number
 from hystbench.blocks.step import Sampling, Step, foretold
 from hystbench.record import FloatArray
 

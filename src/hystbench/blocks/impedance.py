@@ -249,8 +249,7 @@ def _way(points: int, ahead: int) -> FloatArray:
 def _of_curve() -> FloatArray:
     """Weights for the curve's integral over an interval, and its first derivatives."""
     derivatives = [
-        through_samples(POINTS, partial(_derivative, order), -AHEAD)
-        for order in (1, 2)
+        through_samples(POINTS, partial(_derivative, order), -AHEAD) for order in (1, 2)
     ]
     return np.array([_way(POINTS, AHEAD), *derivatives])
 

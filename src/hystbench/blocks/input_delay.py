@@ -20,8 +20,8 @@ class InputDelay(HeldBlock):
 
     With a band-limited input, which is what ``hold`` is by default, the value is taken
     from the smooth curve through the samples of :mod:`hystbench.blocks.curve`. For
-    straight lines (``linear``) the value is taken from them; for a staircase (``zero-order``)
-    it is its mean over the interval that follows, which comes to the same.
+    straight lines (``linear``) it is taken from them; for a staircase (``zero-order``)
+    it is the mean over the interval that follows, which comes to the same.
 
     References
     ----------

@@ -306,9 +306,7 @@ def _from_bytes(a: bytes, b: bytes, c: bytes, d: float) -> StateSpace:
 
 
 @lru_cache(maxsize=256)
-def _steps(
-    a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold
-) -> Steps:
+def _steps(a: bytes, b: bytes, c: bytes, d: float, dt: float, hold: Hold) -> Steps:
     """Discretise, once for records of the same rate and for every candidate."""
     system = _from_bytes(a, b, c, d)
     if system.is_diagonal:

@@ -136,11 +136,9 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         }
         states = {"history": 1 + points, "growth_before": 1, "field": 2}
         function = "rate_dependent_hysteresis"
-        told = ""
-        if fine > 1:
-            told = smooth_curve(points, ahead)
-        elif self.form != "acting-field":
-            told = foretold(CENTRAL, points, ahead)
+        told = [smooth_curve(points, ahead)] if fine > 1 else []
+        if self.form != "acting-field":
+            told.append(foretold(CENTRAL, points, ahead))
         return Step(
             function,
             constants,
@@ -148,8 +146,8 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
             grows=True,
             drives=fine,
             gains=AHEAD if fine > 1 else int(self.form != "acting-field"),
-            rates=int(fine == 1 and self.form != "acting-field"),
-            differs=told,
+            rates=int(self.form != "acting-field"),
+            differs="; ".join(filter(None, told)),
         )
 
 

@@ -140,7 +140,7 @@ def line_corners(hold: str, points: int, ahead: int = 0) -> tuple[int, int, Floa
 
 
 def smooth_curve(points: int, ahead: int = 0) -> str:
-    """Say what becomes of a band-limited input; nothing where it is the simulation's."""
+    """Say what becomes of a band-limited input, if not what the simulation does."""
     if ahead >= AHEAD:
         return ""
     later = f" ({ahead} of them later)" if ahead else ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -12,13 +13,37 @@ from hystbench.blocks.step import LARGEST_POINTS, Sampling
 from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import c, fmu, python
-from hystbench.export.described import Described, describe
+from hystbench.export.described import Described, describe, exact_delay
 from hystbench.export.inverse import describe_inverse
 from hystbench.export.parts import PARTS, Part, check_alone, part_of
 from hystbench.export.past import begun, begun_inverse
 from hystbench.files import atomic_path, whole_folder, write_text
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
+
+
+class Delay(click.ParamType):
+    """A number of samples, or as many as make the code the simulation."""
+
+    name = "samples or 'exact'"
+
+    def convert(
+        self,
+        value: str | int,
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> int | None:
+        """Give the number, none for ``exact``."""
+        if value == EXACT:
+            return None
+        if not str(value).isdecimal():
+            self.fail(
+                f"{value!r}; expected a number of samples, or {EXACT!r}", param, ctx
+            )
+        return int(value)
+
+
+EXACT = "exact"
 
 
 @click.command()
@@ -40,10 +65,11 @@ from hystbench.record import FloatArray, column_name
 )
 @click.option(
     "--delay",
-    type=click.IntRange(min=0),
+    type=Delay(),
     default=0,
     help="Samples by which the output may be late: values between samples, and rates, "
-    "are then taken with samples on both sides.",
+    "are then taken with samples on both sides. 'exact': as many as make the code the "
+    "simulation of a whole record.",
 )
 @click.option(
     "--duration", type=float, help="Length in seconds of the record of a path of drift."
@@ -84,7 +110,7 @@ def export(
     to: str,
     dt: float,
     points: int,
-    delay: int,
+    delay: int | None,
     duration: float | None,
     past: Path | None,
     compare: Path | None,
@@ -113,7 +139,12 @@ def export(
             "--compare: expected none with --inverse; 'hystbench invert --sampled' "
             "says how far the output is from what is wanted"
         )
-    sampling = Sampling(dt, points, duration, delay)
+    if inverse and delay is None:
+        raise InputError(
+            f"--delay: {EXACT}; expected a number with --inverse, as 'hystbench "
+            "invert' looks at the whole record"
+        )
+    sampling = Sampling(dt, points, duration, delay or 0)
     try:
         described = (
             describe_inverse(
@@ -122,6 +153,9 @@ def export(
             if inverse
             else describe(system, sampling)
         )
+        if delay is None and exact_delay(described):
+            exact = replace(sampling, delay=exact_delay(described))
+            described = describe(system, exact)
     except InputError as error:
         where = "" if str(error).startswith("--") else f"{model}: "
         raise InputError(f"{where}{error}") from None

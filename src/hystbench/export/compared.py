@@ -7,12 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.curve import AHEAD
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
 from hystbench.export import python
-from hystbench.export.described import Described, describe
+from hystbench.export.described import Described, describe, exact_delay
 from hystbench.export.past import begun
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -78,29 +76,24 @@ def off(code: Described, model: Model, u: FloatArray) -> Off:
 SAMPLES = 5000
 """Samples of a record that are compared, at most."""
 
-#: Ways to export: options, and whether the model takes straight lines for its input.
+#: Ways to export: options, and samples of delay, if the code gains by so many.
 WAYS = {
-    "no option": (Sampling(1.0), False),
-    "--points 2": (Sampling(1.0, points=2), False),
-    "--delay 1": (Sampling(1.0, delay=1), False),
-    f"--delay {AHEAD}": (Sampling(1.0, delay=AHEAD), False),
-    "hold: linear --delay 4": (Sampling(1.0, delay=4), True),
+    "no option": (Sampling(1.0), 0),
+    "--points 2": (Sampling(1.0, points=2), 0),
+    "--delay 1": (Sampling(1.0), 1),
+    "--delay 4": (Sampling(1.0), 4),
+    "--delay exact": (Sampling(1.0), None),
 }
 COLUMNS = ("dataset", "blocks", "records", *WAYS)
 
 
 def row(dataset: str, model: Model, records: Sequence[Record]) -> dict[str, str]:
-    """Give the largest and rms difference over some records, for each way of exporting.
-
-    With ``hold: linear`` the model is another one, in the code and in the simulation:
-    where the file says ``band-limited``, straight lines go from sample to sample.
-    """
+    """Give the largest and rms difference over some records, for each way to export."""
     blocks = ", ".join(label for label, _ in model.labelled())
     cells = {"dataset": dataset, "blocks": blocks, "records": str(len(records))}
-    for way, (asked, straight) in WAYS.items():
-        given = in_straight_lines(model) if straight else model
+    for way, (asked, delay) in WAYS.items():
         try:
-            found = [_off(given, record, asked) for record in records]
+            found = [_off(model, record, asked, delay) for record in records]
         except InputError as error:
             cells[way] = f"refused: {error}"
             continue
@@ -109,24 +102,15 @@ def row(dataset: str, model: Model, records: Sequence[Record]) -> dict[str, str]
     return cells
 
 
-def in_straight_lines(model: Model) -> Model:
-    """Give the model with ``hold: linear`` where a block says ``band-limited``."""
-    chain = tuple(
-        replace(block, hold="linear")
-        if isinstance(block, HeldBlock) and block.holding == "band-limited"
-        else block
-        for block in model.chain
-    )
-    return replace(model, chain=chain)
-
-
-def _off(model: Model, record: Record, asked: Sampling) -> Off:
-    """Export with a delay, where anything gains by one, and with the record's past."""
+def _off(model: Model, record: Record, asked: Sampling, delay: int | None) -> Off:
+    """Export with a delay, if anything gains by it, and with the record's past."""
     u, dt = record.u[:SAMPLES], record.dt
-    sampling = replace(asked, dt=dt, duration_s=(len(u) - 1) * dt, delay=0)
+    sampling = replace(asked, dt=dt, duration_s=(len(u) - 1) * dt)
     code = describe(model, sampling)
-    if any(piece.step.gains for piece in code.pieces):
-        code = describe(model, replace(sampling, delay=asked.delay))
+    most = exact_delay(code)
+    late = most if delay is None else min(delay, most)
+    if late:
+        code = describe(model, replace(sampling, delay=late))
     if any(piece.step.past for piece in code.all_pieces()):
         code = begun(code, model, u)
     return off(code, model, u)

@@ -208,29 +208,19 @@ def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
     """Divide a delay among the pieces that gain by it.
 
     Those that take a rate get the samples that make it exact first; the rest goes
-    round. What looks at the model's input itself gains by the delay of a piece
-    before it, and gets none of its own then.
+    round.
 
     Raises
     ------
     InputError
         If no piece gains, or the delay is more than they gain by.
     """
-    gain: list[int] = []
-    for place, piece in enumerate(pieces):
-        if piece.step.gains and not (piece.step.watches and gain):
-            gain.append(place)
-    if not gain:
+    turns = _turns(pieces)
+    if not turns:
         raise InputError(
             f"--delay: {delay}; expected none, as no step of this model is nearer to "
             "the simulation where samples to come are known"
         )
-    turns = [
-        (turn, place)
-        for turn in range(max(pieces[place].step.gains for place in gain))
-        for place in gain
-        if turn < pieces[place].step.gains
-    ]
     if delay > len(turns):
         raise InputError(
             f"--delay: {delay}; expected at most {len(turns)}, with which the code is "
@@ -239,6 +229,35 @@ def _shares(delay: int, pieces: Sequence[Piece]) -> list[int]:
     first = sorted(turns, key=lambda turn: turn[0] >= pieces[turn[1]].step.rates)
     taken = [place for _, place in first[:delay]]
     return [taken.count(place) for place in range(len(pieces))]
+
+
+def _turns(pieces: Sequence[Piece]) -> list[tuple[int, int]]:
+    """Give, in turn, each sample to come that a piece gains by: how many before, place.
+
+    What looks at the model's input itself has the delay of a piece before it.
+    """
+    gains: dict[int, int] = {}
+    for place, piece in enumerate(pieces):
+        if piece.step.gains and not (piece.step.watches and gains):
+            gains[place] = piece.step.gains
+    most = max(gains.values(), default=0)
+    return [
+        (turn, place)
+        for turn in range(most)
+        for place, count in gains.items()
+        if turn < count
+    ]
+
+
+def exact_delay(described: Described) -> int:
+    """Give the delay with which code is the simulation, or as near as it gets.
+
+    Parameters
+    ----------
+    described : Described
+        Of the model, without a delay.
+    """
+    return len(_turns(described.pieces))
 
 
 def describe(model: Model, sampling: Sampling) -> Described:

@@ -11,7 +11,7 @@ from hystbench.blocks import step
 from hystbench.blocks.curve import AHEAD, CENTRAL, about_sample
 from hystbench.blocks.step import Sampling
 from hystbench.export import python
-from hystbench.export.described import describe
+from hystbench.export.described import describe, exact_delay
 from hystbench.model import Model
 
 DT = 1e-4
@@ -57,18 +57,20 @@ CASES = (
     Case("friction, noise of 0.1 %", (_FRICTION,), 100, NOISE),
     Case("a lag, noise of 0.1 %", (_LAG,), 100, NOISE),
 )
-WAYS = ((6, 0), (3, 0), (2, 0), (6, 1), (6, AHEAD))
-"""Points and delay, as ``hystbench export`` takes them."""
+WAYS = ((6, 0), (3, 0), (2, 0), (6, 1), (6, None))
+"""Points and delay, as ``hystbench export`` takes them; none for ``exact``."""
 
 
-def error(case: Case, points: int, delay: int) -> float:
+def error(case: Case, points: int, delay: int | None) -> float:
     """Give the rms error of exported code, as a share of the output's rms.
 
     Parameters
     ----------
     case : Case
-    points, delay : int
-        As of :class:`~hystbench.blocks.step.Sampling`. The output is held against the
+    points : int
+    delay : int, optional
+        As of :class:`~hystbench.blocks.step.Sampling`; none for as many samples as make
+        the code the simulation. The output is held against the
         simulation so many samples before.
     """
     content = {
@@ -81,17 +83,21 @@ def error(case: Case, points: int, delay: int) -> float:
     u = np.sin(2 * np.pi * np.arange(SAMPLES) / case.samples)
     u += case.noise * np.random.default_rng(0).standard_normal(SAMPLES)
     wanted = model.simulate(u, DT)
-    # The record's own end is no part of it: the curve through all samples turns there.
+    # The record's own end is no part of it: the curve is turned about it.
     part = slice(BEGUN, SAMPLES - BEGUN)
-    exported = python.loaded(describe(model, Sampling(DT, points, delay=delay)))
-    made = exported.simulate(u)[delay:]
+    code = describe(model, Sampling(DT, points))
+    late = exact_delay(code) if delay is None else delay
+    if late:
+        code = describe(model, Sampling(DT, points, delay=late))
+    made = python.loaded(code).simulate(u)[late:]
     off = (made - wanted[: len(made)])[part]
     return float(np.sqrt(np.mean(off**2) / np.mean(wanted[part] ** 2)))
 
 
-def noise_of_rate(points: int, delay: int) -> float:
+def noise_of_rate(points: int, delay: int | None) -> float:
     """Give how noisy a rate is, of white noise, over that of a central difference."""
-    return step.noise_of_rate(about_sample(CENTRAL, max(points, delay + 2), delay))
+    late = 1 if delay is None else delay
+    return step.noise_of_rate(about_sample(CENTRAL, max(points, late + 2), late))
 
 
 def table(cases: Sequence[Case] = CASES) -> list[dict[str, str]]:
@@ -108,5 +114,6 @@ def table(cases: Sequence[Case] = CASES) -> list[dict[str, str]]:
     return [*rows, rate]
 
 
-def _words(points: int, delay: int) -> str:
-    return f"--points {points}" + f" --delay {delay}" * bool(delay)
+def _words(points: int, delay: int | None) -> str:
+    late = "exact" if delay is None else str(delay)
+    return f"--points {points}" + f" --delay {late}" * (delay != 0)

@@ -9,12 +9,12 @@ from math import comb, factorial
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.curve import AHEAD, through_samples
 from hystbench.blocks.force import Force
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
-from hystbench.blocks.curve import AHEAD, through_samples
 from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.blocks.wrapping import Hysteresis
 from hystbench.record import FloatArray

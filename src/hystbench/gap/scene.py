@@ -10,8 +10,8 @@ from typing import Any, cast
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock, attached
-from hystbench.blocks.curve import finer
 from hystbench.blocks.base import Block
+from hystbench.blocks.curve import finer
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
 from hystbench.gap.unseen import may_hold

@@ -7,11 +7,10 @@ from functools import cached_property
 
 import numpy as np
 
-from hystbench.record import ComplexArray
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import path_from
 from hystbench.gap.bases.spectral import stable
-from hystbench.record import FloatArray, Mask, Record
+from hystbench.record import ComplexArray, FloatArray, Mask, Record
 
 #: Degree of the polynomial that stands for the curve.
 DEGREE = 5

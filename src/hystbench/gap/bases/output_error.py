@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hystbench.record import ComplexArray
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import TransferFunction, path_from
 from hystbench.errors import InputError
 from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
-from hystbench.record import FloatArray, Mask, Record
+from hystbench.record import ComplexArray, FloatArray, Mask, Record
 
 #: A step is damped so many times before a descent ends.
 TRIALS = 8

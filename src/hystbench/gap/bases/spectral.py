@@ -20,9 +20,8 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
-from hystbench.record import ComplexArray
 from hystbench.blocks.held import Hold
-from hystbench.record import FloatArray
+from hystbench.record import ComplexArray, FloatArray
 
 #: Highest order that is fitted.
 MOST = 12

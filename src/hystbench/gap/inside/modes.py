@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.record import ComplexArray
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.mechanism import Mechanism
@@ -15,7 +14,7 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.state import Free, State
-from hystbench.record import FloatArray
+from hystbench.record import ComplexArray, FloatArray
 
 NUMBERS = ("mass", "damping", "stiffness", "blend")
 """Of a mode."""
