@@ -151,7 +151,9 @@ def blocks(x):
     back = Impedance(mass=1e-4, damping=5e-3, stiffness=10.0, hold="band-limited")
     yield "impedance", (back.driven(x, DT, forces),)
     smooth = {"hold": "band-limited"}
-    mode = Resonance(frequency_hz=300.0, damping_ratio=0.05, **smooth)
+    mode = Resonance(
+        frequency_hz=300.0, damping_ratio=0.05, participation=0.4, **smooth
+    )
     yield "resonance along a curve", (mode.simulate(x, x, DT),)
     creep = Creep(magnitudes=[0.1, 0.2], time_constants_s=[0.01, 0.1], **smooth)
     yield "creep along a curve", (creep.simulate(x, x, DT),)

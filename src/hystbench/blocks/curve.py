@@ -247,7 +247,8 @@ def low_pass_taps() -> FloatArray:
     """
     place = np.arange(-COARSER * _RINGS, COARSER * _RINGS + 1)
     taps = np.sinc(place / COARSER) * np.kaiser(len(place), 0.1102 * (_STOP - 8.7))
-    return taps / taps.sum()
+    normalized: FloatArray = taps / taps.sum()
+    return normalized
 
 
 def coarser(v: FloatArray) -> FloatArray:

@@ -243,15 +243,14 @@ def moments_of(
         For m from 0.
     """
     phi, moved = _over_interval(system, dt)
-    x, drive = system.a * dt, system.b * dt
+    x, drive, top = system.a * dt, system.b * dt, 2 * points + 60
     if system.is_diagonal:
-        triangle, basis = x, np.eye(len(drive))
-    else:
-        from scipy.linalg import schur  # late: a filter's process never needs it
+        return phi, _moments_of_modes(np.diag(x), drive, moved, points, top)
+    from scipy.linalg import schur  # late: a filter's process never needs it
 
-        triangle, basis = schur(x, output="complex")
+    triangle, basis = schur(x, output="complex")
     back = basis.conj().T
-    b, top = back @ drive, 2 * points + 60
+    b = back @ drive
     found = np.zeros((top + 1, len(drive)), dtype=triangle.dtype)
     found[0] = back @ moved
     for i in reversed(range(len(drive))):
@@ -265,6 +264,26 @@ def moments_of(
         for m in range(top, turn + 1, -1):
             own[m - 1] = (driven[m] + value * own[m]) / m
     return phi, np.ascontiguousarray((found[:points] @ basis.T).real)
+
+
+def _moments_of_modes(
+    poles: FloatArray, drive: FloatArray, first: FloatArray, points: int, top: int
+) -> FloatArray:
+    """Do so mode by mode, for all at once: upwards to the turn, and down to it."""
+    above, below = np.zeros((points, len(poles))), np.zeros((points, len(poles)))
+    above[0] = first
+    turn = np.minimum(np.abs(poles), top).astype(int)
+    # Beyond the turn each recursion runs away, and is not looked at.
+    with np.errstate(all="ignore"):
+        for m in range(1, points):
+            above[m] = (m * above[m - 1] - drive) / poles
+        now = drive / (top + 1)
+        for m in range(top, 0, -1):
+            now = (drive + poles * now) / m
+            if m <= points:
+                below[m - 1] = now
+    rising = np.arange(points)[:, None] <= turn
+    return np.where(rising, above, below)
 
 
 def _over_interval(system: StateSpace, dt: float) -> tuple[FloatArray, FloatArray]:
@@ -363,6 +382,54 @@ def curve_drive(
     drive : ndarray, shape (points, m)
         What each sample adds to the state, the newest first.
     """
+    x, b = system.a * dt, system.b * dt
+    if not system.is_diagonal:
+        if np.abs(x).sum(axis=1).max() > NEAR:
+            return _stiff_drive(system, dt, points, ahead)
+        terms = [b]
+        for _ in range(TERMS - 1):
+            terms.append(x @ terms[-1])
+        phi, _ = _over_interval(system, dt)
+        return phi, _series(points, ahead) @ np.array(terms)
+    poles = np.diag(x)
+    near = np.abs(poles) <= NEAR
+    drive = np.empty((points, len(b)))
+    powers = np.vander(poles[near], TERMS, increasing=True).T
+    drive[:, near] = _series(points, ahead) @ (powers * b[near])
+    if not near.all():
+        stiff = ~near
+        part = StateSpace(
+            np.diag(np.diag(system.a)[stiff]), system.b[stiff], system.c[stiff], 0.0
+        )
+        drive[:, stiff] = _stiff_drive(part, dt, points, ahead)[1]
+    return np.diag(np.exp(poles)), drive
+
+
+NEAR = 4.0
+"""Size of A dt up to which the series of its exponential keeps 14 digits."""
+TERMS = 36
+"""Terms of that series: 4^36 / 36! is 1e-20."""
+
+
+@lru_cache(maxsize=64)
+def _series(points: int, ahead: int) -> FloatArray:
+    """Give what each term of an exponential's series takes of each sample.
+
+    The response to ``s^m`` is ``sum_n X^n b m! / (m + n + 1)!``.
+
+    Returns
+    -------
+    ndarray, shape (points, TERMS)
+    """
+    m, n = np.arange(points)[:, None], np.arange(1, TERMS)
+    shares = np.cumprod(np.hstack([1.0 / (m + 1), 1.0 / (m + n + 1)]), axis=1)
+    return through_samples(points, lambda k: shares[k], -1.0 - ahead)
+
+
+def _stiff_drive(
+    system: StateSpace, dt: float, points: int, ahead: int
+) -> tuple[FloatArray, FloatArray]:
+    """Do what :func:`curve_drive` does where the series would lose digits."""
     phi, moments = moments_of(system, dt, points)
     # The moments count from the start of the interval, one before its end.
     return phi, through_samples(points, lambda m: moments[m], -1.0 - ahead)
@@ -388,16 +455,15 @@ def _response(system: StateSpace, frequency_hz: FloatArray) -> ComplexArray:
     s = 2j * np.pi * frequency_hz
     if system.is_diagonal:
         parts = system.b[:, None] / (s - np.diag(system.a)[:, None])
-        modes: ComplexArray = system.d + system.c @ parts
-        return modes
+        return np.asarray(system.d + system.c @ parts, dtype=np.complex128)
     from scipy.linalg import schur  # late: a filter's process never needs it
 
     triangle, basis = schur(system.a, output="complex")
     b, c = basis.conj().T @ system.b, system.c @ basis
     states: list[ComplexArray] = []  # the last first
-    response = np.full(len(s), system.d, dtype=np.complex128)
+    response: ComplexArray = np.full(len(s), system.d, dtype=np.complex128)
     for i in reversed(range(len(b))):
-        driven = np.full(len(s), b[i])
+        driven: ComplexArray = np.full(len(s), b[i], dtype=np.complex128)
         for j, state in zip(range(len(b) - 1, i, -1), states, strict=True):
             driven += triangle[i, j] * state
         states.append(driven / (s - triangle[i, i]))

@@ -22,7 +22,7 @@ from hystbench.model import Model, load_model
 from hystbench.record import FloatArray, column_name
 
 
-class Delay(click.ParamType):
+class Delay(click.ParamType[int | None]):
     """A number of samples, or as many as make the code the simulation."""
 
     name = "samples or 'exact'"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hystbench.blocks import step
-from hystbench.blocks.curve import AHEAD, CENTRAL, about_sample
+from hystbench.blocks.curve import CENTRAL, about_sample
 from hystbench.blocks.step import Sampling
 from hystbench.export import python
 from hystbench.export.described import describe, exact_delay
