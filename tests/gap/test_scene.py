@@ -125,11 +125,11 @@ def test_plain_is_the_model_and_fine_steps_through_the_hysteresis_alone():
     model = Model("whole", CURRENT, DISPLACEMENT, chains()["hysteresis"])
     chain = model.with_hold("band-limited").chain
     same(Scene(chain, records(), "band-limited").output, from_scratch(chain))
-    finer = []
+    wanted = []
     for one in records():
         u = finer(one.u, 8)
-        finer.append(model.simulate(u, one.dt / 8)[::8])
-    same(Scene(chain, records(), "band-limited", fine=True).output, finer)
+        wanted.append(model.simulate(u, one.dt / 8)[::8])
+    same(Scene(chain, records(), "band-limited", fine=True).output, wanted)
 
 
 def test_quick_is_not_exact_where_a_mode_takes_a_band_limited_signal():
