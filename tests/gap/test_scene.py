@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.blocks.curve import finer
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
 from hystbench.gap.scene import Scene
 from hystbench.model import Model
