@@ -31,18 +31,13 @@ def mean_held(z, way, reach, gap):
     return (climbed + dead_zone(gap, end) * (way - moved)) / way
 
 
-def phi1(y):
-    """Give ``(exp(y) - 1) / y``."""
-    return 1 + y / 2 if abs(y) < 1e-8 else math.expm1(y) / y
-
-
 def phi2(y):
     """Give ``(exp(y) - 1 - y) / y^2``, near zero by its series."""
     if abs(y) > 0.3:
         return (math.expm1(y) - y) / (y * y)
     total = 0.0
-    for k in range(14, 1, -1):
-        total = (1 + y * total) / k
+    for k in range(13, 1, -1):
+        total = total * y + 1 / math.factorial(k)
     return total
 
 
@@ -56,8 +51,9 @@ def integral_of(x, a, way):
     slope = 1 + a * x
     if not slope > 0:
         return x, x * way
-    integral = way * (x + slope * way * phi2(a * way))
-    return x + slope * way * phi1(a * way), integral
+    y = a * way
+    twice = phi2(y)
+    return x + slope * way * (1 + y * twice), way * (x + slope * way * twice)
 
 
 def bouc_wen(z, way, share):
@@ -167,8 +163,29 @@ def all_forces(count, forces, q, v, way, memory):
     return total
 
 
+def way_near(miss, alone):
+    """Find the way by the secant method; NaN where it does not get there."""
+    x, at_x = alone, miss(alone)
+    step = -at_x
+    for _ in range(6):
+        if abs(step) <= 1e-9 * abs(x):
+            return x + step
+        if not abs(x + step - alone) < abs(alone):
+            break
+        before = at_x
+        x += step
+        at_x = miss(x)
+        if at_x == before:
+            break
+        step *= at_x / (before - at_x)
+    return math.nan
+
+
 def way_of(count, forces, memory, q, alone, gives, h):
-    """Find the way from q whose mean force leaves it, by Chandrupatla's method."""
+    """Find the way from q whose mean force leaves it.
+
+    By Chandrupatla's method where the secant method does not find it.
+    """
 
     def miss(way):
         total = 0.0
@@ -180,6 +197,9 @@ def way_of(count, forces, memory, q, alone, gives, h):
                 total += inner_force(f, q + way, 0.0, memory[i])
         return way - alone + gives * total
 
+    near_by = way_near(miss, alone)
+    if near_by == near_by:
+        return near_by
     a, b = 0.0, alone
     at_a, at_b = miss(a), miss(b)
     if at_a == 0 or at_b == 0:

@@ -35,15 +35,17 @@ static double hb_mean_held(double z, double way, double reach, double gap)
     return (climbed + hb_dead_zone(gap, to) * rest) / way;
 }
 
-/* (exp(y) - 1) / y. */
-static double hb_phi1(double y) { return fabs(y) < 1e-8 ? 1 + y / 2 : expm1(y) / y; }
-
-/* (exp(y) - 1 - y) / y^2, near zero by its series. */
+/* (exp(y) - 1 - y) / y^2, near zero by its series: the sum of y^k / (k + 2)!. */
 static double hb_phi2(double y)
 {
+    static const double share[] = {
+        1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,
+        1.0 / 720,    1.0 / 5040,    1.0 / 40320,    1.0 / 362880,
+        1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800,
+    };
     if (fabs(y) > 0.3) return (expm1(y) - y) / (y * y);
     double sum = 0;
-    for (int k = 14; k > 1; k--) sum = (1 + y * sum) / k;
+    for (int k = 11; k >= 0; k--) sum = sum * y + share[k];
     return sum;
 }
 
@@ -52,8 +54,9 @@ static double hb_integral_of(double *x, double a, double way)
 {
     const double slope = 1 + a * *x, from = *x;
     if (!(slope > 0)) return from * way; /* it rests there */
-    *x += slope * way * hb_phi1(a * way);
-    return way * (from + slope * way * hb_phi2(a * way));
+    const double y = a * way, twice = hb_phi2(y);
+    *x += slope * way * (1 + y * twice);
+    return way * (from + slope * way * twice);
 }
 
 /* Bouc-Wen's operator with exponent 1, solved exactly: z of a reach of one after a way
@@ -203,13 +206,35 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
     return way - alone + gives * sum;
 }
 
-/* The way of a part, by Chandrupatla's method; NaN where there is none.  The miss grows
- * with the way at least as fast where no force falls: between zero and the way without
- * forces, or the one with the force of the beginning, there is then one root. */
+/* The way of a part, by the secant method: a force changes little over most ways, so that
+ * three or four of its values are enough. A step of a billionth is the last: the next
+ * one would be lost in rounding. NaN where it does not get there. */
+static double hb_way_near(int count, const double *forces, const double *memory,
+                          double q, double alone, double gives, double h)
+{
+    double x = alone, at_x = hb_miss(count, forces, memory, q, alone, gives, h, x);
+    double step = -at_x;
+    for (int i = 0; i < 6; i++) {
+        if (fabs(step) <= 1e-9 * fabs(x)) return x + step;
+        if (!(fabs(x + step - alone) < fabs(alone))) return NAN;
+        const double before = at_x;
+        x += step;
+        at_x = hb_miss(count, forces, memory, q, alone, gives, h, x);
+        step *= at_x / (before - at_x);
+    }
+    return NAN;
+}
+
+/* The way of a part, by Chandrupatla's method where the one above does not find it; NaN
+ * where there is none.  The miss grows with the way at least as fast where no force
+ * falls: between zero and the way without forces, or the one with the force of the
+ * beginning, there is then one root. */
 static double hb_way_of(int count, const double *forces, const double *memory, double q,
                         double alone, double gives, double h)
 {
 #define HB_MISS(way) hb_miss(count, forces, memory, q, alone, gives, h, way)
+    const double near_by = hb_way_near(count, forces, memory, q, alone, gives, h);
+    if (near_by == near_by) return near_by;
     double a = 0, at_a = HB_MISS(0), b = alone, at_b = HB_MISS(b);
     if (at_a == 0) return 0;
     if (at_b == 0) return b;
