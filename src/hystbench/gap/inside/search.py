@@ -15,6 +15,7 @@ from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.base import Changed, Law, Moved
+from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
 from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.say import Say, silent
@@ -147,10 +148,13 @@ def _one_more(
         if name not in before.effects
         for further in starts(before, name, own, score)
     ]
+    if not begun:
+        return []
     if any(of_stores(item.fitted) for item in carried):
         best_first = fitted_each(begun, score)
     else:
-        best_first = fitted_likely(begun, score, keep)
+        beginnings = Beginnings.of(carried[0].fitted.state, score)
+        best_first = fitted_likely(begun, beginnings, score, keep)
     for item in best_first[:3]:
         say(f"inside: {' + '.join(item.effects)}: gain {alone - item.score:.1f}")
     return best_first
@@ -193,7 +197,7 @@ def starts(
 
 
 def fitted_likely(
-    begun: Iterable[Hypothesis], score: Score, count: int
+    begun: Iterable[Hypothesis], beginnings: Beginnings, score: Score, count: int
 ) -> list[Hypothesis]:
     """Fit the hypotheses that promise most: roughly first, the best of them to the end.
 
@@ -201,7 +205,10 @@ def fitted_likely(
     ----------
     begun : iterable of Hypothesis
         With the scores to be expected.
+    beginnings : Beginnings
+        What they are fitted to roughly.
     score : Score
+        Of the whole records.
     count : int
         How many, each by its best law and start, are fitted to the end; twice as many
         are fitted roughly.
@@ -218,12 +225,19 @@ def fitted_likely(
     for own in list(likely.values())[: 2 * count]:
         likeliest = {item.forms: item for item in reversed(own)}
         tried = [
-            replace(item, fitted=fitted(item.fitted.state, score, QUICK))
+            (item, fitted(beginnings.cut(item.fitted.state), beginnings.score, QUICK))
             for item in sorted(likeliest.values(), key=lambda x: x.score)[:FORMS]
         ]
-        rough.append(min(tried, key=lambda item: item.score))
-    rough.sort(key=lambda item: item.score)
-    return _to_the_end(rough[:count], score)
+        rough.append(min(tried, key=lambda pair: pair[1].score))
+    rough.sort(key=lambda pair: pair[1].score)
+    begun_well = [
+        replace(
+            item,
+            fitted=replace(own, state=with_numbers_of(item.fitted.state, own.state)),
+        )
+        for item, own in rough[:count]
+    ]
+    return _to_the_end(begun_well, score)
 
 
 def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:

@@ -1,0 +1,100 @@
+"""The beginnings of records, on which many laws are compared roughly.
+
+A simulation runs over whole records, and a fit simulates them some hundred times. Which
+of many laws is likely is seen on less: each record up to where a quarter of what the
+host leaves of it has passed. Records that move alike from end to end become four times
+as short; one that is driven harder and harder keeps most of its length.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.gap.inside.least_squares import at_values
+from hystbench.gap.sample import Sample
+from hystbench.gap.score import Score
+from hystbench.gap.state import State
+from hystbench.record import Record
+
+PART = 0.25
+"""Share of a record's residual power that its beginning holds."""
+
+
+@dataclass(frozen=True)
+class Beginnings:
+    """Records that were cut, and what is scored of them.
+
+    Parameters
+    ----------
+    records : tuple of Record
+    sample : Sample
+    kept : ndarray of bool, shape (scored samples,)
+        Which of the whole records' scored samples are left.
+    score : Score
+    """
+
+    records: tuple[Record, ...]
+    sample: Sample
+    kept: NDArray[np.bool_]
+    score: Score
+
+    @classmethod
+    def of(cls, state: State, score: Score) -> Beginnings:
+        """Cut the records where a quarter of a model's residual power has passed.
+
+        Parameters
+        ----------
+        state : State
+        score : Score
+            Of the whole records.
+        """
+        records, positions, of_start, kept = [], [], [], []
+        own_starts = state.sample.of_start or (None,) * len(state.records)
+        for record, places, part, start in zip(
+            state.records,
+            state.sample.positions,
+            state.sample.slices,
+            own_starts,
+            strict=True,
+        ):
+            passed = np.cumsum(np.nan_to_num(state.residual[part]) ** 2)
+            count = int(np.searchsorted(passed, PART * passed[-1])) + 1
+            end = len(record) if count == len(places) else int(places[count - 1]) + 1
+            records.append(_until(record, end))
+            positions.append(places[:count])
+            if start is not None:
+                of_start.append(start[:count])
+            kept.append(np.arange(len(places)) < count)
+        sample, mask = Sample(tuple(positions), tuple(of_start)), np.concatenate(kept)
+        own = Score(sample, score.directions[mask], score.floor)
+        return cls(tuple(records), sample, mask, own)
+
+    def cut(self, state: State) -> State:
+        """Give a model on the beginnings."""
+        lacks = state.correction
+        return replace(
+            state,
+            records=self.records,
+            sample=self.sample,
+            correction=None if lacks is None else lacks[self.kept],
+        )
+
+
+def with_numbers_of(state: State, other: State) -> State:
+    """Give a model with the free numbers of another one of the same blocks."""
+    return at_values(state, np.array([other.value(free) for free in other.free]))
+
+
+def _until(record: Record, end: int) -> Record:
+    simulated, lost = record.simulated, record.interpolated
+    return replace(
+        record,
+        u=record.u[:end].copy(),
+        y=record.y[:end].copy(),
+        period_samples=None,
+        simulated=None if simulated is None else simulated[:end].copy(),
+        interpolated=None if lost is None else lost[:end].copy(),
+    )
