@@ -75,7 +75,16 @@ def fitted(
         found = np.where(logs, values * times, values + point * sizes)
         return at_values(state, found)
 
+    newest: dict[bytes, FloatArray] = {}  # that of one point: slopes begin with it
+
     def residual(point: FloatArray) -> FloatArray:
+        key = point.tobytes()
+        if key not in newest:
+            newest.clear()
+            newest[key] = weighed(point)
+        return newest[key]
+
+    def weighed(point: FloatArray) -> FloatArray:
         try:
             rest = moved(point).residual * weights
         except InputError:
