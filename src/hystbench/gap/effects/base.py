@@ -22,8 +22,8 @@ from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import WrappingBlock
-from hystbench.gap.locate.view import Kind
 from hystbench.gap.scene import Scene
+from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
 Values = Mapping[str, float]
@@ -214,7 +214,7 @@ class Effect(ABC):
 
     name: ClassVar[str]
     place: ClassVar[str]
-    shows: ClassVar[Kind]
+    shows: ClassVar[ViewKind]
     """View in which an engineer looks for it first."""
     offsets: ClassVar[Mapping[str, tuple[tuple[str, str], ...]]] = {}
     """By form, where its blocks are plain gains: the name and the unit that the offset

@@ -10,7 +10,7 @@ import numpy as np
 from scipy import fft, special
 
 from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.view import Kind
+from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
 FACTS = 300
@@ -115,7 +115,7 @@ def best(forms: Sequence[Form]) -> Form:
     return max(forms, key=lambda form: form.saved)
 
 
-def named_or(samples: Samples, view: Kind, forms: Sequence[Form]) -> Form:
+def named_or(samples: Samples, view: ViewKind, forms: Sequence[Form]) -> Form:
     """Give what named effects add in a view; without any the best form of its own."""
     named = [
         replace(
