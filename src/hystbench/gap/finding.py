@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.base import Block
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
 from hystbench.gap.augmented import augmented, blocks_of
@@ -210,9 +209,9 @@ def decide(
         named = named.taken_back()
         left = what_is_left(start, named.state, floor.rms)
     records, state = start.records, named.state
-    compared = _compared(start.chain, start)
-    box = black_box(start, floor)
-    after = compared if state is start else _compared(state.chain, state)
+    compared = compare(start)
+    box = black_box(compared, floor)
+    after = compared if state is start else compare(state)
     lone = lone_share([item.residual for item in after])
     differs = unrepeated(after, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms)
@@ -237,7 +236,9 @@ def decide(
     reason += _predicts_nothing(state)
     reason += f"; {used_up}" if used_up else ""
     ladder = rungs(start, named)
-    where = locate(compared, floor, contributions(ladder) if verdict == "named" else ())
+    simulated = {start: compared, state: after}
+    contributed = contributions(ladder, simulated) if verdict == "named" else ()
+    where = locate(compared, floor, contributed)
     say(where.views[0].sentence)
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
@@ -299,9 +300,18 @@ def decide(
     )
 
 
-def contributions(ladder: Sequence[Rung]) -> list[Contribution]:
-    """Give what each named effect adds to the output of the rung before it."""
-    outputs = [_compared(rung.state.chain, rung.state) for rung in ladder]
+def contributions(
+    ladder: Sequence[Rung], simulated: Mapping[State, list[Compared]]
+) -> list[Contribution]:
+    """Give what each named effect adds to the output of the rung before it.
+
+    Parameters
+    ----------
+    ladder : sequence of Rung
+    simulated : mapping of State to list of Compared
+        States that were simulated before; any other is simulated here.
+    """
+    outputs = [simulated.get(rung.state) or compare(rung.state) for rung in ladder]
     found = []
     for (old, new), (before, after) in zip(
         pairwise(ladder), pairwise(outputs), strict=True
@@ -365,14 +375,15 @@ def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:
     }
 
 
-def black_box(start: State, floor: Floor) -> BlackBox:
+def black_box(compared: Sequence[Compared], floor: Floor) -> BlackBox:
     """Fit the yardstick to what the base leaves on the fit records."""
-    folds = make_folds(start.records, whole=False)
-    return BlackBox.fit(_compared(start.chain, start), folds, floor.rms)
+    folds = make_folds([item.record for item in compared], whole=False)
+    return BlackBox.fit(compared, folds, floor.rms)
 
 
-def _compared(chain: Sequence[Block], state: State) -> list[Compared]:
-    outputs = Scene(tuple(chain), state.records, state.hold, fine=True).output
+def compare(state: State) -> list[Compared]:
+    """Simulate a model on its records, in free run, with what lies beside it."""
+    outputs = Scene(state.chain, state.records, state.hold, fine=True).output
     offsets = _beside_signals(state) if state.beside else None
     return [
         Compared(record, y if offsets is None else y + offsets[k])

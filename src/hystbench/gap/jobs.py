@@ -10,7 +10,7 @@ from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.built_in import BuiltIn
 from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import Finding, black_box
+from hystbench.gap.finding import Finding, black_box, compare
 from hystbench.gap.floor import Floor
 from hystbench.gap.kept import Restorer, state_mapping
 from hystbench.gap.own_values import OwnValues
@@ -115,7 +115,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     ]
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
-    box = black_box(start, floor)
+    box = black_box(compare(start), floor)
     shown = outcome(
         base,
         decided,
