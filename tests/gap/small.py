@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 
 from hystbench.blocks import registry
-from hystbench.gap.sample import Sample
-from hystbench.gap.scene import Scene
-from hystbench.gap.score import Score
-from hystbench.gap.state import State
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import State
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.name import Progress, advance
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.naming.name import Progress, advance
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import MODE, block, measured, records, state_of
 

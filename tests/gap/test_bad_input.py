@@ -12,7 +12,7 @@ import yaml
 
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.model import load_model
 from hystbench.written import ENTRIES, TEMPORARY

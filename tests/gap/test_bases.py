@@ -12,12 +12,12 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap import bases
-from hystbench.gap.bases import identified_gpi, identified_linear, load_base
 from hystbench.gap.bases.linear import Linear
+from hystbench.gap.bases.load import identified_gpi, identified_linear, load_base
+from hystbench.gap.bases.load import load as bases
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.scene import Scene
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel

@@ -11,8 +11,8 @@ import pytest
 from hystbench.device_kinds import KINDS
 from hystbench.gap.behaviour import in_words
 from hystbench.gap.effects import effects
-from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import decide_in, show_in
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.gap.schema import SCHEMA
 from hystbench.gap.vocabulary import Vocabulary

@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.beside import black_box_mapping
-from hystbench.gap.compared import rms
-from hystbench.gap.folds import make_folds
-from hystbench.gap.shrink import mapping, records_mapping, shrink
-from hystbench.gap.yardstick import BlackBox
+from hystbench.gap.holdout.black_box import black_box_mapping
+from hystbench.gap.holdout.shrink import mapping, records_mapping, shrink
+from hystbench.gap.judging.black_box import BlackBox
+from hystbench.gap.records.folds import make_folds
+from hystbench.gap.records.residual import rms
 from tests.gap.made import compared, sine
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.beside_errors import beside_errors
 from hystbench.gap.effects import effects
-from hystbench.gap.sample import Sample
-from hystbench.gap.state import Added, Free, State
+from hystbench.gap.fitting.state import Added, Free, State
+from hystbench.gap.fitting.uncertainty_beside import beside_errors
+from hystbench.gap.records.sample import Sample
 from tests.gap.made import record
 from tests.gap.small import block, plain_score
 

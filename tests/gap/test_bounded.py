@@ -11,16 +11,16 @@ import numpy as np
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.bounded import FAR, bounded, reach
-from hystbench.gap.change import with_effect
+from hystbench.gap.decision import black_box, compare
 from hystbench.gap.effects import effects
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import black_box, compare
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.holdout.runs_away import FAR, bounded, reach
+from hystbench.gap.holdout.show import show
+from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.report.tables import write_summary
 from hystbench.gap.run import close_gap
-from hystbench.gap.rungs import Rung
-from hystbench.gap.shown import show
-from hystbench.gap.start import start_state
-from hystbench.gap.summary import write_summary
 from hystbench.model import Model, load_model
 from tests.gap.conftest import without_rendering
 from tests.gap.made import CURRENT, DISPLACEMENT, record

@@ -8,15 +8,15 @@ import pytest
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
-from hystbench.gap.change import removable, with_effect, without_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, logarithmic
 from hystbench.gap.effects.drift import FORMS, WINDING, path
-from hystbench.gap.fit import score_of
-from hystbench.gap.rank import rank
-from hystbench.gap.scene import Scene
-from hystbench.gap.search import Attempt
-from hystbench.gap.state import Free
+from hystbench.gap.fitting.edit_chain import removable, with_effect, without_effect
+from hystbench.gap.fitting.refit import score_of
+from hystbench.gap.fitting.search import Attempt
+from hystbench.gap.fitting.state import Free
+from hystbench.gap.naming.rank import rank
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
 from tests.gap.small import (

@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from hystbench.blocks.gain import Gain
-from hystbench.gap.evidence import check_units, load_evidence
+from hystbench.gap.records.evidence import check_units, load_evidence
 from hystbench.model import Model
 from hystbench.record import Channel
 from tests.gap.made import record, sine, write_folder

@@ -8,11 +8,16 @@ from hypothesis import strategies as st
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.excitations import candidates, write_experiment
-from hystbench.gap.experiment import CLEAR, Experiment, next_experiment
-from hystbench.gap.limits import Limits
+from hystbench.gap.experiment.excitations import candidates, write_experiment
+from hystbench.gap.experiment.limits import Limits
+from hystbench.gap.experiment.next_experiment import CLEAR, Experiment, next_experiment
+from hystbench.gap.experiment.separation import (
+    Pair,
+    Rival,
+    parameter_tangents,
+    separation,
+)
 from hystbench.gap.schema import EXPERIMENT
-from hystbench.gap.separation import Pair, Rival, parameter_tangents, separation
 from hystbench.model import Model
 from hystbench.schema import check_against_schema
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine

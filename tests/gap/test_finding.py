@@ -8,19 +8,18 @@ import pytest
 from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
-from hystbench.gap import finding as finding_module
-from hystbench.gap import tell_apart
-from hystbench.gap.augmented import augmented
-from hystbench.gap.change import with_effect
+from hystbench.gap import decision as finding_module
+from hystbench.gap.decision import decide, find
 from hystbench.gap.effects import effects
-from hystbench.gap.experiment import next_experiment
-from hystbench.gap.finding import decide, find
-from hystbench.gap.limits import Limits
-from hystbench.gap.name import Named
-from hystbench.gap.rounds import Candidate, Look, Round
-from hystbench.gap.separation import Pair
-from hystbench.gap.start import start_state
-from hystbench.gap.verdict import Left
+from hystbench.gap.experiment.limits import Limits
+from hystbench.gap.experiment.next_experiment import next_experiment, tell_apart
+from hystbench.gap.experiment.separation import Pair
+from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.judging.verdict import Left
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rounds import Candidate, Look, Round
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import block, hysteresis, measured

@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import optimize
 
-from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import FAR, added, finished, refit, score_of, sizes
-from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.rank import make_score, rank
-from hystbench.gap.search import Attempt, coarse, fine
-from hystbench.gap.state import Free
+from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.refit import FAR, added, finished, refit, score_of, sizes
+from hystbench.gap.fitting.search import Attempt, coarse, fine
+from hystbench.gap.fitting.state import Free
+from hystbench.gap.naming.rank import make_score, rank
 from tests.gap.small import (
     ENVELOPE,
     block,

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.gap.floor import noise_floor
+from hystbench.gap.records.floor import noise_floor
 from tests.gap.examples import DT, compare, inputs, linear, mode
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.gap.folds import chosen, make_folds
+from hystbench.gap.records.folds import chosen, make_folds
 from tests.gap.made import record, sine
 
 

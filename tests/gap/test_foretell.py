@@ -8,11 +8,11 @@ import yaml
 
 from hystbench.blocks.calls import Calls, counted
 from hystbench.errors import InputError
-from hystbench.gap.bases import load_base
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.foretell import calls_of_a_round, foretell
+from hystbench.gap.bases.load import load_base
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.naming.forecast_calls import calls_of_a_round, foretell
+from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.run import close_gap
-from hystbench.gap.start import start_state
 from tests.gap.conftest import without_rendering
 from tests.gap.made import CURRENT, record
 

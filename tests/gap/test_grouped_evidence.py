@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from hystbench.gap.grouped_evidence import Products, _factored
+from hystbench.gap.judging.grouped_evidence import Products, _factored
 
 ROWS = 2000
 

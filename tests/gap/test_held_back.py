@@ -6,16 +6,17 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from hystbench.gap import held_back, work
-from hystbench.gap import rank as ranked
-from hystbench.gap import score as scores
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import refit, score_of
-from hystbench.gap.folds import make_folds
-from hystbench.gap.held_back import gain_held_back
-from hystbench.gap.rank import make_score, on_folds, rank
-from hystbench.gap.rounds import Candidate
-from hystbench.gap.state import Free
+from hystbench.gap.fitting import cross_validation as held_back
+from hystbench.gap.fitting import score as scores
+from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.refit import refit, score_of
+from hystbench.gap.fitting.state import Free
+from hystbench.gap.naming import cached as work
+from hystbench.gap.naming import rank as ranked
+from hystbench.gap.naming.rank import make_score, on_folds, rank
+from hystbench.gap.naming.rounds import Candidate
+from hystbench.gap.records.folds import make_folds
 from hystbench.gap.thresholds import PAYS
 from tests.gap.made import multisine, record, steady
 from tests.gap.small import block, plain_score, state_of

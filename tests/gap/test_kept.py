@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.kept import Restorer, state_mapping
-from hystbench.gap.rank import make_score
-from hystbench.gap.search import Attempt, coarse
-from hystbench.gap.start import start_state
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.search import Attempt, coarse
+from hystbench.gap.fitting.serialize import Restorer, state_mapping
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.naming.rank import make_score
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
 
 from .tiny import write_tiny

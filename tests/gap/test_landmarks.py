@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.landmarks import Landmarks
+from hystbench.gap.judging.landmarks import Landmarks
 
 
 def kernel(a, b):

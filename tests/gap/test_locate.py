@@ -13,12 +13,12 @@ from jsonschema import validate
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects as vocabulary
-from hystbench.gap.floor import noise_floor
 from hystbench.gap.locate import Contribution, View, ranked
 from hystbench.gap.locate import locate as located
 from hystbench.gap.locate.distortion import BETWEEN, EVEN, ODD, take_distortion
 from hystbench.gap.locate.forms import narrowest_bins
 from hystbench.gap.locate.samples import take_samples
+from hystbench.gap.records.floor import noise_floor
 from hystbench.gap.schema import VIEW
 from tests.gap import made
 from tests.gap.examples import (

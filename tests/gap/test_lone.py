@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.lone import lone_share
+from hystbench.gap.records.disturbances import lone_share
 
 
 @given(st.integers(0, 1000), st.floats(1e-6, 1e6))

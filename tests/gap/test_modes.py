@@ -5,9 +5,9 @@ import pytest
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.fitting.state import State
 from hystbench.gap.inside.modes import modes, split_modes
-from hystbench.gap.sample import Sample
-from hystbench.gap.state import State
+from hystbench.gap.records.sample import Sample
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.floor import Floor
-from hystbench.gap.folds import make_folds
+from hystbench.gap.holdout.shrink import ladder, shrink
+from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.locate.samples import Samples
-from hystbench.gap.nuisance import left_over, path_and_mains
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.folds import make_folds
+from hystbench.gap.records.nuisance import left_over, path_and_mains
+from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.sample import Sample
 from hystbench.gap.run import close_gap
-from hystbench.gap.sample import Sample
-from hystbench.gap.shrink import ladder, shrink
-from hystbench.gap.yardstick import BlackBox
 from hystbench.model import load_model
 from tests.gap.made import record, sine
 from tests.gap.tiny import LAG_S, write_tiny

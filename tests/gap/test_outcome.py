@@ -5,9 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.holdout.withdrawal import (
+    WORSE,
+    first_figure,
+    withdrawal,
+    without_names,
+)
 from hystbench.gap.jobs import DECISION, decide_in, show_in
-from hystbench.gap.outcome import WORSE, first_figure, withdrawal, without_names
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.run import close_gap
 from hystbench.gap.schema import SCHEMA

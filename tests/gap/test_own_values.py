@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from hystbench.gap.change import with_effect
+from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.finding import find
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.own_values import NONE, Own, OwnValues, fitted, own_values
 from hystbench.gap.jobs import decide_in, show_in
-from hystbench.gap.named_apart import without_shared
-from hystbench.gap.own_values import NONE, Own, OwnValues, fitted, own_values
+from hystbench.gap.naming.with_own_values import without_shared
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import close_gap
 from hystbench.gap.schema import RECORD_VALUES
 from hystbench.model import Model

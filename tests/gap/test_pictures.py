@@ -8,13 +8,13 @@ import re
 import numpy as np
 import pytest
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.floor import noise_floor
 from hystbench.gap.locate import locate
 from hystbench.gap.locate.distortion import EITHER, EVEN, ODD, take_distortion
 from hystbench.gap.locate.rate import COLUMNS, FEWEST, over_plane, rate_edges
 from hystbench.gap.locate.samples import take_samples
-from hystbench.gap.report.where import LOOKS
+from hystbench.gap.records.floor import noise_floor
+from hystbench.gap.records.residual import Compared
+from hystbench.gap.report.where_pictures import LOOKS
 from tests.gap.examples import (
     DT,
     compare,

@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap import reconsider
-from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import finished
-from hystbench.gap.name import Named
-from hystbench.gap.rank import make_score
-from hystbench.gap.reconsider import reconsidered
-from hystbench.gap.rounds import Candidate, Round, reasons
-from hystbench.gap.say import silent
+from hystbench.gap.fitting.edit_chain import with_effect, without_effect
+from hystbench.gap.fitting.refit import finished
+from hystbench.gap.judging.gap_json import ranking_rows
+from hystbench.gap.naming import second_looks as reconsider
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rank import make_score
+from hystbench.gap.naming.rounds import Candidate, Round, reasons
+from hystbench.gap.naming.second_looks import reconsidered
+from hystbench.gap.progress import silent
 from hystbench.gap.thresholds import PAYS
-from hystbench.gap.told import ranking_rows
 from tests.gap.small import block, measured, state_of
 
 NOISE = 0.02

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import pytest
 
 from hystbench.blocks import registry
-from hystbench.gap import remembered as module
-from hystbench.gap.bases import load_base
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.kept import remembered_of
-from hystbench.gap.rank import make_score, rank
-from hystbench.gap.remembered import Remembered, remembered, remembering
-from hystbench.gap.start import start_state
+from hystbench.gap import cache as module
+from hystbench.gap.bases.load import load_base
+from hystbench.gap.cache import Remembered, remembered, remembering
+from hystbench.gap.fitting.serialize import remembered_of
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
 from tests.gap.tiny import write_tiny
 
@@ -90,7 +90,7 @@ def test_an_identified_base_is_looked_up(given, tmp_path, monkeypatch):
     evidence, _ = given
     with remembering(Remembered(tmp_path, silent)):
         first = load_base("gpi", evidence)
-    monkeypatch.setattr("hystbench.gap.bases.identified_gpi", None)
+    monkeypatch.setattr("hystbench.gap.bases.load.identified_gpi", None)
     with remembering(Remembered(tmp_path, silent)):
         assert load_base("gpi", evidence) == first
 

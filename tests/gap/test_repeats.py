@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.compared import Compared
+from hystbench.gap.records.residual import Compared
 from hystbench.gap.repeats import unrepeated
 from hystbench.record import Channel, Record
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.reshape import (
+from hystbench.gap.simulation.reshape import (
     OPERATORS,
     SMALLEST,
     orthonormal,

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.ridge import Moments
+from hystbench.gap.judging.ridge import Moments
 
 
 @given(st.integers(0, 1000), st.integers(20, 60), st.integers(1, 6))

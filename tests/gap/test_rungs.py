@@ -4,12 +4,12 @@ from itertools import pairwise
 
 import pytest
 
-from hystbench.gap.finding import find
-from hystbench.gap.name import Named
-from hystbench.gap.rounds import Round
-from hystbench.gap.rungs import BASE, RETUNED, rungs
-from hystbench.gap.shown import show
-from hystbench.gap.state import Added, Free
+from hystbench.gap.decision import find
+from hystbench.gap.fitting.state import Added, Free
+from hystbench.gap.holdout.show import show
+from hystbench.gap.naming.ladder import BASE, RETUNED, rungs
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rounds import Round
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import block, measured, state_of

@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.wrapping import Wrapped, WrappingBlock
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import MODE, block, chains, hysteresis, records, state_of

@@ -9,9 +9,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import optimize
 
-from hystbench.gap import score as scores
-from hystbench.gap.sample import Sample
-from hystbench.gap.score import Score
+from hystbench.gap.fitting import score as scores
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.records.sample import Sample
 from tests.gap.made import record
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.separation import (
+from hystbench.gap.experiment.separation import (
     Pair,
     Rival,
     pairs_of,

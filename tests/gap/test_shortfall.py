@@ -2,7 +2,7 @@
 
 import pytest
 
-from hystbench.gap.shortfall import shortfall
+from hystbench.gap.holdout.shortfall import shortfall
 
 
 def content(

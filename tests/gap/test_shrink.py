@@ -4,19 +4,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.gap.explained import (
+from hystbench.gap.holdout.share_explained import (
     resampled_rms,
     rms_interval,
     share_explained,
     share_interval,
 )
-from hystbench.gap.nuisance import (
+from hystbench.gap.holdout.shrink import ladder, shrink, spectra
+from hystbench.gap.records.nuisance import (
     degree_that_carries_on,
     path_and_mains,
     split_first,
     without_nuisance,
 )
-from hystbench.gap.shrink import ladder, shrink, spectra
 from tests.gap.made import record, sine
 
 LEVELS = st.floats(0.01, 10)

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap.bases import load_base, written_base
-from hystbench.gap.bases.halves import Halves, HalvesError
+from hystbench.gap.bases.load import load_base, written_base
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
-from hystbench.gap.bases.split import _block
+from hystbench.gap.bases.split_linear import _block
+from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
+from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import INSIDE
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import find
-from hystbench.gap.scene import Scene
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
 from tests.gap.small import block

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.finding import find
-from hystbench.gap.fit import refit
-from hystbench.gap.start import free_numbers, start_state
+from hystbench.gap.decision import find
+from hystbench.gap.fitting.refit import refit
+from hystbench.gap.fitting.start import free_numbers, start_state
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import GPI, block, hysteresis, measured, plain_score

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.band_limited import interpolate
-from hystbench.gap import name as naming
-from hystbench.gap.change import with_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.name import Progress, advance
-from hystbench.gap.say import silent
-from hystbench.gap.scene import Scene
-from hystbench.gap.start import start_state
-from hystbench.gap.steps import above_floor, floor_with_steps, step_error
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.fitting.step_error import above_floor, floor_with_steps, step_error
+from hystbench.gap.naming import name as naming
+from hystbench.gap.naming.name import Progress, advance
+from hystbench.gap.progress import silent
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block, hysteresis, plain_score, records
@@ -94,7 +94,9 @@ def test_no_effect_is_tried_where_steps_hold_what_is_left(monkeypatch, error):
         raise SearchedError
 
     monkeypatch.setattr(naming, "rank", rank)
-    monkeypatch.setattr("hystbench.gap.steps.step_error", lambda state: error)
+    monkeypatch.setattr(
+        "hystbench.gap.fitting.step_error.step_error", lambda state: error
+    )
     progress = Progress(state, 1.0)
     if error:
         assert advance(progress, NOISE, silent).done

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.change import without_effect
+from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.hosts import best_host
 from hystbench.gap.inside.name import chosen
 from hystbench.gap.inside.stores import stores
-from hystbench.gap.score import Score
 from hystbench.record import Channel, Record
 
 from .inside_host import search

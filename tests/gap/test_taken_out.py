@@ -5,21 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap import taken_out
-from hystbench.gap.change import with_effect, without_effect
 from hystbench.gap.effects import effects
-from hystbench.gap.fit import refit
-from hystbench.gap.name import LITTLE, Named
-from hystbench.gap.rank import make_score
-from hystbench.gap.rounds import Round
-from hystbench.gap.say import silent
-from hystbench.gap.taken_out import TakenOut, needless, unknown, without_what_goes
-from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE
-from hystbench.gap.uncertainty import (
+from hystbench.gap.fitting.edit_chain import with_effect, without_effect
+from hystbench.gap.fitting.refit import refit
+from hystbench.gap.fitting.uncertainty import (
     error_of_size,
     on_more_samples,
     standard_errors,
 )
+from hystbench.gap.naming import removal as taken_out
+from hystbench.gap.naming.name import LITTLE, Named
+from hystbench.gap.naming.rank import make_score
+from hystbench.gap.naming.removal import TakenOut, needless, unknown, without_what_goes
+from hystbench.gap.naming.rounds import Round
+from hystbench.gap.progress import silent
+from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE
 from tests.gap.small import block, hysteresis, measured, state_of
 
 NOISE = 0.02

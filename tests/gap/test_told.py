@@ -10,17 +10,22 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hystbench.gap.augmented import augmented
-from hystbench.gap.change import with_effect
+from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
-from hystbench.gap.finding import find
-from hystbench.gap.name import Named
-from hystbench.gap.rounds import Candidate, Look, Round, in_order
+from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.fitting.state import Added, Free
+from hystbench.gap.judging.gap_json import (
+    at_ends,
+    base_parameters,
+    effect_mapping,
+    ranking_rows,
+)
+from hystbench.gap.judging.verdict import Left
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rounds import Candidate, Look, Round, in_order
 from hystbench.gap.schema import RANK
-from hystbench.gap.start import start_state
-from hystbench.gap.state import Added, Free
-from hystbench.gap.told import at_ends, base_parameters, effect_mapping, ranking_rows
-from hystbench.gap.verdict import Left
 from hystbench.model import Model, load_model
 from hystbench.model_content import Provenance
 from hystbench.schema import check_against_schema

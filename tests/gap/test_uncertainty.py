@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from hystbench.gap.sample import Sample
-from hystbench.gap.score import Score
-from hystbench.gap.state import Free, State
-from hystbench.gap.uncertainty import (
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, State
+from hystbench.gap.fitting.uncertainty import (
     SAMPLES,
     Pieces,
     between_records,
     on_more_samples,
     standard_errors,
 )
+from hystbench.gap.records.sample import Sample
 from tests.gap.made import record
 from tests.gap.small import block, chains, plain_score, state_of
 

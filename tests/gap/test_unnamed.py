@@ -9,13 +9,13 @@ import pytest
 import yaml
 
 from hystbench.commands.gap import gap
-from hystbench.gap.change import numbers_of
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.edit_chain import numbers_of
+from hystbench.gap.fitting.state import Added
+from hystbench.gap.judging.known_signals import halves, low_pass
+from hystbench.gap.judging.unnamed import CHANGE, SHARE, SORTS, Unnamed, what_is_unnamed
 from hystbench.gap.report.words import verdict_sentence
-from hystbench.gap.scene import Scene
-from hystbench.gap.state import Added
-from hystbench.gap.structure import halves, low_pass
-from hystbench.gap.unnamed import CHANGE, SHARE, SORTS, Unnamed, what_is_unnamed
+from hystbench.gap.simulation.simulation import Scene
 from tests.gap.made import record
 from tests.gap.small import block, measured, state_of
 

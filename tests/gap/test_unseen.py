@@ -13,14 +13,14 @@ import pytest
 from hystbench.blocks.external import External
 from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec
-from hystbench.gap.bases import load_base, simulated_column
+from hystbench.gap.bases.load import load_base, simulated_column
+from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import find
-from hystbench.gap.reshape import reshapings
-from hystbench.gap.sample import Sample
-from hystbench.gap.scene import Scene
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.reshape import reshapings
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.gap.wanted import write_wanted
 from tests.gap.halved import first_halves
 from tests.gap.made import CURRENT, record, sine

@@ -5,10 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.rounds import Candidate, near
-from hystbench.gap.thresholds import TIE
-from hystbench.gap.unnamed import CHANGE, LOOSE, Unnamed
-from hystbench.gap.verdict import (
+from hystbench.gap.judging.unnamed import CHANGE, LOOSE, Unnamed
+from hystbench.gap.judging.verdict import (
     ABOVE,
     GIVE,
     LONE,
@@ -23,6 +21,8 @@ from hystbench.gap.verdict import (
     what_is_left,
     what_mends,
 )
+from hystbench.gap.naming.rounds import Candidate, near
+from hystbench.gap.thresholds import TIE
 from hystbench.record import Channel, Record
 from tests.gap.small import block, measured, state_of
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.signal import lfilter
 
 from hystbench.errors import InputError
-from hystbench.gap.folds import make_folds
-from hystbench.gap.yardstick import BlackBox
+from hystbench.gap.judging.black_box import BlackBox
+from hystbench.gap.records.folds import make_folds
 from tests.gap.made import compared, record, sine
 
 
@@ -143,8 +143,8 @@ def test_a_dead_simulation_and_a_short_record_are_no_trouble():
 
 def test_heavy_libraries_are_imported_late():
     code = (
-        "import sys, hystbench.gap.beside, hystbench.gap.experiment, "
-        "hystbench.gap.report, hystbench.gap.yardstick; "
+        "import sys, hystbench.gap.holdout.black_box, hystbench.gap.report, "
+        "hystbench.gap.experiment.next_experiment, hystbench.gap.judging.black_box; "
         "print({'sklearn', 'scipy', 'matplotlib', 'jinja2'} & set(sys.modules))"
     )
     run = subprocess.run(

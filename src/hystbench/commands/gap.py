@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.asked import check_base
+from hystbench.gap.bases.kinds import check_base
 from hystbench.gap.behaviour import in_words
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.limits import Limits
+from hystbench.gap.experiment.limits import Limits
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import will_write
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.gap.wanted import write_wanted

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from hystbench.device_kinds import BEHAVIOURS, Kind, behaviour_of, causes_of
-from hystbench.gap.say import Say
+from hystbench.gap.progress import Say
 from hystbench.quantities import Quantities
 
 _NAMED_BY_A_CAUSE = re.compile(rf"(?<![\w-])({'|'.join(BEHAVIOURS)})(?![\w-])")

@@ -8,12 +8,16 @@ from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.built_in import BuiltIn
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import Finding, black_box, compare
-from hystbench.gap.floor import Floor
-from hystbench.gap.kept import Restorer, state_mapping
-from hystbench.gap.own_values import OwnValues
+from hystbench.gap.decision import Finding, black_box, compare
+from hystbench.gap.fitting.own_values import OwnValues
+from hystbench.gap.fitting.serialize import Restorer, state_mapping
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.judging.unnamed import SHARE
+from hystbench.gap.naming.built_in import BuiltIn
+from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.run import (
     DECISIVE,
     SHOWN,
@@ -22,10 +26,6 @@ from hystbench.gap.run import (
     outcome,
     write_shown,
 )
-from hystbench.gap.rungs import Rung
-from hystbench.gap.say import Say, silent
-from hystbench.gap.start import start_state
-from hystbench.gap.unnamed import SHARE
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.model import Model
 from hystbench.written import writes

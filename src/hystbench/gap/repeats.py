@@ -12,8 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hystbench.gap.compared import Compared
 from hystbench.gap.periods import settled
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 LEAST_PERIODS = 3

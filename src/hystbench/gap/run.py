@@ -10,33 +10,33 @@ from typing import Any
 import numpy as np
 
 from hystbench.files import whole_folder, write_csv, write_json
-from hystbench.gap.augmented import augmented
 from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.built_in import BuiltIn, put_in
-from hystbench.gap.evidence import Evidence, check_units, inside_of
-from hystbench.gap.finding import Finding, find
-from hystbench.gap.floor import Floor
-from hystbench.gap.foretell import keep_back
-from hystbench.gap.outcome import (
+from hystbench.gap.decision import Finding, find
+from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.fitting.start import run_base
+from hystbench.gap.fitting.state import State
+from hystbench.gap.holdout.shortfall import shortfall
+from hystbench.gap.holdout.show import as_recorded, nuisance_of, show
+from hystbench.gap.holdout.shrink import (
+    ladder,
+)
+from hystbench.gap.holdout.withdrawal import (
     first_figure,
     with_built_in,
     with_what_was_asked,
     withdrawal,
     without_names,
 )
-from hystbench.gap.own_values import NONE, OwnValues
-from hystbench.gap.rungs import BASE, Rung
-from hystbench.gap.say import Say, silent
-from hystbench.gap.shortfall import shortfall
-from hystbench.gap.shown import as_recorded, nuisance_of, show
-from hystbench.gap.shrink import (
-    ladder,
-)
-from hystbench.gap.start import run_base
-from hystbench.gap.state import State
-from hystbench.gap.unnamed import SHARE
+from hystbench.gap.judging.black_box import BlackBox
+from hystbench.gap.judging.unnamed import SHARE
+from hystbench.gap.naming.built_in import BuiltIn, put_in
+from hystbench.gap.naming.forecast_calls import keep_back
+from hystbench.gap.naming.ladder import BASE, Rung
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence, check_units, inside_of
+from hystbench.gap.records.floor import Floor
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
-from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 from hystbench.written import writes

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hystbench.gap.excitations import write_experiment
-from hystbench.gap.finding import Finding
+from hystbench.gap.decision import Finding
+from hystbench.gap.experiment.excitations import write_experiment
 from hystbench.record import Channel
 
 

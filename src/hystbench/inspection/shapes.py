@@ -12,7 +12,7 @@ from hystbench.blocks.base import Block
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, Variant
-from hystbench.gap.state import State, beside_columns
+from hystbench.gap.fitting.state import State, beside_columns
 from hystbench.record import FloatArray
 
 POINTS = 6

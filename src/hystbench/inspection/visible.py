@@ -17,11 +17,11 @@ from scipy.optimize import brentq
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.reshape import orthonormal, products, reshapings
-from hystbench.gap.sample import Sample
-from hystbench.gap.scene import Scene
-from hystbench.gap.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
-from hystbench.gap.state import State
+from hystbench.gap.fitting.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
+from hystbench.gap.fitting.state import State
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.gap.thresholds import PAYS
 from hystbench.inspection.shapes import Shape, shapes_of
 from hystbench.model import Model

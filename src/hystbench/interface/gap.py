@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any, Literal
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
 from hystbench.gap.behaviour import in_words
-from hystbench.gap.evidence import Evidence, load_evidence
+from hystbench.gap.judging.unnamed import SHARE
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import Closed, closed_gap
-from hystbench.gap.say import Say, silent
-from hystbench.gap.unnamed import SHARE
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from hystbench.gap.experiment import Experiment
+    from hystbench.gap.experiment.next_experiment import Experiment
     from hystbench.interface.picture import Picture
 
 Table = Literal["records", "effects", "ranking"]
@@ -303,7 +303,7 @@ def find_gap(
         evidence = _evidence(dataset)
     place = str(dataset.path if isinstance(dataset, Dataset) else dataset)
     with _kept(calls, keep_calls, cache, say):
-        from hystbench.gap.bases import load_base  # late: what it needs depends
+        from hystbench.gap.bases.load import load_base  # late: what it needs depends
 
         base, note = load_base(
             str(model) if isinstance(model, Path) else model, evidence
@@ -339,7 +339,7 @@ def _kept(calls: int | None, keep_calls: bool, cache: bool, say: Say) -> Iterato
     """Let what is computed within the block be kept, as far as that is wanted."""
     from hystbench.blocks.calls import Calls, counted
     from hystbench.blocks.kept_outputs import KeptOutputs, folder_of_user
-    from hystbench.gap.remembered import Remembered, folder, remembering
+    from hystbench.gap.cache import Remembered, folder, remembering
 
     outputs = KeptOutputs(folder_of_user(), say) if keep_calls else None
     store = Remembered(folder(), say) if cache else None

@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases import load_base
-from hystbench.gap.evidence import check_units, load_evidence
+from hystbench.gap.bases.load import load_base
 from hystbench.gap.jobs import decide_in
+from hystbench.gap.records.evidence import check_units, load_evidence
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.gap.wanted import write_wanted
 

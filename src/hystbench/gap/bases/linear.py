@@ -12,12 +12,12 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.impedance import INPUTS, Impedance
 from hystbench.blocks.transfer_function import STARTS
 from hystbench.errors import InputError
-from hystbench.gap.bases.halves import HalvesError
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio, with_a_mode
-from hystbench.gap.bases.split import best_split, chain_of, is_bent
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.folds import Fold, make_folds
+from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
+from hystbench.gap.bases.wiener_hammerstein import HalvesError
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.model import Model
 from hystbench.record import FloatArray, Mask
 

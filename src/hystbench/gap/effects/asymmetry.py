@@ -14,7 +14,7 @@ from hystbench.gap.effects.base import (
     logarithmic,
     places_inside,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class Asymmetry(Effect):

@@ -22,7 +22,7 @@ from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import WrappingBlock
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.base import Declined, Effect, Variant
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.gap.thresholds import SHAPE
 
 

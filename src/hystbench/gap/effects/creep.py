@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hystbench.gap.effects.base import Declined, Effect, Values, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class Creep(Effect):

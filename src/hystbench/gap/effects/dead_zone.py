@@ -13,7 +13,7 @@ from hystbench.gap.effects.base import (
     places_in_drive,
     places_inside,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class DeadZone(Effect):

@@ -8,7 +8,7 @@ import numpy as np
 
 from hystbench.gap.effects.base import EVERY, Beside, Effect, Samples, Values, Variant
 from hystbench.gap.once import periods, shows_a_path
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.record import FloatArray, Record
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_drive
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class DriveSaturation(Effect):

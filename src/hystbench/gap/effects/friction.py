@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.smooth_friction import SmoothFriction
 from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 HOLDS = 1e-7
 """Share of the reach by which dry friction gives way where it holds: no record shows

@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench.envelope import Envelope
 from hystbench.gap.effects.base import Declined, Effect, Values, Variant
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 OPERATORS = 8
 BEND = 0.5

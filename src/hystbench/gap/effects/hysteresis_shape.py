@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.effects.hysteresis import PLAYS
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class HysteresisShape(Effect):

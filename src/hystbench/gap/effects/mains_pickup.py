@@ -16,7 +16,7 @@ from hystbench.gap.effects.base import (
     Values,
     Variant,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.record import FloatArray, Record
 
 MAINS_HZ = (50.0, 60.0)

@@ -11,7 +11,7 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Effect, Values, Variant
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class RateDependentHysteresis(Effect):

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.effects.base import Effect, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.record import FloatArray
 
 PEAKS = 3

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 SOFTEST, SHARPEST = 1.0, 50.0
 """Froelich's law of magnetisation; beyond the other one, a corner is a corner."""

@@ -12,7 +12,7 @@ from hystbench.gap.effects.base import (
     logarithmic,
     places_in_sensor,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class SensorLag(Effect):

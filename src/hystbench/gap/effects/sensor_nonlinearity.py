@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_sensor
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class SensorNonlinearity(Effect):

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import expit, logit
 
 from hystbench.gap.effects.base import Effect, Variant, places_in_drive
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 
 class SlewLimit(Effect):

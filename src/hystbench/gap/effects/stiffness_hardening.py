@@ -23,7 +23,7 @@ from hystbench.gap.effects.base import (
     Values,
     Variant,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Scene
 
 Before = tuple[Block, ...]
 """What is left of a block when a mode is taken out of its end."""

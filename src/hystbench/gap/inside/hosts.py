@@ -19,15 +19,15 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.gap.compared import rms
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, State
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.inside.modes import modes
 from hystbench.gap.inside.stores import stores
-from hystbench.gap.sample import Sample
-from hystbench.gap.scene import Scene
-from hystbench.gap.score import Score
-from hystbench.gap.state import Free, State
-from hystbench.gap.unnamed import SHARE
+from hystbench.gap.judging.unnamed import SHARE
+from hystbench.gap.records.residual import rms
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.simulation import Scene
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 

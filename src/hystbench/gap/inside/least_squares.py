@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.score import Score
-from hystbench.gap.state import Free, State
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, State
 from hystbench.record import FloatArray
 
 EVALUATIONS = 100

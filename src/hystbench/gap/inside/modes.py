@@ -14,7 +14,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.state import Free, State
+from hystbench.gap.fitting.state import Free, State
 from hystbench.record import FloatArray
 
 NUMBERS = ("mass", "damping", "stiffness", "blend")

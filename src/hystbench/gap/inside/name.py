@@ -9,7 +9,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from hystbench.gap.held_back import gain_held_back
+from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import State
 from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -18,11 +20,9 @@ from hystbench.gap.inside.search import (
     singles,
     together,
 )
-from hystbench.gap.name import Named
-from hystbench.gap.rounds import Candidate, Round
-from hystbench.gap.say import Say, silent
-from hystbench.gap.score import Score
-from hystbench.gap.state import State
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rounds import Candidate, Round
+from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import CERTAIN, FURTHER, MATTERS, PAYS, TIE
 from hystbench.model import Model
 from hystbench.quantities import Quantities

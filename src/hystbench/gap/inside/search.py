@@ -15,11 +15,11 @@ from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.base import Changed, Law, Moved
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Added, Free, State
 from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged
 from hystbench.gap.inside.stores import how_it_fills, with_changed
-from hystbench.gap.say import Say, silent
-from hystbench.gap.score import Score
-from hystbench.gap.state import Added, Free, State
+from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, TIE
 
 SINGLES, PAIRS = 4, 2

@@ -12,8 +12,8 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects.base import Changed, Filled
-from hystbench.gap.sample import Sample
-from hystbench.gap.state import Added, Free, State
+from hystbench.gap.fitting.state import Added, Free, State
+from hystbench.gap.records.sample import Sample
 from hystbench.record import Record
 
 RATES = 6

@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, special
 
-from hystbench.gap.compared import Compared
 from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import MATTERS, SIGNIFICANT, chance, percent
 from hystbench.gap.periods import settled
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 IntArray = NDArray[np.int64]

@@ -9,8 +9,6 @@ from itertools import pairwise
 import numpy as np
 from scipy import fft
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.floor import periodogram
 from hystbench.gap.locate.distortion import take_distortion
 from hystbench.gap.locate.forms import (
     fit_form,
@@ -29,6 +27,8 @@ from hystbench.gap.locate.picture import (
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.spectra import R, S, Spectra, U, take_spectra
 from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.records.floor import periodogram
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 BANDS = 12

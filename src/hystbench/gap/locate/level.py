@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import special
 
-from hystbench.gap.compared import Compared
 from hystbench.gap.locate.dominant import find_modes
 from hystbench.gap.locate.forms import saved
 from hystbench.gap.locate.lines import Lines, lines_of
@@ -16,6 +15,7 @@ from hystbench.gap.locate.moving import Moving
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.records.residual import Compared
 from hystbench.quantities import quantity_of
 
 APART = 1.2

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from hystbench.gap.compared import Compared
 from hystbench.gap.periods import settled
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]

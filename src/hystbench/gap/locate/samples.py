@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.errors import InputError
-from hystbench.gap.compared import Compared
-from hystbench.gap.floor import Floor
 from hystbench.gap.locate.contribution import Contribution
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.residual import Compared
 from hystbench.operators import play
 from hystbench.record import FloatArray
 

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 from hystbench.blocks.linear import low_pass
-from hystbench.gap.compared import Compared
 from hystbench.gap.locate.forms import fit_form, named_or, narrowest, p_value_of
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 TIMES = 7

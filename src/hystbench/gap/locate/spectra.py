@@ -8,9 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.gap.compared import Compared
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.periods import settled
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]

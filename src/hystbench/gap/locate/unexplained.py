@@ -7,7 +7,6 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.gap.floor import periodogram
 from hystbench.gap.locate.forms import (
     best,
     fit_form,
@@ -18,6 +17,7 @@ from hystbench.gap.locate.forms import (
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.gap.once import shows_a_path
+from hystbench.gap.records.floor import periodogram
 from hystbench.record import FloatArray
 
 BoolArray = NDArray[np.bool_]
