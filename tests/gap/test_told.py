@@ -14,14 +14,10 @@ from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.state import Added, Free
-from hystbench.gap.judging.gap_json import (
-    at_ends,
-    base_parameters,
-    effect_mapping,
-    ranking_rows,
-)
+from hystbench.gap.judging.gap_json import effect_mapping, ranking_rows
 from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.name import Named
 from hystbench.gap.naming.rounds import Candidate, Look, Round, in_order

@@ -13,9 +13,10 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import numbers_of
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.judging.known_signals import halves, low_pass
-from hystbench.gap.judging.unnamed import CHANGE, SHARE, SORTS, Unnamed, what_is_unnamed
+from hystbench.gap.judging.unnamed import CHANGE, SORTS, Unnamed, what_is_unnamed
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from tests.gap.made import record
 from tests.gap.small import block, measured, state_of
 
@@ -126,7 +127,7 @@ def test_with_no_name_the_sort_of_the_gap_is_told(sort):
     assert found.changing is None
     assert found.factors == ()
     if sort == "unrelated":
-        assert found.structured < SHARE
+        assert found.structured < UNNAMED_SHARE
         assert found.unrelated > 0.9
 
 
@@ -220,6 +221,6 @@ def test_an_older_result_without_the_shares_has_its_sentence_too():
 
 def test_the_command_and_the_workflow_allow_the_same_share():
     command = {option.name: option for option in gap.params}
-    assert command["unnamed_share"].default == SHARE
+    assert command["unnamed_share"].default == UNNAMED_SHARE
     config = yaml.safe_load(Path("config.yaml").read_text())
-    assert config["gap"]["unnamed_share"] == SHARE
+    assert config["gap"]["unnamed_share"] == UNNAMED_SHARE

@@ -19,9 +19,9 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.sample import Sample
+from hystbench.gap.run import write_next_experiment
 from hystbench.gap.simulation.reshape import reshapings
 from hystbench.gap.simulation.simulation import Scene
-from hystbench.gap.wanted import write_wanted
 from tests.gap.halved import first_halves
 from tests.gap.made import CURRENT, record, sine
 from tests.gap.small import block, hysteresis, measured, records
@@ -143,7 +143,7 @@ def test_beside_a_name_stands_what_a_stored_output_did_not_let_be_tried(tmp_path
         "not tried, as the simulator cannot be run again: "
         in (finding.content["reason"])
     )
-    told = write_wanted(finding, CURRENT, tmp_path / "next.csv")
+    told = write_next_experiment(finding, CURRENT, tmp_path / "next.csv")
     assert told.endswith("no effects that were tried need to be told apart")
 
 

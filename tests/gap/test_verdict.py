@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from hystbench.gap.judging.unnamed import CHANGE, LOOSE, Unnamed
 from hystbench.gap.judging.verdict import (
-    ABOVE,
     GIVE,
     LONE,
     SLIGHT,
@@ -22,7 +21,7 @@ from hystbench.gap.judging.verdict import (
     what_mends,
 )
 from hystbench.gap.naming.rounds import Candidate, near
-from hystbench.gap.thresholds import TIE
+from hystbench.gap.thresholds import ABOVE_NOISE, TIE
 from hystbench.record import Channel, Record
 from tests.gap.small import block, measured, state_of
 
@@ -45,12 +44,12 @@ def test_every_finding_has_a_word_and_a_reason(before, after, one, other, named,
     assert 0 <= found.loose <= 1
 
 
-@given(st.floats(-1, ABOVE), st.none() | SHARES)
+@given(st.floats(-1, ABOVE_NOISE), st.none() | SHARES)
 def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
     assert judge(left(after), False, box)[0] == "no-gap"
 
 
-@given(st.floats(-1, ABOVE), SHARES)
+@given(st.floats(-1, ABOVE_NOISE), SHARES)
 def test_noise_that_stands_in_lone_samples_is_none(after, lone):
     word, reason = judge(left(after, after), False, 0.0, lone=lone)
     told = lone * (1 + after) > LONE
@@ -108,7 +107,7 @@ def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are():
     assert "takes 0 % of the power of it away on folds" in reasons[3]
 
 
-@given(st.floats(1.01 * ABOVE, 1e6), st.none() | SHARES)
+@given(st.floats(1.01 * ABOVE_NOISE, 1e6), st.none() | SHARES)
 def test_a_gap_that_nothing_takes_away_is_unnamed(after, box):
     assert judge(left(after), False, box)[0] == "unnamed"
 

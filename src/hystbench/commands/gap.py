@@ -11,9 +11,8 @@ from hystbench.gap.bases.kinds import check_base
 from hystbench.gap.behaviour import in_words
 from hystbench.gap.experiment.limits import Limits
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.run import will_write
+from hystbench.gap.run import will_write, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
-from hystbench.gap.wanted import write_wanted
 from hystbench.interface.gap import find_gap
 
 
@@ -86,7 +85,7 @@ def gap(
     say(f"{found.verdict}: {found.content['reason']}")  # once all is written
     if write_experiment is not None:
         finding = found.closed.finding
-        click.echo(write_wanted(finding, evidence.input, write_experiment))
+        click.echo(write_next_experiment(finding, evidence.input, write_experiment))
     effects = [in_words(effect.name) for effect in found.effects]
     named = f": {', '.join(effects)}" if effects else ""
     put_in = f" (you put in {', '.join(with_)})" if with_ else ""

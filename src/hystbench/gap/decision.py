@@ -17,6 +17,7 @@ from hystbench.gap.experiment.next_experiment import Experiment
 from hystbench.gap.experiment.tell_apart import tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.state import State
 from hystbench.gap.fitting.step_error import floor_with_steps, step_error
@@ -29,14 +30,12 @@ from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.inside.name import beats, named_inside
 from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.judging.gap_json import (
-    at_ends,
-    base_parameters,
     effect_mapping,
     not_tried,
     ranking_rows,
     simulator_mapping,
 )
-from hystbench.gap.judging.unnamed import SHARE, what_is_unnamed
+from hystbench.gap.judging.unnamed import what_is_unnamed
 from hystbench.gap.judging.verdict import (
     Left,
     judge,
@@ -49,12 +48,12 @@ from hystbench.gap.naming.name import LITTLE, Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.records.disturbances import lone_share
+from hystbench.gap.records.disturbances import lone_share, unrepeated
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import make_folds
 from hystbench.gap.records.residual import Compared
-from hystbench.gap.repeats import unrepeated
 from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
@@ -115,7 +114,7 @@ def find(
     declared: float | None = None,
     asked: Mapping[str, float] | None = None,
     say: Say = silent,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     offered: tuple[str, ...] | None = None,
     quantities: Quantities | None = None,
 ) -> Finding:
@@ -185,7 +184,7 @@ def decide(
     say: Say = silent,
     limits: Limits | None = None,
     own: OwnValues = NONE,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
 ) -> Finding:
     """Locate the gap, and give the verdict on what was named.
 

@@ -12,20 +12,14 @@ from hystbench.gap.decision import Finding, black_box, compare
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import start_state
-from hystbench.gap.judging.unnamed import SHARE
+from hystbench.gap.holdout.outcome import as_asked, outcome
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.run import (
-    DECISIVE,
-    SHOWN,
-    as_asked,
-    found_on_fit,
-    outcome,
-    write_shown,
-)
+from hystbench.gap.run import DECISIVE, SHOWN, found_on_fit, write_shown
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.model import Model
 from hystbench.written import writes
@@ -43,7 +37,7 @@ def decide_in(
     base: Model,
     limits: Mapping[str, float] | None = None,
     say: Say = silent,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     vocabulary: Vocabulary = EVERYTHING,
 ) -> Finding:
     """Decide on the fit records; write the decision and the curves to a folder.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,33 +12,18 @@ import numpy as np
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
 from hystbench.gap.decision import Finding, find
-from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.experiment.excitations import write_experiment
 from hystbench.gap.fitting.start import run_base
-from hystbench.gap.fitting.state import State
-from hystbench.gap.holdout.shortfall import shortfall
-from hystbench.gap.holdout.show import as_recorded, nuisance_of, show
-from hystbench.gap.holdout.shrink import (
-    ladder,
-)
-from hystbench.gap.holdout.withdrawal import (
-    first_figure,
-    with_built_in,
-    with_what_was_asked,
-    withdrawal,
-    without_names,
-)
-from hystbench.gap.judging.black_box import BlackBox
-from hystbench.gap.judging.unnamed import SHARE
+from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
+from hystbench.gap.inside.name import inside_of
 from hystbench.gap.naming.built_in import BuiltIn, put_in
 from hystbench.gap.naming.forecast_calls import keep_back
-from hystbench.gap.naming.ladder import BASE, Rung
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.records.evidence import Evidence, check_units, inside_of
-from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.evidence import Evidence, check_units
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.record import Channel, FloatArray, Record
 from hystbench.written import writes
 
 DECISIVE = ("gap.json", "model.yaml")
@@ -104,7 +89,7 @@ def closed_gap(
     *,
     place: str = "model",
     limits: Mapping[str, float] | None = None,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     vocabulary: Vocabulary = EVERYTHING,
     say: Say = silent,
 ) -> Closed:
@@ -237,105 +222,33 @@ def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> 
     write_json(folder / "gap.json", outcome.content)
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """A finding after the hold-out records were read.
-
-    Parameters
-    ----------
-    model : Model
-        The base, where they took the names back.
-    content : dict
-        What gap.json holds.
-    outputs : list of (ndarray, ndarray)
-        Outputs before and after, of each record; NaN where the model runs away on it.
-    """
-
-    model: Model
-    content: dict[str, Any]
-    outputs: list[tuple[FloatArray, FloatArray]]
-
-
-def outcome(
-    base: Model,
-    decided: Mapping[str, Any],
-    state: State,
-    floor: Floor,
-    box: BlackBox,
-    records: tuple[Record, ...],
-    steps: Sequence[Rung],
-    own: OwnValues = NONE,
-    warnings: Sequence[str] = (),
-) -> Outcome:
-    """Show a finding on the hold-out records; take back what is worse there.
-
-    Parameters
-    ----------
-    base : Model
-    decided : mapping
-        What gap.json holds, but for what the hold-out records show.
-    state, floor, box, records, steps, own
-        As for :func:`show`.
-    warnings : sequence of str
-        What of the dataset is hardly meant.
-    """
-    shown = show(base, state, floor, box, records, steps, own)
-    content = {
-        **decided,
-        "withdrawn": None,
-        **shown.content,
-        "warnings": list(warnings),
-    }
-    model = augmented(base, state).with_hold(state.hold)
-    taken = withdrawal(content)
-    if taken is not None:
-        # The ladder and what runs away stay: they tell why.
-        alone = show(base, steps[0].state, floor, box, records, steps[:1], own)
-        kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
-        content = without_names({**content, **kept}, taken)
-        model = base.with_hold(state.hold)
-        shown = alone
-    elif content["effects"] or content["verdict"] == "parameters":
-        content["reason"] = f"{first_figure(content)}; {content['reason']}"
-    content["shortfall"] = shortfall(content)
-    return Outcome(model, content, shown.outputs)
-
-
-def as_asked(
-    shown: Outcome,
-    vocabulary: Vocabulary,
-    built_in: BuiltIn | None,
-    evidence: Evidence,
-    state: State,
-    floor: Floor,
-    own: OwnValues,
-) -> Outcome:
-    """Tell which effects the user put in or left out, and what those put in do.
-
-    Parameters
-    ----------
-    shown : Outcome
-    vocabulary : Vocabulary
-    built_in : BuiltIn or None
-        None where no effect was put in.
-    evidence : Evidence
-    state, floor, own
-        As for :func:`show`.
-    """
-    content = with_what_was_asked(shown.content, vocabulary)
-    if built_in is not None:
-        records = evidence.hold_out
-        outputs = run_base(built_in.alone, records, evidence.hold)
-        mine = as_recorded(own, records, outputs, floor)
-        ((_, alone),) = ladder(records, [(BASE, mine)], nuisance_of(state, own))
-        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
-        content = with_built_in(content, built_in, alone)
-    return replace(shown, content=content)
-
-
 def _write_hold_out(
     path: Path, record: Record, before: FloatArray, after: FloatArray
 ) -> None:
     table = np.column_stack([record.time, record.y, before, after])
     rows = ([f"{value:.9g}" for value in row] for row in table.tolist())
     write_csv(path, ["time_s", "measured", "before", "after"], rows)
+
+
+def write_next_experiment(finding: Finding, channel: Channel, path: Path) -> str:
+    """Write the excitation that tells likely effects apart, or tell why there is none.
+
+    Parameters
+    ----------
+    finding : Finding
+    channel : Channel
+        The input's.
+    path : Path
+        A CSV file, or an archive by its suffix ``.npz``.
+
+    Returns
+    -------
+    str
+        A line that tells what was done.
+    """
+    if finding.experiment is None:
+        needless = "no effects that were tried need to be told apart"
+        why = finding.content.get("no_experiment", needless)
+        return f"{path}: not written: {why}"
+    write_experiment(finding.experiment.excitation, channel, path)
+    return f"{path}: {finding.experiment.sentence}"

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
 from hystbench.gap.behaviour import in_words
-from hystbench.gap.judging.unnamed import SHARE
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import Closed, closed_gap
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model
 
@@ -251,7 +251,7 @@ def find_gap(
     without: Sequence[str] = (),
     with_: Sequence[str] = (),
     limits: Mapping[str, float] | None = None,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     calls: int | None = None,
     keep_calls: bool = True,
     cache: bool = True,

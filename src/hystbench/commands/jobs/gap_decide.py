@@ -10,8 +10,8 @@ from hystbench import options
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.jobs import decide_in
 from hystbench.gap.records.evidence import check_units, load_evidence
+from hystbench.gap.run import write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
-from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
@@ -57,5 +57,5 @@ def gap_decide(
     if write_experiment is not None:
         # The folder is a job's output, with the signal or without.
         write_experiment.parent.mkdir(parents=True, exist_ok=True)
-        told = write_wanted(finding, evidence.input, write_experiment)
+        told = write_next_experiment(finding, evidence.input, write_experiment)
         click.echo(told, err=True)

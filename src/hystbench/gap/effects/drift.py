@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hystbench.gap.effects.base import EVERY, Beside, Effect, Samples, Values, Variant
-from hystbench.gap.once import periods, shows_a_path
+from hystbench.gap.records.nuisance import periods_of_input, shows_a_path
 from hystbench.gap.simulation.simulation import Scene
 from hystbench.record import FloatArray, Record
 
@@ -52,7 +52,7 @@ def degree(record: Record, order: int) -> int:
     What goes to and fro as fast as the input could be anything that follows it; a path
     of that degree has half its frequency.
     """
-    return min(order, max(1, int(periods(record))))
+    return min(order, max(1, int(periods_of_input(record))))
 
 
 def path(record: Record, given: Values, order: int, at: Samples = EVERY) -> FloatArray:

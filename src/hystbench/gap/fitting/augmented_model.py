@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from hystbench.gap.fitting.state import Added, State
-from hystbench.gap.judging.gap_json import beside_blocks, places_of_base
+from hystbench.blocks import registry
+from hystbench.blocks.base import Block
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.state import Added, State, beside_count
 from hystbench.model import Model
 
 
@@ -75,3 +77,35 @@ def _names_now(base: Model, state: State, labels: list[str]) -> dict[str, str]:
 
 def _numeric(model: Model, name: str) -> bool:
     return not isinstance(model.value(name), str)
+
+
+def places_of_base(state: State) -> list[int | None]:
+    """Find where the base's blocks stand; None where an effect stands for one."""
+    beside = {item.effect for item, _ in state.beside}
+    # An effect without a block lost it to a later one, which then stands for no block
+    # of the base.
+    lost = any(not item.blocks and item.effect not in beside for item in state.added)
+    # Of a store an effect has some numbers, and the base the others.
+    inserted = [item for item in state.added if not effects()[item.effect].numbers]
+    own = {k for item in inserted for k in item.blocks}
+    instead = {item.blocks[0] for item in state.added if item.replaced and item.blocks}
+    return [
+        None if k in own else k
+        for k in range(len(state.chain))
+        if k not in own or (k in instead and not lost)
+    ]
+
+
+def beside_blocks(state: State) -> list[Block]:
+    """Give the blocks of what lies beside the chain."""
+    if not state.beside:
+        return []
+    blocks, first = [], 0
+    for beside, values in state.beside:
+        count = beside_count(state, beside, values)
+        own = state.beside_amplitudes[first : first + count]
+        rows = own.reshape(len(state.records), -1)
+        described = effects()[beside.effect].describe(values, rows)
+        blocks.append(registry()[beside.effect].from_mapping(described))
+        first += count
+    return blocks

@@ -24,10 +24,10 @@ from hystbench.gap.fitting.state import Free, State
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.inside.modes import modes
 from hystbench.gap.inside.stores import stores
-from hystbench.gap.judging.unnamed import SHARE
 from hystbench.gap.records.residual import rms
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
@@ -121,7 +121,7 @@ def same_as(start: State, quantities: Quantities) -> State | None:
         replace(record, y=y, simulated=None, interpolated=None)
         for record, y in zip(start.records, outputs, strict=True)
     )
-    most = SHARE * float(np.mean(start.residual**2))
+    most = UNNAMED_SHARE * float(np.mean(start.residual**2))
     u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], outputs))
     static = np.column_stack([u, np.ones(len(u))])
     if np.mean((wanted - static @ _solved(static, wanted)) ** 2) < most:

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import State
@@ -23,6 +24,8 @@ from hystbench.gap.inside.search import (
 from hystbench.gap.naming.name import Named
 from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.simulation.simulation import may_hold
 from hystbench.gap.thresholds import CERTAIN, FURTHER, MATTERS, PAYS, TIE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
@@ -206,3 +209,17 @@ def _candidate(item: Hypothesis, already: frozenset[str], now: float) -> Candida
     return Candidate(
         last.effect, last.place, last.form, item.score, now - item.score, state
     )
+
+
+def inside_of(base: Model, evidence: Evidence) -> Quantities | None:
+    """Give what the device takes and gives, where forces may be tried inside the base.
+
+    That is where the base may be linear: nothing in it remembers a way, nor holds a
+    force already. None elsewhere.
+    """
+    for block in base.chain:
+        if isinstance(block, AttachedBlock) or block.hysteretic:
+            return None
+        if may_hold(block, evidence.fit):
+            return None
+    return evidence.quantities

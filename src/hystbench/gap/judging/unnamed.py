@@ -17,10 +17,9 @@ from hystbench.gap.fitting.state import State
 from hystbench.gap.judging.grouped_evidence import Products
 from hystbench.gap.judging.known_signals import PATH, generic_groups, halves
 from hystbench.gap.simulation.reshape import orthonormal, products
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.record import FloatArray
 
-SHARE = 0.01
-"""Share of the power of the gap that may stay unnamed: a tenth of its rms."""
 CHANGE = 0.2
 """Of that share, what may go if an effect's numbers may differ in time."""
 LOOSE = 0.25
@@ -81,11 +80,11 @@ class Unnamed:
         """Share of the gap that the names leave beyond what they may own."""
         return self.structured + self.unrelated
 
-    def too_much(self, share: float = SHARE) -> bool:
+    def too_much(self, share: float = UNNAMED_SHARE) -> bool:
         """Tell whether more stays unnamed than may."""
         return self._excess > share
 
-    def trust(self, share: float = SHARE) -> float:
+    def trust(self, share: float = UNNAMED_SHARE) -> float:
         """Give the factor on a name's confidence: one where no more stays than may."""
         return 1.0 if self._excess <= share else share / self._excess
 
@@ -93,7 +92,7 @@ class Unnamed:
     def _excess(self) -> float:
         return max(self.structured, (self.changing or 0.0) / CHANGE)
 
-    def sort(self, share: float = SHARE) -> str:
+    def sort(self, share: float = UNNAMED_SHARE) -> str:
         """Give the sort of what stays: a key of :data:`SORTS`."""
         if (self.changing or 0.0) > CHANGE * share and self.structured <= share:
             return "strength"
@@ -103,7 +102,7 @@ class Unnamed:
             return "unrelated"
         return SORT_OF[best]
 
-    def reason(self, share: float = SHARE) -> str:
+    def reason(self, share: float = UNNAMED_SHARE) -> str:
         """Say why no name stands."""
         if self.structured > share:
             much = (
@@ -117,7 +116,7 @@ class Unnamed:
             )
         return f"{much}: {SORTS[self.sort(share)]}"
 
-    def mapping(self, share: float = SHARE) -> dict[str, Any]:
+    def mapping(self, share: float = UNNAMED_SHARE) -> dict[str, Any]:
         """Give what gap.json holds: no sort where no more stays than may."""
         told = self.too_much(share) or self.stays > LOOSE
         sort = self.sort(share) if told else None

@@ -11,9 +11,10 @@ import numpy as np
 
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import State
-from hystbench.gap.judging.unnamed import LOOSE, NOTHING, SHARE, Unnamed
+from hystbench.gap.judging.unnamed import LOOSE, NOTHING, Unnamed
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.rounds import Candidate
+from hystbench.gap.thresholds import ABOVE_NOISE, UNNAMED_SHARE
 from hystbench.periods import find_period
 from hystbench.record import Record
 
@@ -21,8 +22,6 @@ Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
 OFF = 1 / 9
 """Share of the gap that stays and may be the base's own error: a third of its rms."""
-ABOVE = 0.5
-"""Power above the floor, in floors, that makes what is left worth a word."""
 SLIGHT = 0.015
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
 WIDE = 0.045
@@ -90,12 +89,12 @@ class Left:
         return self._slight(self.before, self.all_before)
 
     def _slight(self, beyond: float, whole: float) -> bool:
-        if whole <= ABOVE:
+        if whole <= ABOVE_NOISE:
             return True
         if whole >= WIDE**2 * self.output:
             return False
         small = beyond < SLIGHT**2 * self.output
-        return beyond <= ABOVE or (small and beyond < (1 - INSIDE) * whole)
+        return beyond <= ABOVE_NOISE or (small and beyond < (1 - INSIDE) * whole)
 
     @property
     def little_named(self) -> bool:
@@ -172,7 +171,7 @@ def judge(
     lone: float = 0.0,
     unrepeated: float | None = None,
     unnamed: Unnamed = NOTHING,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     mends: str = GIVE,
 ) -> tuple[Word, str]:
     """Choose the word and say why.
@@ -206,7 +205,7 @@ def judge(
         foreign = _foreign(left, lone, unrepeated)
         if left.slight and foreign:
             return "unnamed", foreign
-        if retuned and left.all_before > ABOVE and left.loose < LOOSE:
+        if retuned and left.all_before > ABOVE_NOISE and left.loose < LOOSE:
             return "parameters", (
                 "re-tuning the base within what is free is enough, and no effect pays "
                 f"beside it: {left.stays}"
@@ -216,7 +215,7 @@ def judge(
                 "no effect pays; the floor is only an upper bound, so that there is "
                 f"no gap cannot be claimed: {mends}"
             )
-        if left.slight and left.all_after <= ABOVE:
+        if left.slight and left.all_after <= ABOVE_NOISE:
             return "no-gap", "what is left is noise"
         if left.slight:
             share = float(np.sqrt(left.all_after / left.output))

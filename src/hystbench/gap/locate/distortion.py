@@ -11,8 +11,7 @@ from scipy import fft, special
 from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import MATTERS, SIGNIFICANT, chance, percent
-from hystbench.gap.periods import settled
-from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.residual import Compared, whole_periods
 from hystbench.record import FloatArray
 
 IntArray = NDArray[np.int64]
@@ -181,7 +180,7 @@ def _lines(item: Compared) -> Lines | None:
     excited = _excited(item.record.u[-count * period :].reshape(count, period))
     if not len(excited):
         return None
-    runs = fft.rfft(settled(item.residual, period), axis=1)
+    runs = fft.rfft(whole_periods(item.residual, period), axis=1)
     used, mean = len(runs), runs.mean(axis=0)
     scale = np.full(len(mean), 2.0 / period)
     if period % 2 == 0:

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.gap.locate.samples import Samples
-from hystbench.gap.periods import settled
-from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.residual import Compared, whole_periods
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -102,7 +101,7 @@ def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
     n, period = len(record), record.period_samples
     size, window, overlap = n // SEGMENTS, "hann", n // SEGMENTS // 2
     if period and n >= SEGMENTS * period:
-        signals = settled(signals, period).reshape(3, -1)
+        signals = whole_periods(signals, period).reshape(3, -1)
         size, window, overlap = period, "boxcar", 0
     centred = signals - signals.mean(axis=1, keepdims=True)
     frequency, matrix = csd(

@@ -16,8 +16,8 @@ from hystbench.gap.locate.forms import (
 )
 from hystbench.gap.locate.samples import Samples
 from hystbench.gap.locate.view import View, number, percent
-from hystbench.gap.once import shows_a_path
 from hystbench.gap.records.floor import periodogram
+from hystbench.gap.records.nuisance import shows_a_path
 from hystbench.record import FloatArray
 
 BoolArray = NDArray[np.bool_]

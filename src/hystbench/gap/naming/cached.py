@@ -7,8 +7,7 @@ from typing import Any
 
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
-from hystbench.gap.fitting import refit
-from hystbench.gap.fitting import search
+from hystbench.gap.fitting import refit, search
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.search import Attempt, Trial, at_a_glance, coarse
 from hystbench.gap.fitting.serialize import (

@@ -80,7 +80,7 @@ def rank(
         if effect.name in have
     ]
     others = [effect for effect in known if effect.name not in have]
-    found: list[work.Tried] = []
+    found: list[cached.Tried] = []
     for effect in others:
         trials, why = cached.tried(effect, state, score)
         found += trials

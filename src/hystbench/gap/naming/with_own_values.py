@@ -14,13 +14,12 @@ from hystbench.gap.fitting.refit import ENOUGH, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import State
-from hystbench.gap.judging.verdict import ABOVE
 from hystbench.gap.naming import cached
 from hystbench.gap.naming.name import Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say
 from hystbench.gap.simulation.simulation import Scene
-from hystbench.gap.thresholds import PAYS
+from hystbench.gap.thresholds import ABOVE_NOISE, PAYS
 from hystbench.record import FloatArray, Record
 
 
@@ -82,7 +81,7 @@ def named_apart(
             break  # naming has told all that it can
         likely = _likely(start, (on_records(again.state, start.records),), score)
     # Beside more than noise they cannot be told from what the simulator does wrong.
-    if found[1].state.power(score.floor) > ABOVE * score.floor:
+    if found[1].state.power(score.floor) > ABOVE_NOISE * score.floor:
         if found[2].records:
             say("more than noise is left beside that: it is not told")
         return start, named, NONE

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset
 from hystbench.device_kinds import Kind
@@ -14,7 +13,6 @@ from hystbench.errors import InputError
 from hystbench.gap.records import folds, nuisance
 from hystbench.gap.records.usable import check_usable
 from hystbench.gap.records.windows import decay_of_free_mass, windows
-from hystbench.gap.unseen import may_hold
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record, Use
@@ -170,17 +168,3 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
         whose = f"the {data_have.name} of {evidence.name}"
         where = f"{place}: {key}: unit"
         check_same_unit(where, model_has.unit, whose, data_have.unit)
-
-
-def inside_of(base: Model, evidence: Evidence) -> Quantities | None:
-    """Give what the device takes and gives, where forces may be tried inside the base.
-
-    That is where the base may be linear: nothing in it remembers a way, nor holds a
-    force already. None elsewhere.
-    """
-    for block in base.chain:
-        if isinstance(block, AttachedBlock) or block.hysteretic:
-            return None
-        if may_hold(block, evidence.fit):
-            return None
-    return evidence.quantities

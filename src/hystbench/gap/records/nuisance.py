@@ -168,3 +168,28 @@ HIGHEST = 2
 """Degree of a path that may be carried on."""
 CLEARLY = 0.9
 """Of what a lower degree leaves, rms."""
+
+
+TWICE = 1.5
+"""Periods, counted by crossings of the mean, of which two whole ones have three."""
+
+
+HOLDS = 0.1
+"""Of the mean rate, for half of a record, to be a hold."""
+
+
+def shows_a_path(record: Record) -> bool:
+    """Tell whether a path of its own would show beside what the input does.
+
+    Within one period of an input that never rests, a path can stand in for any error
+    of the loop: nothing comes twice. A second period, or a hold, tells them apart.
+    """
+    moves = np.abs(np.diff(record.u))
+    holds = float(np.median(moves)) < HOLDS * float(np.mean(moves))
+    return holds or periods_of_input(record) >= TWICE
+
+
+def periods_of_input(record: Record) -> float:
+    """Count the input's periods in a record by how often it crosses its mean."""
+    above = record.u > float(np.mean(record.u))
+    return float(np.count_nonzero(above[1:] != above[:-1])) / 2

@@ -36,3 +36,23 @@ class Compared:
 def rms(values: FloatArray) -> float:
     """Give the root of the mean square."""
     return float(np.sqrt(np.mean(np.square(values))))
+
+
+def whole_periods(values: FloatArray, period: int) -> FloatArray:
+    """Give the whole periods at the end of signals, one behind the other.
+
+    The first of them holds the way from rest: it is left out, given two others.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., n)
+    period : int
+        Samples of a period, at most n.
+
+    Returns
+    -------
+    ndarray, shape (..., periods, period)
+    """
+    count = values.shape[-1] // period
+    used = count - 1 if count > 2 else count
+    return values[..., -used * period :].reshape(*values.shape[:-1], used, period)

@@ -14,7 +14,7 @@ from hystbench.blocks.band_limited import finer
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
-from hystbench.gap.unseen import may_hold
+from hystbench.errors import InputError
 from hystbench.record import FloatArray, Record
 
 Signals = tuple[FloatArray, ...]
@@ -253,3 +253,52 @@ def _plain(step: Block | Wrapped) -> Block | Wrapped:
             return Wrapped(inner, replace(step.by, **straight))
         return Wrapped(inner, step.by)
     return step
+
+
+REST = 6
+"""Of the longest record, that the input rests after it has gone there and back."""
+
+
+REMAINS = 0.01
+"""Of the output's range, by which outputs must differ to remember the way."""
+
+
+STAYS = 0.5
+"""Of that difference, in the first half of the rest, that must be left in the other."""
+
+
+def may_hold(block: Block, records: Sequence[Record]) -> bool:
+    """Tell whether a block is a simulator that may hold a hysteresis.
+
+    Of a stored output it is not known, nor of a function that refuses to be asked. Any
+    other is asked: its input goes to one end of its range and back to the middle, or to
+    the other end and back, as slowly as the longest record lasts, and rests there. What
+    forgets comes to the same output; a hysteresis does not.
+
+    Parameters
+    ----------
+    block : Block
+    records : sequence of Record
+        Their inputs are the range; the way starts where the longest of them does.
+    """
+    if block.seen:
+        return False
+    if not block.reruns:
+        return True
+    low = min(float(record.u.min()) for record in records)
+    high = max(float(record.u.max()) for record in records)
+    longest = max(records, key=lambda record: record.dt * len(record))
+    first, n = float(longest.u[0]), len(longest)
+    ways = [
+        np.interp(
+            np.arange((2 + REST) * n), [0, n, 2 * n], [first, end, (low + high) / 2]
+        )
+        for end in (high, low)
+    ]
+    try:
+        up, down = (block.simulate(way, way, longest.dt) for way in ways)
+    except InputError:
+        return True
+    early, late = (abs(float(x.mean())) for x in np.split((up - down)[2 * n :], 2))
+    reach = max(float(np.ptp(up)), float(np.ptp(down)))
+    return late > max(REMAINS * reach, STAYS * early)
