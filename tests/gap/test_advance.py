@@ -20,7 +20,7 @@ def progress_with(lag_s, more=()):
     gain, lag = block("gain", value=12.0), block("drive-lag", time_constant_s=LAG_S)
     given = measured((lag, gain, *more), NOISE, given=records() * 3)
     before = state_of((gain,), given)
-    variant = next(iter(effects()["drive-lag"].variants(before.scene)))
+    variant = next(iter(effects()["drive-lag"].variants(before.simulation)))
     after = with_effect(before, variant, {"time_constant_s": lag_s})
     return replace(Progress.begun(before, NOISE), state=after.settled())
 

@@ -17,7 +17,7 @@ from hystbench.gap.bases.load import identified_gpi, identified_linear, load_bas
 from hystbench.gap.bases.load import load as bases
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio, stable
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel
@@ -300,8 +300,8 @@ class TestFunction:
         )
         assert (model.input, model.output) == (self.known.input, self.known.output)
         assert "doubled" in note
-        scene = Scene((Gain(value=3.0), *model.chain), (self.known,))
-        np.testing.assert_array_equal(scene.output[0], 6 * self.known.u)
+        simulation = Simulation((Gain(value=3.0), *model.chain), (self.known,))
+        np.testing.assert_array_equal(simulation.output[0], 6 * self.known.u)
 
     def test_it_cannot_change_the_records(self, simulators):
         before = self.known.u.copy()
@@ -367,8 +367,8 @@ class TestColumn:
         return load_base("column", self.given)[0]
 
     def test_each_record_has_its_own(self):
-        scene = Scene(self.base().chain, self.records)
-        for item, output in zip(self.records, scene.output, strict=True):
+        simulation = Simulation(self.base().chain, self.records)
+        for item, output in zip(self.records, simulation.output, strict=True):
             np.testing.assert_array_equal(output, item.simulated)
 
     def test_the_beginning_of_an_input_has_the_beginning_of_the_output(self):
@@ -376,13 +376,15 @@ class TestColumn:
         np.testing.assert_array_equal(self.base().simulate(u, 0.001), sine(7.0)[:500])
 
     def test_effects_act_behind_it(self):
-        scene = Scene((*self.base().chain, Gain(value=2.0)), self.records)
-        np.testing.assert_array_equal(scene.output[1], 3.6 * self.u)
+        simulation = Simulation((*self.base().chain, Gain(value=2.0)), self.records)
+        np.testing.assert_array_equal(simulation.output[1], 3.6 * self.u)
 
     @pytest.mark.parametrize("quick", [False, True])
     def test_an_input_that_was_changed_is_refused(self, quick):
-        scene = Scene((Gain(value=1.01), *self.base().chain), self.records, quick=quick)
-        said = message(lambda: scene.output)
+        simulation = Simulation(
+            (Gain(value=1.01), *self.base().chain), self.records, quick=quick
+        )
+        said = message(lambda: simulation.output)
         assert "needs a simulator that can be run again" in said
         assert not self.base().chain[0].reruns
 
@@ -395,8 +397,10 @@ class TestColumn:
         chain = (SimulatedColumn(column="simulated_um", records=(other,)),)
         assert chain != self.base().chain
         for quick in (False, True):
-            ours = Scene(self.base().chain, self.records[:1], quick=quick).output[0]
-            theirs = Scene(chain, (other,), quick=quick).output[0]
+            ours = Simulation(self.base().chain, self.records[:1], quick=quick).output[
+                0
+            ]
+            theirs = Simulation(chain, (other,), quick=quick).output[0]
             np.testing.assert_array_equal(ours, 1.9 * self.u)
             np.testing.assert_array_equal(theirs, 7 * self.u)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.state import Added, Free, State
+from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.records.sample import Sample
 from tests.gap.made import record
@@ -30,11 +30,11 @@ def state_of(effect, order, values, signal, seed):
     )
     sample = Sample(tuple(np.arange(COUNT) for _ in records))
     chain = (block("gain", value=3.0),)
-    start = State(chain, records, sample, free=(Free(0, "value"),)).settled()
-    offered = (item.beside for item in effects()[effect].variants(start.scene))
+    start = ModelState(chain, records, sample, free=(Free(0, "value"),)).settled()
+    offered = (item.beside for item in effects()[effect].variants(start.simulation))
     beside = next(item for item in offered if item is not None and item.order == order)
     added = (Added(effect, "sensor", "", (), dict(values), 1.0),)
-    return State(
+    return ModelState(
         chain, records, sample, start.free, added, ((beside, values),)
     ).settled()
 
@@ -91,5 +91,5 @@ def test_a_tone_is_known_as_theory_says():
 
 def test_without_anything_beside_there_is_nothing_to_say():
     state = drifting(0)
-    plain = State(state.chain, state.records, state.sample).settled()
+    plain = ModelState(state.chain, state.records, state.sample).settled()
     assert beside_errors(plain, plain_score(plain)) == []

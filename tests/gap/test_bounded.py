@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.decision import black_box, compare
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.runs_away import FAR, bounded, reach
 from hystbench.gap.holdout.show import show
+from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.report.tables import write_summary
@@ -184,7 +185,7 @@ def squared(value, simulator=None):
         Model("simulator", CURRENT, DISPLACEMENT, chain),
         declared=0.02,
     )
-    (asymmetry, *_) = effects()["asymmetry"].variants(start.scene)
+    (asymmetry, *_) = effects()["asymmetry"].variants(start.simulation)
     after = with_effect(start, asymmetry, {"coefficient": value})
     return Model("simulator", CURRENT, DISPLACEMENT, chain), start, after, floor
 

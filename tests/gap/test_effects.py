@@ -16,7 +16,7 @@ from hystbench.gap.fitting.refit import score_of
 from hystbench.gap.fitting.search import Attempt
 from hystbench.gap.fitting.state import Free
 from hystbench.gap.naming.rank import rank
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, sine
 from tests.gap.small import (
@@ -61,10 +61,10 @@ BASES = ("gpi", "gain", "transfer-function", "rdgpi")
 def offered():
     """Every variant of every effect, on each of the chains that take it."""
     for name, chain in chains().items():
-        scene = Scene(chain, records())
+        simulation = Simulation(chain, records())
         for effect in effects().values():
             try:
-                variants = list(effect.variants(scene))
+                variants = list(effect.variants(simulation))
             except Declined:
                 continue
             for variant in variants:
@@ -133,7 +133,11 @@ def test_every_effect_is_tried_on_some_chain():
 @pytest.mark.parametrize("name", VOCABULARY["inside"])
 def test_a_force_has_no_place_in_a_chain_in_series(name):
     with pytest.raises(Declined, match="inside the dynamics"):
-        list(effects()[name].variants(Scene(next(iter(chains().values())), records())))
+        list(
+            effects()[name].variants(
+                Simulation(next(iter(chains().values())), records())
+            )
+        )
 
 
 @every_variant()
@@ -184,13 +188,15 @@ def test_a_form_pays_for_every_number_that_it_leaves_free(chain, variant):
 
 @every_variant(lambda variant: variant.unit)
 def test_a_neutral_variant_changes_nothing_where_all_is_zero(chain, variant):
-    scene = Scene(chains()[chain], records())
-    size = scene.largest(len(scene.chain))
+    simulation = Simulation(chains()[chain], records())
+    size = simulation.largest(len(simulation.chain))
     for values in values_of(variant):
         zero = {**values, **dict.fromkeys(variant.unit, 0.0)}
-        one = scene.tail(variant.start, variant.build(values))
-        none = scene.tail(variant.start, variant.build(zero))
-        changes = [np.abs(a - b).max() for a, b in zip(none, scene.output, strict=True)]
+        one = simulation.tail(variant.start, variant.build(values))
+        none = simulation.tail(variant.start, variant.build(zero))
+        changes = [
+            np.abs(a - b).max() for a, b in zip(none, simulation.output, strict=True)
+        ]
         if variant.neutral:
             assert max(changes) < 1e-9 * size
         moved = [np.abs(a - b).max() for a, b in zip(one, none, strict=True)]
@@ -216,11 +222,11 @@ NOTHING = {
 @every_variant(lambda variant: variant.effect in NOTHING)
 def test_nothing_of_an_effect_is_the_chain(chain, variant):
     """Otherwise how it is computed would be taken for what it is."""
-    scene = Scene(chains()[chain], records())
+    simulation = Simulation(chains()[chain], records())
     there = {key: NOTHING[variant.effect][key] for key in variant.grids}
-    outputs = scene.tail(variant.start, variant.build(there))
-    size = scene.largest(len(scene.chain))
-    for one, other in zip(outputs, scene.output, strict=True):
+    outputs = simulation.tail(variant.start, variant.build(there))
+    size = simulation.largest(len(simulation.chain))
+    for one, other in zip(outputs, simulation.output, strict=True):
         # A lag starts from rest, beside an offset with a jump at the first sample.
         assert np.abs(one - other)[1:].max() < 1e-3 * size
 
@@ -284,7 +290,7 @@ def test_of_several_effects_each_can_be_taken_out(base):
     for name in used:
         if name in {block.name for block in before.chain}:
             continue
-        variant = list(effects()[name].variants(after.scene))[-1]
+        variant = list(effects()[name].variants(after.simulation))[-1]
         after = with_effect(after, variant, next(iter(values_of(variant))))
         (item,) = [item for item in after.added if item.effect == name]
         alone[name] = [after.chain[k] for k in item.blocks]
@@ -316,7 +322,7 @@ def with_effects(base, *names):
     """Add effects one after the other, each in its first form."""
     after = state_with_free(base)
     for name in names:
-        variant = next(iter(effects()[name].variants(after.scene)))
+        variant = next(iter(effects()[name].variants(after.simulation)))
         after = with_effect(after, variant, next(iter(values_of(variant))))
     return after
 
@@ -347,8 +353,8 @@ def test_a_trial_scores_as_the_model_that_it_stands_for(chain, variant):
             # Only what differs from the effect's own zero counts: the rest is how
             # finely it steps through the hysteresis.
             nothing = with_effect(state, variant, {**values, **variant.zero})
-            own = state.sample.take(nothing.scene.output)
-            chain_s = state.sample.take(state.scene.output)
+            own = state.sample.take(nothing.simulation.output)
+            chain_s = state.sample.take(state.simulation.output)
             model = replace(model, correction=state.correction + chain_s - own)
         assert trial.score == pytest.approx(score_of(model, score), rel=1e-9)
 
@@ -364,7 +370,7 @@ def test_a_trial_scores_as_the_model_that_it_stands_for(chain, variant):
 )
 def test_what_makes_no_sense_in_a_chain_is_declined_with_a_reason(name, chain, why):
     with pytest.raises(Declined, match=why):
-        list(effects()[name].variants(Scene(chains()[chain], records())))
+        list(effects()[name].variants(Simulation(chains()[chain], records())))
 
 
 PLACES = (
@@ -402,9 +408,9 @@ def test_an_effect_is_offered_wherever_it_does_another_thing(names, added, expec
     chain = [hysteresis() if x == "gpi" else block(x, **GIVEN[x]) for x in names]
     if "gpi" not in names:
         chain.append(hysteresis())
-    scene = Scene(tuple(chain), records())
+    simulation = Simulation(tuple(chain), records())
     found = {
-        item.start + item.positions[0] for item in effects()[added].variants(scene)
+        item.start + item.positions[0] for item in effects()[added].variants(simulation)
     }
     assert found == expected
 
@@ -439,12 +445,12 @@ def test_bounds_come_from_the_records_alone(name):
         for item in records()
     )
     try:
-        before = list(effects()[name].variants(Scene(gain, records())))
+        before = list(effects()[name].variants(Simulation(gain, records())))
     except Declined:
         with pytest.raises(Declined):
-            list(effects()[name].variants(Scene(gain, moved)))
+            list(effects()[name].variants(Simulation(gain, moved)))
         return
-    after = list(effects()[name].variants(Scene(gain, moved)))
+    after = list(effects()[name].variants(Simulation(gain, moved)))
     assert [item.form for item in after] == [item.form for item in before]
     for one, other in zip(before, after, strict=True):
         for key, axis in one.grids.items():
@@ -460,7 +466,7 @@ def test_the_range_of_a_spring_is_that_of_what_moves_it():
         replace(item, u=LARGER * item.u, dt=SLOWER * item.dt) for item in records()
     )
     before, after = (
-        list(effects()["stiffness-hardening"].variants(Scene(chain, given)))
+        list(effects()["stiffness-hardening"].variants(Simulation(chain, given)))
         for given in (records(), moved)
     )
     assert len(before) == len(after) == 3
@@ -476,8 +482,10 @@ def test_the_range_of_a_rate_is_that_of_the_records():
     chain = (hysteresis(),)
     effect = effects()["rate-dependent-hysteresis"]
     slow = tuple(replace(item, dt=SLOWER * item.dt) for item in records())
-    before = list(effect.variants(Scene(chain, records())))
-    for one, other in zip(before, effect.variants(Scene(chain, slow)), strict=True):
+    before = list(effect.variants(Simulation(chain, records())))
+    for one, other in zip(
+        before, effect.variants(Simulation(chain, slow)), strict=True
+    ):
         exponent = float(one.form.rpartition(" ")[2])
         axis = one.grids["coefficient"] * SLOWER**exponent
         assert other.grids["coefficient"] == pytest.approx(axis, rel=1e-9)
@@ -485,8 +493,8 @@ def test_the_range_of_a_rate_is_that_of_the_records():
 
 def test_a_mode_is_taken_out_of_a_transfer_function_and_hardens_there():
     chain = chains()["mode inside"]
-    scene = Scene(chain, records())
-    variant, *searched = effects()["stiffness-hardening"].variants(scene)
+    simulation = Simulation(chain, records())
+    variant, *searched = effects()["stiffness-hardening"].variants(simulation)
     assert [item.form for item in searched] == ["60 Hz stiffer", "60 Hz softer"]
     before, mode = variant.build({"coefficient": 2e-3})
     assert before.denominator == pytest.approx([5e-3, 1.0])
@@ -520,17 +528,19 @@ def test_a_mode_that_moves_by_more_than_its_width_is_found(strong):
 )
 def test_a_mode_that_cannot_be_taken_out_is_none(changed):
     (block,) = chains()["mode inside"]
-    scene = Scene((replace(block, **changed),), records())
+    simulation = Simulation((replace(block, **changed),), records())
     with pytest.raises(Declined, match="no mode"):
-        list(effects()["stiffness-hardening"].variants(scene))
+        list(effects()["stiffness-hardening"].variants(simulation))
 
 
 def test_beside_another_shape_a_gain_is_no_error_of_the_sensor():
-    (shape,) = effects()["hysteresis-shape"].variants(Scene((hysteresis(),), records()))
+    (shape,) = effects()["hysteresis-shape"].variants(
+        Simulation((hysteresis(),), records())
+    )
     values = dict.fromkeys(shape.unit, 1e-3)
     chain = shape.build(values)
     with pytest.raises(Declined, match="gain of its own"):
-        list(effects()["calibration-error"].variants(Scene(chain, records())))
+        list(effects()["calibration-error"].variants(Simulation(chain, records())))
 
 
 @pytest.mark.parametrize("name", ["creep", "mains-pickup"])
@@ -538,7 +548,7 @@ def test_records_too_short_for_an_effect_are_a_reason(name):
     t = np.arange(60) / 2000
     short = (record(np.sin(2 * np.pi * 80 * t), name="short", dt=1 / 2000),)
     with pytest.raises(Declined, match="too short"):
-        list(effects()[name].variants(Scene(chains()["gain"], short)))
+        list(effects()[name].variants(Simulation(chains()["gain"], short)))
 
 
 def test_a_logarithmic_grid_has_its_ends_and_even_steps():
@@ -550,8 +560,8 @@ def test_a_logarithmic_grid_has_its_ends_and_even_steps():
 
 
 def offered(name, *records):
-    scene = Scene((block("gain", value=1.0),), records)
-    return {item.form for item in effects()[name].variants(scene)}
+    simulation = Simulation((block("gain", value=1.0),), records)
+    return {item.form for item in effects()[name].variants(simulation)}
 
 
 def test_a_path_is_offered_only_where_something_comes_twice_or_rests():
@@ -583,10 +593,10 @@ def test_a_tone_beyond_half_the_sampling_rate_stands_for_nothing():
     """A record of 4 Hz would show 50 Hz as something slow."""
     fast = record(sine(3.0, count=4000), name="fast")
     slow = record(sine(0.01, count=400, dt=0.25), name="slow", dt=0.25)
-    scene = Scene((block("gain", value=1.0),), (fast, slow))
+    simulation = Simulation((block("gain", value=1.0),), (fast, slow))
     (beside,) = {
         x.beside
-        for x in effects()["mains-pickup"].variants(scene)
+        for x in effects()["mains-pickup"].variants(simulation)
         if x.form == "fundamental"
     }
     assert np.abs(beside.columns(fast, {"frequency_hz": 50.0}, 1)).max() > 0.9
@@ -604,7 +614,7 @@ def test_a_light_mode_between_the_points_of_the_grid_is_looked_for():
     )
     lag, gain = block("drive-lag", time_constant_s=1e-4), block("gain", value=12.0)
     state = state_of((gain,), measured((lag, gain, light), 0.01, given=wide))
-    (variant,) = effects()["resonance"].variants(state.scene)
+    (variant,) = effects()["resonance"].variants(state.simulation)
     near = np.abs(np.log(variant.grids["frequency_hz"] / hertz))
     assert near.min() < 0.02
 
@@ -616,11 +626,11 @@ def test_some_rate_of_the_grid_explains_half_of_any_slew_limit(share):
     u = np.sin(2 * np.pi * 9 * t)
     one = record(u, y=u, dt=1e-3)
     state = state_of((block("gain", value=1.0),), (one,))
-    (variant,) = effects()["slew-limit"].variants(state.scene)
+    (variant,) = effects()["slew-limit"].variants(state.simulation)
 
     def limited(rate):
         return block("slew-limit", rate=rate).simulate(u, u, 1e-3)
 
-    real = limited(share * state.scene.fastest())
+    real = limited(share * state.simulation.fastest())
     left = [np.mean((real - limited(x)) ** 2) for x in variant.grids["rate"]]
     assert min(left) < 0.5 * np.mean((real - u) ** 2)

@@ -8,7 +8,7 @@ import pytest
 from hystbench.blocks.band_limited import interpolate
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
-from hystbench.gap import decision as finding_module
+from hystbench.gap import decision as decision_module
 from hystbench.gap.decision import decide, find
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment.limits import Limits
@@ -19,7 +19,7 @@ from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.name import Named
-from hystbench.gap.naming.rounds import Candidate, Look, Round
+from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
 from tests.gap.small import block, hysteresis, measured
@@ -54,7 +54,7 @@ def test_noise_alone_is_no_gap_only_where_the_noise_is_known():
 
 
 def with_named(state, effect, **values):
-    variant = next(iter(effects()[effect].variants(state.scene)))
+    variant = next(iter(effects()[effect].variants(state.simulation)))
     return with_effect(state, variant, values)
 
 
@@ -102,9 +102,9 @@ def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
     names = ("drive-lag", "sensor-lag")
     inputs = []
     for given in (None, limits):
-        finding = decided(alike, *names, limits=given)
-        assert "no_experiment" not in finding.content
-        made = finding.experiment.excitation
+        decision = decided(alike, *names, limits=given)
+        assert "no_experiment" not in decision.content
+        made = decision.experiment.excitation
         inputs.append((made.u, np.abs(np.diff(made.u)).max() / made.dt))
     (u, rate), (within, slow) = inputs
     assert within.min() > 0.1 - 1e-6
@@ -118,7 +118,7 @@ def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
 
 def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypatch):
     base, start, _, _ = alike
-    monkeypatch.setattr(finding_module, "name", lambda *given: pytest.fail("searched"))
+    monkeypatch.setattr(decision_module, "name", lambda *given: pytest.fail("searched"))
     with pytest.raises(InputError, match="expected low < high"):
         find("made", start.records, base, asked={"low": 1.0, "high": 0.5})
 
@@ -140,14 +140,14 @@ def test_why_there_is_no_experiment_is_told(alike, monkeypatch):
     column = SimulatedColumn(column="y_um", records=start.records)
     elsewhere = replace(base, chain=(column,))
 
-    for finding, word in (
+    for decision, word in (
         (decided(alike, *names, base=elsewhere), "ran elsewhere"),
         (decided(alike, "drive-lag", "mains-pickup"), "new in every record"),
         (too_narrow(alike, names, monkeypatch), "expected wider limits"),
     ):
-        assert finding.content["effects"][0]["cannot_be_told_from"]
-        assert finding.content["next_experiment"] is None
-        assert word in finding.content["no_experiment"]
+        assert decision.content["effects"][0]["cannot_be_told_from"]
+        assert decision.content["next_experiment"] is None
+        assert word in decision.content["no_experiment"]
     alone = decided(alike, "drive-lag").content
     assert alone["next_experiment"] is None
     assert "no_experiment" not in alone
@@ -193,7 +193,9 @@ def test_all_members_of_all_sets_are_told_apart_by_one_excitation(alike, monkeyp
         "calibration-error": with_named(lag, "calibration-error", gain=1.01),
     }
     lags = {"drive-lag": whole, "sensor-lag": other}
-    look = Look("drive-lag", ("asymmetry",), candidates_of(lags, *lags), "drive-lag")
+    look = SecondLook(
+        "drive-lag", ("asymmetry",), candidates_of(lags, *lags), "drive-lag"
+    )
     rounds = (
         Round(start, 0.0, candidates_of(found, *lags), True),
         Round(lag, 0.0, candidates_of(curves, *curves), True, (look,)),

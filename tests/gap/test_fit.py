@@ -117,7 +117,7 @@ def test_a_tolerance_holds_a_number_of_the_base_back():
 
 
 def attempt(state, score, name):
-    variant = next(iter(effects()[name].variants(state.scene)))
+    variant = next(iter(effects()[name].variants(state.simulation)))
     return Attempt(state, variant, score)
 
 
@@ -239,7 +239,7 @@ def test_the_frequency_of_a_tone_is_found_to_what_the_noise_lets_see():
         for k, item in enumerate(plain)
     ]
     state = state_of(chains()["gain"], tuple(picked))
-    tone = next(effects()["mains-pickup"].variants(state.scene))
+    tone = next(effects()["mains-pickup"].variants(state.simulation))
     near = with_effect(state, tone, {"frequency_hz": hertz + 0.02})
     after, _ = finished(near, plain_score(state, noise**2))
     ((_, values),) = after.beside
@@ -273,7 +273,9 @@ def test_a_number_that_is_zero_has_the_size_that_moves_the_output_a_tenth():
     plain = np.concatenate(
         [
             x[at]
-            for x, at in zip(state.scene.output, state.sample.positions, strict=True)
+            for x, at in zip(
+                state.simulation.output, state.sample.positions, strict=True
+            )
         ]
     )
     wanted = 0.1 * np.sqrt(np.mean(plain**2) / np.mean(plain**4))

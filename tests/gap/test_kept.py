@@ -44,7 +44,7 @@ def test_a_model_comes_back_from_its_file(tiny, added):
     chain = ["drive-lag", *NEEDS.get(added, []), added]
     for effect in dict.fromkeys(chain):
         try:
-            variants = list(effects()[effect].variants(state.scene))
+            variants = list(effects()[effect].variants(state.simulation))
         except Declined:
             assert effect in DECLINE
             return

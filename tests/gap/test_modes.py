@@ -5,7 +5,7 @@ import pytest
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.modes import modes, split_modes
 from hystbench.gap.records.sample import Sample
 from hystbench.model import Model
@@ -70,7 +70,7 @@ def test_the_mode_that_differs_from_level_to_level_comes_first():
         )
         records.append(Record(name, DT, u, y, FORCE, MOTION, "measured"))
     records = tuple(records)
-    start = State((whole,), records, Sample.of(records), hold="linear")
+    start = ModelState((whole,), records, Sample.of(records), hold="linear")
     first, second = modes(start, "position")
     assert np.sqrt(first.chain[0].stiffness / first.chain[0].mass) < 20
     assert np.sqrt(second.chain[0].stiffness / second.chain[0].mass) > 20

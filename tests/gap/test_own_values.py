@@ -168,7 +168,7 @@ def test_a_delay_that_all_share_hides_those_of_each():
         ("drive-lag", {"time_constant_s": 0.01}),
         ("input-delay", LATE),
     ):
-        variant = next(effects()[name].variants(both.scene))
+        variant = next(effects()[name].variants(both.simulation))
         both = with_effect(both, variant, values)
     left = without_shared(both)
     assert [item.effect for item in left.added] == ["drive-lag"]

@@ -30,7 +30,7 @@ def two():
     after = before
     values = {"drive-lag": {"time_constant_s": 0.004}, "asymmetry": {"coefficient": 0}}
     for name, own in values.items():
-        variant = next(iter(effects()[name].variants(after.scene)))
+        variant = next(iter(effects()[name].variants(after.simulation)))
         after = with_effect(after, variant, own)
     first = Candidate("drive-lag", "drive", score=-100.0, gain=90.0, state=after)
     return after, (Round(before, -10.0, (first,), True),)

@@ -23,8 +23,8 @@ class Lags:
     def __init__(self, *refused):
         self.refused = refused
 
-    def variants(self, scene):
-        (lag,) = effects()["drive-lag"].variants(scene)
+    def variants(self, simulation):
+        (lag,) = effects()["drive-lag"].variants(simulation)
 
         def refuse(values):
             raise InputError(f"time_constant_s: {values['time_constant_s']:g} is not")
@@ -43,7 +43,7 @@ def beside():
 
 def test_a_variant_that_refuses_every_point_declines_with_the_last_message(beside):
     state, score = beside
-    (variant,) = Lags(True).variants(state.scene)
+    (variant,) = Lags(True).variants(state.simulation)
     last = variant.grids["time_constant_s"][-1]
     with pytest.raises(Declined, match=f"^time_constant_s: {last:g} is not$"):
         coarse(Attempt(state, variant, score))

@@ -53,7 +53,7 @@ def state():
 
 @pytest.fixture(scope="module")
 def basis(state):
-    return orthonormal(reshapings(state.scene, state.sample))
+    return orthonormal(reshapings(state.simulation, state.sample))
 
 
 @pytest.mark.parametrize("share", [0.07, 0.2, 0.41, 0.66])
@@ -90,9 +90,9 @@ def test_what_is_no_hysteresis_lies_outside(state, basis, kind):
 def test_reshaping_passes_the_blocks_behind():
     """Behind a mode the span is that of the bare hysteresis, sent through the mode."""
     state = state_of(chains()["hysteresis and mode"], count=600)
-    basis = orthonormal(reshapings(state.scene, state.sample))
+    basis = orthonormal(reshapings(state.simulation, state.sample))
     plays = [plain_play(one.u, 0.2) for one in records()]
-    sent = state.scene.run(state.chain[1:], tuple(plays))
+    sent = state.simulation.run(state.chain[1:], tuple(plays))
     through, whole = left_over(basis, sent, state.sample)
     around, _ = left_over(basis, plays, state.sample)
     assert through < 0.1 * whole
@@ -101,5 +101,5 @@ def test_reshaping_passes_the_blocks_behind():
 
 def test_without_a_hysteresis_nothing_can_be_of_a_wrong_shape():
     state = state_of(chains()["gain and mode"])
-    basis = orthonormal(reshapings(state.scene, state.sample))
+    basis = orthonormal(reshapings(state.simulation, state.sample))
     assert basis.shape == (len(state.sample), 0)

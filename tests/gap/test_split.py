@@ -14,7 +14,7 @@ from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import INSIDE
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
 from tests.gap.small import block
@@ -131,10 +131,10 @@ def test_the_curve_is_named_in_its_place(split, clipped_records):
 
 @pytest.mark.parametrize("name", ["saturation", "asymmetry", "dead-zone"])
 def test_static_effects_are_offered_between_the_halves(name, split, clipped_records):
-    scene = Scene(split[0].chain, clipped_records.fit)
-    places = {item.place: item.start for item in effects()[name].variants(scene)}
+    simulation = Simulation(split[0].chain, clipped_records.fit)
+    places = {item.place: item.start for item in effects()[name].variants(simulation)}
     assert places[INSIDE] == 2
-    alone = Scene(split[0].chain[:1], clipped_records.fit)
+    alone = Simulation(split[0].chain[:1], clipped_records.fit)
     assert INSIDE not in {item.place for item in effects()[name].variants(alone)}
 
 

@@ -13,7 +13,7 @@ from hystbench.gap.fitting.step_error import above_floor, floor_with_steps, step
 from hystbench.gap.naming import name as naming
 from hystbench.gap.naming.name import Progress, advance
 from hystbench.gap.progress import silent
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block, hysteresis, plain_score, records
@@ -33,7 +33,7 @@ def steps_of(chain, one):
 def left_with(size, chain, seed=7):
     """A model that leaves white noise of an RMS on every record."""
     rng = np.random.default_rng(seed)
-    exact = Scene(chain, records(), "band-limited", fine=True).output
+    exact = Simulation(chain, records(), "band-limited", fine=True).output
     made = tuple(
         record(one.u, y + size * rng.standard_normal(len(y)), name=one.name, dt=one.dt)
         for one, y in zip(records(), exact, strict=True)
@@ -84,7 +84,7 @@ def test_without_steps_it_is_the_floor_of_the_noise():
 def test_no_effect_is_tried_where_steps_hold_what_is_left(monkeypatch, error):
     """The round ends before the search; without a step error the search begins."""
     state = left_with(3 * NOISE, (block("gain", value=12.0),))
-    (lag, *_) = effects()["sensor-lag"].variants(state.scene)
+    (lag, *_) = effects()["sensor-lag"].variants(state.simulation)
     state = with_effect(state, lag, {"time_constant_s": 1e-7}).settled()
 
     class SearchedError(Exception):

@@ -44,7 +44,7 @@ def with_two(bend, given=None):
         "asymmetry": {"coefficient": bend if given is None else given},
     }
     for name, own in values.items():
-        variant = next(iter(effects()[name].variants(state.scene)))
+        variant = next(iter(effects()[name].variants(state.simulation)))
         state = with_effect(state, variant, own)
     return state.settled()
 
@@ -88,9 +88,9 @@ def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
     # a lag first, which the records know as well
     lag = block("drive-lag", time_constant_s=LAG_S)
     state = state_of((gain,), measured((lag, gain, block("creep", **given)), NOISE))
-    one = next(iter(effects()["drive-lag"].variants(state.scene)))
+    one = next(iter(effects()["drive-lag"].variants(state.simulation)))
     state = with_effect(state, one, {"time_constant_s": LAG_S})
-    offered = effects()["creep"].variants(state.scene)
+    offered = effects()["creep"].variants(state.simulation)
     three = next(item for item in offered if item.form == "three elements")
     values = {f"magnitude {k}": 0.02 for k in (1, 2, 3)} | {"time_constant_s": 0.1}
     state = with_effect(state, three, values).settled()
@@ -110,7 +110,7 @@ def test_numbers_that_stand_in_for_each_other_do_not_hide_a_size():
 def test_one_effect_alone_is_not_looked_at():
     gain = block("gain", value=12.0)
     state = state_of((gain,), measured((gain,), NOISE))
-    variant = next(iter(effects()["asymmetry"].variants(state.scene)))
+    variant = next(iter(effects()["asymmetry"].variants(state.simulation)))
     state = with_effect(state, variant, {"coefficient": 0.0})
     assert without_what_goes(state, NOISE, 1.0, silent) == (state, ())
 
@@ -179,7 +179,7 @@ def test_what_a_wrong_shape_could_do_as_well_has_a_size_all_the_same():
         ("drive-lag", {"time_constant_s": LAG_S}),
         ("calibration-error", {"gain": 0.1}),  # beside one
     ):
-        offered = effects()[name].variants(state.scene)
+        offered = effects()[name].variants(state.simulation)
         variant = next(
             item for item in offered if set(values) == {*item.grids, *item.unit}
         )

@@ -20,7 +20,7 @@ from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.judging.gap_json import effect_mapping, ranking_rows
 from hystbench.gap.judging.verdict import Left
 from hystbench.gap.naming.name import Named
-from hystbench.gap.naming.rounds import Candidate, Look, Round, in_order
+from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.schema import RANK
 from hystbench.model import Model, load_model
 from hystbench.model_content import Provenance
@@ -40,7 +40,7 @@ def started(chain, *free):
 
 
 def with_named(state, effect, form="", **values):
-    variants = effects()[effect].variants(state.scene)
+    variants = effects()[effect].variants(state.simulation)
     return with_effect(state, next(v for v in variants if v.form == form), values)
 
 
@@ -176,7 +176,7 @@ def histories(draw):
             again = draw(rankings(place))
             # A look that cannot judge leaves the effect to an earlier ranking.
             by = place if draw(st.booleans()) else None
-            looks.append(Look(place, (), again, by))
+            looks.append(SecondLook(place, (), again, by))
         rounds.append(Round(ANY, 0.0, ranking, True, tuple(looks)))
     return Named(ANY, tuple(rounds)), taken
 

@@ -7,7 +7,7 @@ import pytest
 import scipy.stats
 
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import Free, State
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.fitting.uncertainty import (
     SAMPLES,
     Pieces,
@@ -41,7 +41,7 @@ def noisy(seed):
 def one_number(records, at=GAIN):
     sample = Sample(tuple(np.arange(len(one)) for one in records))
     chain = (block("gain", value=at),)
-    return State(chain, records, sample, free=(Free(0, "value"),)).settled()
+    return ModelState(chain, records, sample, free=(Free(0, "value"),)).settled()
 
 
 def plain():
@@ -134,7 +134,7 @@ def test_a_number_that_is_zero_has_an_error_like_any_other():
     for offset in (0.0, 1e-6):
         chain = (block("gain", value=GAIN, offset=offset),)
         free = (Free(0, "value"), Free(0, "offset"))
-        state = State(chain, made, sample, free=free).settled()
+        state = ModelState(chain, made, sample, free=free).settled()
         found.append(standard_errors(state, plain_score(state, 1e-9)))
     # Twenty stretches tell it to a sixth of itself.
     assert found[0][1] == pytest.approx(level / np.sqrt(COUNT), rel=0.5)
@@ -147,7 +147,7 @@ def test_a_zero_of_which_the_records_say_nothing_has_none():
     made = (record(u, 0.1 * u),)
     chain = (block("gain", value=GAIN, offset=0.0), block("gain", value=0.0))
     free = (Free(0, "offset"), Free(1, "value"))
-    state = State(chain, made, Sample((np.arange(COUNT),)), free=free).settled()
+    state = ModelState(chain, made, Sample((np.arange(COUNT),)), free=free).settled()
     nothing, something = standard_errors(state, plain_score(state, 1e-9))
     assert np.isnan(nothing)
     assert np.isfinite(something)

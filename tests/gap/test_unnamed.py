@@ -15,7 +15,7 @@ from hystbench.gap.fitting.state import Added
 from hystbench.gap.judging.known_signals import halves, low_pass
 from hystbench.gap.judging.unnamed import CHANGE, SORTS, Unnamed, what_is_unnamed
 from hystbench.gap.report.words import verdict_sentence
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from tests.gap.made import record
 from tests.gap.small import block, measured, state_of
@@ -58,8 +58,8 @@ def lagging(given, tau):
     """The gain with a sensor lag named behind it."""
     start = state_of((GAIN,), given, count=800)
     lag = block("sensor-lag", time_constant_s=tau)
-    scene = Scene((GAIN,), given)
-    (variant, *_) = effects()["sensor-lag"].variants(scene)
+    simulation = Simulation((GAIN,), given)
+    (variant, *_) = effects()["sensor-lag"].variants(simulation)
     added = Added("sensor-lag", "sensor", "", (1,), {"time_constant_s": tau}, 1)
     chain = (GAIN, lag)
     state = state_of(
@@ -157,9 +157,11 @@ def test_a_path_that_is_named_owns_slow_paths():
 
     given = with_output(wander)
     start = state_of((GAIN,), given, count=800)
-    scene = Scene((GAIN,), given)
+    simulation = Simulation((GAIN,), given)
     beside = next(
-        x.beside for x in effects()["drift"].variants(scene) if x.beside is not None
+        x.beside
+        for x in effects()["drift"].variants(simulation)
+        if x.beside is not None
     )
     added = Added("drift", "sensor", "", (), {}, 1)
     state = state_of((GAIN,), given, count=800, added=(added,), beside=((beside, {}),))

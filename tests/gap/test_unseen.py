@@ -21,7 +21,7 @@ from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.run import write_next_experiment
 from hystbench.gap.simulation.reshape import reshapings
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from tests.gap.halved import first_halves
 from tests.gap.made import CURRENT, record, sine
 from tests.gap.small import block, hysteresis, measured, records
@@ -136,53 +136,53 @@ def test_beside_a_name_stands_what_a_stored_output_did_not_let_be_tried(tmp_path
     lagging = measured((gain, block("sensor-lag", time_constant_s=0.004)), 0.02)
     fit = tuple(replace(item, simulated=12.0 * item.u) for item in lagging)
     base, _ = simulated_column(Evidence("rig", fit, (), simulated_column="s"))
-    finding = find("rig", fit, base, declared=0.02)
-    assert finding.content["effects"][0]["name"] == "sensor-lag"
-    assert "drive-lag" in finding.content["not_tried"]
+    decision = find("rig", fit, base, declared=0.02)
+    assert decision.content["effects"][0]["name"] == "sensor-lag"
+    assert "drive-lag" in decision.content["not_tried"]
     assert (
         "not tried, as the simulator cannot be run again: "
-        in (finding.content["reason"])
+        in (decision.content["reason"])
     )
-    told = write_next_experiment(finding, CURRENT, tmp_path / "next.csv")
+    told = write_next_experiment(decision, CURRENT, tmp_path / "next.csv")
     assert told.endswith("no effects that were tried need to be told apart")
 
 
 @pytest.mark.parametrize("kind", ["lagging", "bent", "slow", "ringing"])
 def test_a_simulator_that_forgets_has_no_hysteresis(kind, module):
     chain = (External(function=f"{module(FUNCTIONS)}:{kind}"),)
-    scene = Scene(chain, records())
-    assert scene.loop is None
-    assert scene.behind_hysteresis == 0
-    assert reshapings(scene, Sample.of(records(), 50)).shape[1] == 0
-    assert Scene((hysteresis(), *chain), records()).loop == 0
+    simulation = Simulation(chain, records())
+    assert simulation.loop is None
+    assert simulation.behind_hysteresis == 0
+    assert reshapings(simulation, Sample.of(records(), 50)).shape[1] == 0
+    assert Simulation((hysteresis(), *chain), records()).loop == 0
 
 
 @pytest.mark.parametrize("kind", ["loose", "shy", "refuses"])
 def test_a_simulator_that_remembers_may_be_of_a_wrong_shape(kind, module):
     """Or one that refuses to be asked; the way to ask begins where the records do."""
     chain = (External(function=f"{module(FUNCTIONS)}:{kind}"),)
-    scene = Scene(chain, records())
-    assert (scene.loop, scene.behind_hysteresis) == (0, 1)
-    assert reshapings(scene, Sample.of(records(), 50)).shape[1] > 0
-    assert Scene((block("gain", value=1.0), *chain), records()).loop == 1
+    simulation = Simulation(chain, records())
+    assert (simulation.loop, simulation.behind_hysteresis) == (0, 1)
+    assert reshapings(simulation, Sample.of(records(), 50)).shape[1] > 0
+    assert Simulation((block("gain", value=1.0), *chain), records()).loop == 1
     with pytest.raises(Declined, match="has a hysteresis already"):
-        next(effects()["hysteresis"].variants(scene))
+        next(effects()["hysteresis"].variants(simulation))
 
 
 def test_of_a_stored_output_it_is_not_known():
     made = record(sine(3.0), sine(3.0), simulated=2 * sine(3.0))
     base, _ = simulated_column(Evidence("made", (made,), (), simulated_column="s"))
-    scene = Scene(base.chain, (made,))
-    assert (scene.loop, scene.behind_hysteresis) == (0, 1)
+    simulation = Simulation(base.chain, (made,))
+    assert (simulation.loop, simulation.behind_hysteresis) == (0, 1)
 
 
 def test_what_lies_behind_the_hysteresis_inside_is_spanned_too(module):
     """A curve of the output is no curve of the input where something delays it."""
     given = records()
-    scene = Scene((External(function=f"{module(FUNCTIONS)}:loose"),), given)
+    simulation = Simulation((External(function=f"{module(FUNCTIONS)}:loose"),), given)
     sample = Sample.of(given, 300)
-    basis, _ = np.linalg.qr(reshapings(scene, sample))
-    curve = sample.take(tuple(np.sin(y) for y in scene.output))
+    basis, _ = np.linalg.qr(reshapings(simulation, sample))
+    curve = sample.take(tuple(np.sin(y) for y in simulation.output))
     rest = curve - basis @ (basis.T @ curve)
     assert np.std(rest) < 1e-2 * np.std(curve)
 
@@ -200,6 +200,6 @@ def test_a_function_is_called_once_for_the_same_samples(module):
     calls = __import__(name).calls
     assert calls == [700] * 3
     lag = block("sensor-lag", time_constant_s=0.01)
-    scene = Scene((simulator, lag), (record(u),))
-    assert scene.output[0].shape == (700,)
+    simulation = Simulation((simulator, lag), (record(u),))
+    assert simulation.output[0].shape == (700,)
     assert len(calls) == 3

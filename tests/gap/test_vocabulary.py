@@ -157,13 +157,13 @@ def test_the_command_passes_what_was_asked(tiny, tmp_path, monkeypatch):
 
     def find(dataset, model, **more):
         given.update(more)
-        finding = SimpleNamespace(experiment=None, content={})
+        decision = SimpleNamespace(experiment=None, content={})
         return SimpleNamespace(
             effects=(),
             verdict="no-gap",
             content={"reason": "none is there"},
             save=lambda out, report: None,
-            closed=SimpleNamespace(finding=finding),
+            closed=SimpleNamespace(decision=decision),
         )
 
     monkeypatch.setattr(module, "find_gap", find)

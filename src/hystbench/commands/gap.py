@@ -84,8 +84,8 @@ def gap(
     found.save(out, report)
     say(f"{found.verdict}: {found.content['reason']}")  # once all is written
     if write_experiment is not None:
-        finding = found.closed.finding
-        click.echo(write_next_experiment(finding, evidence.input, write_experiment))
+        decision = found.closed.decision
+        click.echo(write_next_experiment(decision, evidence.input, write_experiment))
     effects = [in_words(effect.name) for effect in found.effects]
     named = f": {', '.join(effects)}" if effects else ""
     put_in = f" (you put in {', '.join(with_)})" if with_ else ""

@@ -1,25 +1,25 @@
-"""From a dataset and a base to a finding: what is decided on the fit records alone."""
+"""From a dataset and a base to a decision: what is decided on the fit records alone."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
-from hystbench.gap.effects import among, effects
+from hystbench.gap.effects import among
 from hystbench.gap.experiment.limits import Limits
 from hystbench.gap.experiment.next_experiment import Experiment
 from hystbench.gap.experiment.tell_apart import tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
+from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.start import start_state
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.step_error import floor_with_steps, step_error
 from hystbench.gap.fitting.uncertainty import (
     on_more_samples,
@@ -28,7 +28,7 @@ from hystbench.gap.fitting.uncertainty import (
 )
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.inside.name import beats, named_inside
-from hystbench.gap.judging.black_box import BlackBox
+from hystbench.gap.judging.black_box import BlackBox, black_box
 from hystbench.gap.judging.gap_json import (
     effect_mapping,
     not_tried,
@@ -42,21 +42,18 @@ from hystbench.gap.judging.verdict import (
     what_is_left,
     what_mends,
 )
-from hystbench.gap.locate import Contribution, locate
-from hystbench.gap.naming.ladder import Rung, rungs
+from hystbench.gap.locate import locate
+from hystbench.gap.naming.ladder import Rung, contributions, rungs
 from hystbench.gap.naming.name import LITTLE, Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.disturbances import lone_share, unrepeated
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.folds import make_folds
-from hystbench.gap.records.residual import Compared
-from hystbench.gap.simulation.simulation import Scene
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
-from hystbench.record import FloatArray, Record
+from hystbench.record import Record
 
 LINEAR = "linear"
 """Name of the base that is identified as a linear model."""
@@ -67,7 +64,7 @@ no curve over its place has a meaning."""
 
 
 @dataclass(frozen=True)
-class Finding:
+class Decision:
     """What the fit records decide; hold-out records have not been read.
 
     Parameters
@@ -75,7 +72,7 @@ class Finding:
     base : Model
     model : Model
         With the effects that were added.
-    state : State
+    state : ModelState
         The same on the fit records.
     floor : Floor
     left : Left
@@ -95,7 +92,7 @@ class Finding:
 
     base: Model
     model: Model
-    state: State
+    state: ModelState
     floor: Floor
     left: Left
     black_box: BlackBox
@@ -117,7 +114,7 @@ def find(
     unnamed_share: float = UNNAMED_SHARE,
     offered: tuple[str, ...] | None = None,
     quantities: Quantities | None = None,
-) -> Finding:
+) -> Decision:
     """Locate the gap, name what is missing and add it.
 
     Parameters
@@ -178,14 +175,14 @@ def find(
 def decide(
     dataset: str,
     base: Model,
-    start: State,
+    start: ModelState,
     floor: Floor,
     named: Named,
     say: Say = silent,
     limits: Limits | None = None,
     own: OwnValues = NONE,
     unnamed_share: float = UNNAMED_SHARE,
-) -> Finding:
+) -> Decision:
     """Locate the gap, and give the verdict on what was named.
 
     Parameters
@@ -193,7 +190,7 @@ def decide(
     dataset : str
         Its name.
     base : Model
-    start : State
+    start : ModelState
         The base on the fit records.
     floor : Floor
     named : Named
@@ -288,7 +285,7 @@ def decide(
         content["no_experiment"] = why_none
     if used_up:
         content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
-    return Finding(
+    return Decision(
         base,
         model,
         state,
@@ -303,35 +300,7 @@ def decide(
     )
 
 
-def contributions(
-    ladder: Sequence[Rung], simulated: Mapping[State, list[Compared]]
-) -> list[Contribution]:
-    """Give what each named effect adds to the output of the rung before it.
-
-    Parameters
-    ----------
-    ladder : sequence of Rung
-    simulated : mapping of State to list of Compared
-        States that were simulated before; any other is simulated here.
-    """
-    outputs = [simulated.get(rung.state) or compare(rung.state) for rung in ladder]
-    found = []
-    for (old, new), (before, after) in zip(
-        pairwise(ladder), pairwise(outputs), strict=True
-    ):
-        added = tuple(
-            b.simulated - a.simulated for a, b in zip(before, after, strict=True)
-        )
-        known = {item.effect for item in old.state.added}
-        found += [
-            Contribution(item.effect, effects()[item.effect].shows, added, item.charge)
-            for item in new.state.added
-            if item.effect not in known
-        ]
-    return found
-
-
-def _predicts_nothing(state: State) -> str:
+def _predicts_nothing(state: ModelState) -> str:
     """Say which effects have no number in common to the records: a path of drift.
 
     A tone has one, its frequency.
@@ -360,7 +329,7 @@ def _used_up(calls: Calls) -> str:
     )
 
 
-def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:
+def _fit(start: ModelState, state: ModelState, floor: Floor) -> dict[str, Any]:
     """Tell what is gone on the fit records, and how much no other record knows."""
     square = floor.rms**2
     before, after = (each.power(square) for each in (start, state))
@@ -376,33 +345,3 @@ def _fit(start: State, state: State, floor: Floor) -> dict[str, Any]:
         "step_error": error,
         "floor": floor_with_steps(floor.rms, error),
     }
-
-
-def black_box(compared: Sequence[Compared], floor: Floor) -> BlackBox:
-    """Fit the yardstick to what the base leaves on the fit records."""
-    folds = make_folds([item.record for item in compared], whole=False)
-    return BlackBox.fit(compared, folds, floor.rms)
-
-
-def compare(state: State) -> list[Compared]:
-    """Simulate a model on its records, in free run, with what lies beside it."""
-    outputs = Scene(state.chain, state.records, state.hold, fine=True).output
-    offsets = _beside_signals(state) if state.beside else None
-    return [
-        Compared(record, y if offsets is None else y + offsets[k])
-        for k, (record, y) in enumerate(zip(state.records, outputs, strict=True))
-    ]
-
-
-def _beside_signals(state: State) -> list[FloatArray]:
-    """Give what lies beside, over whole records, as the scored samples fit it."""
-    amplitudes = state.beside_amplitudes
-    signals = [np.zeros(len(record)) for record in state.records]
-    first = 0
-    for beside, values in state.beside:
-        for k, record in enumerate(state.records):
-            shapes = beside.columns(record, values, beside.order)
-            count = shapes.shape[1]
-            signals[k] += shapes @ amplitudes[first : first + count]
-            first += count
-    return signals

@@ -8,11 +8,13 @@ from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.decision import Finding, black_box, compare
+from hystbench.gap.decision import Decision
+from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.outcome import as_asked, outcome
+from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.progress import Say, silent
@@ -39,7 +41,7 @@ def decide_in(
     say: Say = silent,
     unnamed_share: float = UNNAMED_SHARE,
     vocabulary: Vocabulary = EVERYTHING,
-) -> Finding:
+) -> Decision:
     """Decide on the fit records; write the decision and the curves to a folder.
 
     Parameters
@@ -60,28 +62,28 @@ def decide_in(
     writes(*(folder / name for name in DECIDED))
     say = say_in_words(say)
     vocabulary = vocabulary.in_device(evidence.device_kind)
-    finding, built_in = found_on_fit(
+    decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
-    content = with_device(finding.content, evidence.device_kind, evidence.quantities)
-    finding = replace(finding, content=content)
+    content = with_device(decision.content, evidence.device_kind, evidence.quantities)
+    decision = replace(decision, content=content)
     kept = {
-        "floor": asdict(finding.floor),
-        "state": state_mapping(finding.state),
+        "floor": asdict(decision.floor),
+        "state": state_mapping(decision.state),
         "rungs": [
             {"name": item.name, "state": state_mapping(item.state)}
-            for item in finding.rungs
+            for item in decision.rungs
         ],
         "without": list(vocabulary.without),
         "with": list(vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
     }
     with whole_folder(folder, DECIDED) as fresh:
-        write_json(fresh / "curves.json", finding.curves)
-        finding.base.save(fresh / BASE)
+        write_json(fresh / "curves.json", decision.curves)
+        decision.base.save(fresh / BASE)
         write_json(fresh / NAMED, kept)
-        write_json(fresh / DECISION, finding.content)
-    return finding
+        write_json(fresh / DECISION, decision.content)
+    return decision
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
@@ -105,7 +107,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     fit = own.taken_off(evidence.fit, evidence.hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
-    steps = [
+    rungs = [
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     ]
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
@@ -117,7 +119,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
         floor,
         box,
         evidence.hold_out,
-        steps,
+        rungs,
         own,
         evidence.warnings,
     )

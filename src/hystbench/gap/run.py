@@ -11,7 +11,7 @@ import numpy as np
 
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.decision import Finding, find
+from hystbench.gap.decision import Decision, find
 from hystbench.gap.experiment.excitations import write_experiment
 from hystbench.gap.fitting.start import run_base
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
@@ -41,13 +41,13 @@ class Closed:
 
     Parameters
     ----------
-    finding : Finding
+    decision : Decision
         Its ``model`` and ``content`` are those after the hold-out records were read.
     outcome : Outcome
     evidence : Evidence
     """
 
-    finding: Finding
+    decision: Decision
     outcome: Outcome
     evidence: Evidence
 
@@ -69,7 +69,7 @@ class Closed:
             nothing is written then.
         """
         with whole_folder(folder, RESULT) as fresh:
-            write_json(fresh / "curves.json", self.finding.curves)
+            write_json(fresh / "curves.json", self.decision.curves)
             write_shown(fresh, self.evidence.hold_out, self.outcome)
             if report:
                 from hystbench.gap.report import write_report  # late: it draws
@@ -122,28 +122,36 @@ def closed_gap(
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
-    finding, built_in = found_on_fit(
+    decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.
     shown = outcome(
-        finding.base,
-        finding.content,
-        finding.state,
-        finding.floor,
-        finding.black_box,
+        decision.base,
+        decision.content,
+        decision.state,
+        decision.floor,
+        decision.black_box,
         evidence.hold_out,
-        finding.rungs,
-        finding.own,
+        decision.rungs,
+        decision.own,
         evidence.warnings,
     )
     shown = as_asked(
-        shown, vocabulary, built_in, evidence, finding.state, finding.floor, finding.own
+        shown,
+        vocabulary,
+        built_in,
+        evidence,
+        decision.state,
+        decision.floor,
+        decision.own,
     )
     content = with_device(shown.content, evidence.device_kind, evidence.quantities)
     shown = replace(shown, content=content)
-    return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
+    return Closed(
+        replace(decision, model=shown.model, content=content), shown, evidence
+    )
 
 
 def found_on_fit(
@@ -153,14 +161,14 @@ def found_on_fit(
     say: Say,
     unnamed_share: float,
     vocabulary: Vocabulary,
-) -> tuple[Finding, BuiltIn | None]:
+) -> tuple[Decision, BuiltIn | None]:
     """Put in what is asked for, and find what the fit records say is missing.
 
     Parameters are those of :func:`closed_gap`, and of the vocabulary what the device
     can have.
     """
     base, built_in = put_in(base, evidence, vocabulary.fixed, say)
-    finding = find(
+    decision = find(
         evidence.name,
         evidence.fit,
         base,
@@ -172,7 +180,7 @@ def found_on_fit(
         vocabulary.offered,
         inside_of(base, evidence),
     )
-    return finding, built_in
+    return decision, built_in
 
 
 def close_gap(
@@ -182,7 +190,7 @@ def close_gap(
     *,
     report: bool = True,
     **asked: Any,
-) -> Finding:
+) -> Decision:
     """Search a gap as :func:`closed_gap` does, and write the result to a folder.
 
     Parameters
@@ -201,7 +209,7 @@ def close_gap(
     will_write(folder, evidence)
     closed = closed_gap(evidence, base, **asked)
     closed.write(folder, report)
-    return closed.finding
+    return closed.decision
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:
@@ -230,12 +238,12 @@ def _write_hold_out(
     write_csv(path, ["time_s", "measured", "before", "after"], rows)
 
 
-def write_next_experiment(finding: Finding, channel: Channel, path: Path) -> str:
+def write_next_experiment(decision: Decision, channel: Channel, path: Path) -> str:
     """Write the excitation that tells likely effects apart, or tell why there is none.
 
     Parameters
     ----------
-    finding : Finding
+    decision : Decision
     channel : Channel
         The input's.
     path : Path
@@ -246,9 +254,9 @@ def write_next_experiment(finding: Finding, channel: Channel, path: Path) -> str
     str
         A line that tells what was done.
     """
-    if finding.experiment is None:
+    if decision.experiment is None:
         needless = "no effects that were tried need to be told apart"
-        why = finding.content.get("no_experiment", needless)
+        why = decision.content.get("no_experiment", needless)
         return f"{path}: not written: {why}"
-    write_experiment(finding.experiment.excitation, channel, path)
-    return f"{path}: {finding.experiment.sentence}"
+    write_experiment(decision.experiment.excitation, channel, path)
+    return f"{path}: {decision.experiment.sentence}"

@@ -74,7 +74,7 @@ class Gap:
     Parameters
     ----------
     closed : Closed
-        The finding and what the hold-out records showed.
+        The decision and what the hold-out records showed.
     note : str
         Where the simulator comes from.
     places : mapping
@@ -126,7 +126,7 @@ class Gap:
     @property
     def experiment(self) -> Experiment | None:
         """The excitation that would tell likely effects apart, if one is needed."""
-        return self.closed.finding.experiment
+        return self.closed.decision.experiment
 
     def __repr__(self) -> str:
         """Tell the verdict, the residual before and after, and the effects."""
@@ -272,7 +272,7 @@ def find_gap(
         Effects that the search must not name.
     with_ : sequence of str
         Effects that are in the model from the start: they are fitted, and are no
-        finding.
+        decision.
     limits : mapping of str to float, optional
         What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
     unnamed_share : float

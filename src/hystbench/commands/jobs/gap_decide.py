@@ -45,7 +45,7 @@ def gap_decide(
     if note:
         click.echo(note, err=True)
     check_units(evidence, base, model)
-    finding = decide_in(
+    decision = decide_in(
         out,
         evidence,
         base,
@@ -57,5 +57,5 @@ def gap_decide(
     if write_experiment is not None:
         # The folder is a job's output, with the signal or without.
         write_experiment.parent.mkdir(parents=True, exist_ok=True)
-        told = write_next_experiment(finding, evidence.input, write_experiment)
+        told = write_next_experiment(decision, evidence.input, write_experiment)
         click.echo(told, err=True)

@@ -20,13 +20,13 @@ IDENTIFIED = ("gpi", "linear")
 WORDS = (*IDENTIFIED, "column")
 """What may stand in the place of a model file."""
 
-Kind = Literal["word", "file", "function", "command", "fmu", "onnx"]
+BaseKind = Literal["word", "file", "function", "command", "fmu", "onnx"]
 
 COMMAND = "command:"
 """What stands before the command line of a simulator."""
 
 
-def kind_of_base(text: str) -> Kind:
+def kind_of_base(text: str) -> BaseKind:
     """Tell what kind of base is asked for.
 
     Raises

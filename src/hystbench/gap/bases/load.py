@@ -23,7 +23,7 @@ from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
 from hystbench.gap.bases.linear import HIGHEST, Linear, identified_linear
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
 
 __all__ = [
@@ -255,7 +255,9 @@ def check_repeats(model: Model, evidence: Evidence) -> None:
         if not isinstance(block, Simulator):
             continue
         inputs = [
-            Scene(model.chain[:k], (item,), evidence.hold).output[0] if k else item.u
+            Simulation(model.chain[:k], (item,), evidence.hold).output[0]
+            if k
+            else item.u
             for item in evidence.fit
         ]
         pairs = zip(inputs, evidence.fit, strict=True)

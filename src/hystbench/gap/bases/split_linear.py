@@ -42,7 +42,7 @@ ROUNDS = 5
 TO_THE_END = 40
 FOLD_ROUNDS = 4
 #: A further pole or zero must lower the error by this share.
-MATTERS = 0.02
+POLE_PAYS = 0.02
 #: Poles of both halves together, at most.
 MOST = 8
 #: A new pole or zero starts beyond the others, at so many times the scale.
@@ -85,7 +85,7 @@ def best_split(
     best = min(tried, key=_cost, default=None)
     if best is None or best.cost > ENOUGH * end.cost:
         return None
-    enough = [way for way in tried if way.cost <= best.cost / (1 - MATTERS) ** 2]
+    enough = [way for way in tried if way.cost <= best.cost / (1 - POLE_PAYS) ** 2]
     fewest = min(enough, key=lambda way: (way.count, way.cost))
     best = _grown(task, task.refined(fewest, TO_THE_END))
     inside, outside = (_on_folds(task, each, folds) for each in (best, end))
@@ -170,7 +170,7 @@ def _grown(task: HalvesError, halves: Halves) -> Halves:
         if not tried:
             return halves
         best = task.refined(min(tried, key=_cost), TO_THE_END)
-        if best.cost > (1 - MATTERS) ** 2 * halves.cost:
+        if best.cost > (1 - POLE_PAYS) ** 2 * halves.cost:
             return halves
         halves = best
 

@@ -22,14 +22,14 @@ from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import WrappingBlock
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
 Values = Mapping[str, float]
-Samples = slice | NDArray[np.intp]
+SomeSamples = slice | NDArray[np.intp]
 """Some samples of a record."""
-EVERY: Samples = slice(None)
+EVERY: SomeSamples = slice(None)
 
 
 class Declined(Exception):  # noqa: N818  (an answer, not an error)
@@ -227,7 +227,7 @@ class Effect(ABC):
     """Of its block inside the dynamics: without this number it is another effect."""
 
     @abstractmethod
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Give the variants that make sense in a chain on its records.
 
         Raises
@@ -238,7 +238,7 @@ class Effect(ABC):
 
     def inserted(
         self,
-        scene: Scene,
+        simulation: Simulation,
         place: int,
         values: Callable[[Values], dict[str, Any]] = dict,
         *,
@@ -260,11 +260,11 @@ class Effect(ABC):
         """
         block = registry()[law or self.name]
         start = place
-        if issubclass(block, WrappingBlock) and scene.hysteresis is not None:
-            start = scene.hysteresis
-        between, rest = scene.chain[start:place], scene.chain[place:]
+        if issubclass(block, WrappingBlock) and simulation.hysteresis is not None:
+            start = simulation.hysteresis
+        between, rest = simulation.chain[start:place], simulation.chain[place:]
 
-        hold = scene.hold_at(place) if issubclass(block, HeldBlock) else None
+        hold = simulation.hold_at(place) if issubclass(block, HeldBlock) else None
 
         def build(given: Values) -> tuple[Block, ...]:
             own = values(given)
@@ -274,7 +274,7 @@ class Effect(ABC):
 
         return Variant(
             self.name,
-            INSIDE if place in places_inside(scene) else self.place,
+            INSIDE if place in places_inside(simulation) else self.place,
             form,
             start,
             build,
@@ -291,7 +291,7 @@ class Effect(ABC):
 
     def added(
         self,
-        scene: Scene,
+        simulation: Simulation,
         beside: Beside,
         *,
         form: str,
@@ -299,7 +299,7 @@ class Effect(ABC):
         grids: dict[str, FloatArray] | None = None,
     ) -> Variant:
         """Give the variant that adds a signal to the output of the chain."""
-        end = len(scene.chain)
+        end = len(simulation.chain)
         return Variant(
             self.name,
             self.place,
@@ -377,17 +377,17 @@ class Effect(ABC):
         raise NotImplementedError
 
 
-def places_inside(scene: Scene) -> list[int]:
+def places_inside(simulation: Simulation) -> list[int]:
     """Give the places between the transfer functions of a chain: before all but one.
 
     A linear base that is written as two in series may hide a static nonlinearity
     between its halves.
     """
-    linear = [k for k, item in enumerate(scene.chain) if item.name == LINEAR]
+    linear = [k for k, item in enumerate(simulation.chain) if item.name == LINEAR]
     return linear[1:]
 
 
-def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
+def places_in_drive(simulation: Simulation, linear: bool = False) -> list[int]:
     """Give the places among the drive's effects where another one does another thing.
 
     Before the first block, and behind each of them that does not commute with what is
@@ -396,12 +396,12 @@ def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
 
     Parameters
     ----------
-    scene : Scene
+    simulation : Simulation
     linear : bool
         Whether what is put there is linear.
     """
     places = [0]
-    for k, block in enumerate(scene.chain):
+    for k, block in enumerate(simulation.chain):
         if block.place != "drive":
             break
         is_limit = not isinstance(block, HeldBlock)
@@ -410,7 +410,7 @@ def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
     return places
 
 
-def places_in_sensor(scene: Scene, linear: bool = False) -> list[int]:
+def places_in_sensor(simulation: Simulation, linear: bool = False) -> list[int]:
     """Give the places among the sensor's effects where another one does another thing.
 
     Behind the last block, and before each of the sensor's that does not commute with
@@ -418,13 +418,15 @@ def places_in_sensor(scene: Scene, linear: bool = False) -> list[int]:
 
     Parameters
     ----------
-    scene : Scene
+    simulation : Simulation
     linear : bool
         Whether what is put there is linear.
     """
-    end = len(scene.chain)
-    own = range(scene.behind_mechanics, end)
-    before = (k for k in own if isinstance(scene.chain[k], LinearBlock) is not linear)
+    end = len(simulation.chain)
+    own = range(simulation.behind_mechanics, end)
+    before = (
+        k for k in own if isinstance(simulation.chain[k], LinearBlock) is not linear
+    )
     return [end, *before]
 
 
@@ -444,7 +446,7 @@ class InsideEffect(Effect):
 
     place = "inside"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Decline: no chain in series has a place for it.
 
         Raises

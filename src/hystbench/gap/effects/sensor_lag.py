@@ -12,7 +12,7 @@ from hystbench.gap.effects.base import (
     logarithmic,
     places_in_sensor,
 )
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class SensorLag(Effect):
@@ -22,11 +22,11 @@ class SensorLag(Effect):
     shows = "frequency"
     place = "sensor"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the lag behind the last block, and before the sensor's curves."""
-        times = logarithmic(scene.step / 20, scene.span / 20)
-        for place in places_in_sensor(scene, linear=True):
-            yield self.inserted(scene, place, grids={"time_constant_s": times})
+        times = logarithmic(simulation.step / 20, simulation.span / 20)
+        for place in places_in_sensor(simulation, linear=True):
+            yield self.inserted(simulation, place, grids={"time_constant_s": times})
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer it behind the mechanism."""

@@ -14,7 +14,7 @@ from hystbench.gap.experiment.next_experiment import (
 )
 from hystbench.gap.experiment.separation import Rival, pairs_of, parameter_tangents
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.name import Named
 from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.model import Model
@@ -89,7 +89,7 @@ def tell_apart(
     return replace(found, left_out=left_out), ""
 
 
-def _alike(effect: str, ranking: Sequence[Candidate]) -> dict[str, State]:
+def _alike(effect: str, ranking: Sequence[Candidate]) -> dict[str, ModelState]:
     """Give an effect and those that cannot be told from it, if there are any."""
     own = next((x for x in ranking if x.effect == effect), None)
     names = () if own is None else near(own, ranking)
@@ -102,7 +102,7 @@ def _alike(effect: str, ranking: Sequence[Candidate]) -> dict[str, State]:
     }
 
 
-def _is_beside(effect: str, state: State) -> bool:
+def _is_beside(effect: str, state: ModelState) -> bool:
     """Tell whether an effect is a signal of each record, which no input brings out."""
     return any(beside.effect == effect for beside, _ in state.beside)
 
@@ -117,7 +117,7 @@ class _Rivals:
         self._base = base
         self._known: list[tuple[Model, Rival]] = []
 
-    def of(self, state: State) -> Rival:
+    def of(self, state: ModelState) -> Rival:
         model = augmented(self._base, replace(state, beside=()))
         for known, rival in self._known:
             if known == model:

@@ -7,11 +7,11 @@ from dataclasses import replace
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.state import Added, State, beside_count
+from hystbench.gap.fitting.state import Added, ModelState, beside_count
 from hystbench.model import Model
 
 
-def augmented(base: Model, state: State) -> Model:
+def augmented(base: Model, state: ModelState) -> Model:
     """Give the base with the effects that were added, as a model that runs anywhere.
 
     What is new in every record has the mean amplitude and the first record's phase.
@@ -45,13 +45,13 @@ def augmented(base: Model, state: State) -> Model:
     )
 
 
-def blocks_of(item: Added, state: State, model: Model) -> list[str]:
+def blocks_of(item: Added, state: ModelState, model: Model) -> list[str]:
     """Give the labels of the blocks that stand for an added effect.
 
     Parameters
     ----------
     item : Added
-    state : State
+    state : ModelState
     model : Model
         As :func:`augmented` gives it: what lies beside the chain stands behind it.
     """
@@ -62,7 +62,7 @@ def blocks_of(item: Added, state: State, model: Model) -> list[str]:
     ]
 
 
-def _names_now(base: Model, state: State, labels: list[str]) -> dict[str, str]:
+def _names_now(base: Model, state: ModelState, labels: list[str]) -> dict[str, str]:
     """Give the names that the base's parameters have in the longer chain."""
     before = [label for label, _ in base.labelled()]
     places = zip(before, places_of_base(state), strict=True)
@@ -79,7 +79,7 @@ def _numeric(model: Model, name: str) -> bool:
     return not isinstance(model.value(name), str)
 
 
-def places_of_base(state: State) -> list[int | None]:
+def places_of_base(state: ModelState) -> list[int | None]:
     """Find where the base's blocks stand; None where an effect stands for one."""
     beside = {item.effect for item, _ in state.beside}
     # An effect without a block lost it to a later one, which then stands for no block
@@ -96,7 +96,7 @@ def places_of_base(state: State) -> list[int | None]:
     ]
 
 
-def beside_blocks(state: State) -> list[Block]:
+def beside_blocks(state: ModelState) -> list[Block]:
     """Give the blocks of what lies beside the chain."""
     if not state.beside:
         return []

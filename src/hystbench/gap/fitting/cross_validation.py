@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of, state_key
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.folds import make_folds
 from hystbench.record import FloatArray
 
@@ -35,7 +35,7 @@ class _Fold(NamedTuple):
     """Terms of the score there of the model without the effect, by record."""
 
 
-def gain_held_back(before: State, after: State, score: Score) -> float:
+def gain_held_back(before: ModelState, after: ModelState, score: Score) -> float:
     """Lower the score of held-back records by how much, with an effect fitted without.
 
     The fit records are dealt out in folds; where there are fewer than three, blocks of
@@ -48,7 +48,7 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
 
     Parameters
     ----------
-    before, after : State
+    before, after : ModelState
         Models without and with the effect, on the same records.
     score : Score
 
@@ -66,7 +66,7 @@ def gain_held_back(before: State, after: State, score: Score) -> float:
     )
 
 
-def _gain(before: State, after: State, score: Score) -> float:
+def _gain(before: ModelState, after: ModelState, score: Score) -> float:
     folds, inside = _folds(before, score)
     gain = 0.0
     for fold in folds:
@@ -79,7 +79,7 @@ def _gain(before: State, after: State, score: Score) -> float:
 
 
 @lru_cache(maxsize=1)
-def _folds(before: State, score: Score) -> tuple[tuple[_Fold, ...], float]:
+def _folds(before: ModelState, score: Score) -> tuple[tuple[_Fold, ...], float]:
     """Give the folds, and the term of the directions without the effect.
 
     All effects of a round share them.
@@ -99,7 +99,7 @@ def _folds(before: State, score: Score) -> tuple[tuple[_Fold, ...], float]:
     return tuple(found), inside
 
 
-def _split(model: State, score: Score) -> tuple[FloatArray, float]:
+def _split(model: ModelState, score: Score) -> tuple[FloatArray, float]:
     """Give what the directions leave of a residual, and their term of the score."""
     columns = model.beside_columns
     amplitudes = score.amplitudes(model.residual, columns).values

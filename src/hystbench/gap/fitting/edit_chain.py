@@ -11,7 +11,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Values, Variant
-from hystbench.gap.fitting.state import Added, Free, State
+from hystbench.gap.fitting.state import Added, Free, ModelState
 
 
 def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
@@ -29,7 +29,7 @@ def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
             yield Free(position, name)
 
 
-def with_effect(state: State, variant: Variant, values: Values) -> State:
+def with_effect(state: ModelState, variant: Variant, values: Values) -> ModelState:
     """Add an effect to the chain, or beside it."""
     note = dict(values)
     own = (variant.effect, variant.place, variant.form)
@@ -73,7 +73,7 @@ def _placed(item: Added, moved: dict[int, int]) -> Added:
     return item._replace(blocks=places)
 
 
-def without_effect(state: State, number: int) -> State:
+def without_effect(state: ModelState, number: int) -> ModelState:
     """Take an added effect out again."""
     gone = state.added[number]
     rest = tuple(item for k, item in enumerate(state.added) if k != number)
@@ -98,7 +98,9 @@ def without_effect(state: State, number: int) -> State:
     )
 
 
-def _with_old_numbers(state: State, gone: Added, rest: tuple[Added, ...]) -> State:
+def _with_old_numbers(
+    state: ModelState, gone: Added, rest: tuple[Added, ...]
+) -> ModelState:
     """Give blocks the numbers back that an effect changed; they are fixed then."""
     chain, free = list(state.chain), state.free
     for key, value in gone.values.items():
@@ -112,13 +114,13 @@ def _with_old_numbers(state: State, gone: Added, rest: tuple[Added, ...]) -> Sta
     return replace(state, chain=tuple(chain), free=free, added=rest)
 
 
-def last_to(state: State, number: int) -> State:
+def last_to(state: ModelState, number: int) -> ModelState:
     """Give the effect added last the number of the one whose place it takes."""
     *others, last = state.added
     return replace(state, added=(*others[:number], last, *others[number:]))
 
 
-def removable(state: State, number: int) -> bool:
+def removable(state: ModelState, number: int) -> bool:
     """Tell whether an added effect can be taken out with the others left in.
 
     Not a hysteresis that another effect wraps, nor a block that another replaced.
@@ -135,7 +137,7 @@ def removable(state: State, number: int) -> bool:
     )
 
 
-def at_end(state: State, variant: Variant) -> str:
+def at_end(state: ModelState, variant: Variant) -> str:
     """Name a parameter of the effect added last that lies at an end of its range."""
     own = state.added[-1].blocks
     for free in state.free:

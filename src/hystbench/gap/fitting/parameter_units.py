@@ -10,7 +10,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.store import Store
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
 """Derivatives of the coordinate."""
@@ -83,7 +83,7 @@ def _derived(unit: str, times: int) -> str:
     return f"{unit} s" if times == -1 else f"{unit} s^2"
 
 
-def unit_behind(place: int, state: State) -> str:
+def unit_behind(place: int, state: ModelState) -> str:
     """Give the unit of the signal behind a block of the chain.
 
     It is the input's up to the block of the base that turns it into the output: the
@@ -94,7 +94,7 @@ def unit_behind(place: int, state: State) -> str:
     return (record.input if place < _turn(state) else record.output).unit
 
 
-def _turn(state: State) -> int:
+def _turn(state: ModelState) -> int:
     own = {k for item in state.added for k in item.blocks}
     base = [k for k in range(len(state.chain)) if k not in own]
     # An effect may stand for all of the base, as what hardens takes a mode out of it.

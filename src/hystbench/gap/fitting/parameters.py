@@ -11,7 +11,7 @@ from hystbench.blocks.parameter import SETTINGS
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import beside_blocks, places_of_base
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind, written
-from hystbench.gap.fitting.state import Added, State
+from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty_beside import Errors
 from hystbench.model import Model
 from hystbench.record import FloatArray
@@ -20,7 +20,7 @@ OFFSET = "offset"
 """Of a plain gain."""
 
 
-def base_parameters(base: Model, state: State) -> dict[str, Any]:
+def base_parameters(base: Model, state: ModelState) -> dict[str, Any]:
     """Give the base's free parameters before and after.
 
     None after, where an effect stands for the block: the number is then the effect's.
@@ -45,14 +45,14 @@ def _plain(value: object) -> object:
 
 
 def parameters_of(
-    item: Added, state: State, errors: FloatArray, of_beside: Sequence[Errors] = ()
+    item: Added, state: ModelState, errors: FloatArray, of_beside: Sequence[Errors] = ()
 ) -> dict[str, Any]:
     """Give the numbers of an added effect with their standard errors and units.
 
     Parameters
     ----------
     item : Added
-    state : State
+    state : ModelState
     errors : ndarray, shape (free numbers,)
     of_beside : sequence of dict
         Standard errors of the signals beside the chain.
@@ -107,13 +107,13 @@ AT_END = 1e-3
 """Share of a number by which it may be off the end of its range and be at it."""
 
 
-def _unit(unit: str, place: int, state: State) -> str:
+def _unit(unit: str, place: int, state: ModelState) -> str:
     of_input, behind = state.records[0].input.unit, unit_behind(place, state)
     return unit_at(unit, state.chain, place, of_input, behind)
 
 
 def _errors_of(
-    place: int, key: str, value: object, state: State, errors: FloatArray
+    place: int, key: str, value: object, state: ModelState, errors: FloatArray
 ) -> float | list[float | None] | None:
     own = {
         free.element: float(errors[k]) if np.isfinite(errors[k]) else None
@@ -126,7 +126,7 @@ def _errors_of(
     return own.get(None)
 
 
-def at_ends(state: State) -> str:
+def at_ends(state: ModelState) -> str:
     """Tell which numbers of effects lie at an end of the range that was searched.
 
     There the range may have shut a better number out.

@@ -10,7 +10,7 @@ from hystbench.errors import InputError
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.search import Trial
-from hystbench.gap.fitting.state import State, beside_count, beside_slope
+from hystbench.gap.fitting.state import ModelState, beside_count, beside_slope
 from hystbench.record import FloatArray
 
 ROUNDS = 5
@@ -26,17 +26,19 @@ ENOUGH = 0.05
 """A round that lowers the score by less is the last."""
 
 
-def score_of(state: State, score: Score) -> float:
+def score_of(state: ModelState, score: Score) -> float:
     """Score a model as it is; amplitudes of what lies beside are solved for."""
     return score.amplitudes(state.residual, state.beside_columns, state.freedom).score
 
 
-def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, float]:
+def refit(
+    state: ModelState, score: Score, rounds: int = ROUNDS
+) -> tuple[ModelState, float]:
     """Refit all free numbers together (Levenberg and Marquardt on the score).
 
     Returns
     -------
-    state : State
+    state : ModelState
         Never worse than the one given.
     score : float
     """
@@ -66,7 +68,7 @@ def refit(state: State, score: Score, rounds: int = ROUNDS) -> tuple[State, floa
     return state, best
 
 
-def sizes(state: State) -> FloatArray:
+def sizes(state: ModelState) -> FloatArray:
     """Give the size of each free number: its value, or what moves the output a tenth.
 
     The second is for those that are zero, or nearly; but none is far more than the
@@ -84,7 +86,7 @@ def sizes(state: State) -> FloatArray:
     return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, most))
 
 
-def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
+def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
     """Add an effect as a trial found it and refit everything together."""
     after = with_effect(state, trial.variant, trial.values)
     if trial.variant.zero is not None:
@@ -92,12 +94,12 @@ def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
     return refit(after, score)
 
 
-def tuned(state: State, score: Score) -> State:
+def tuned(state: ModelState, score: Score) -> ModelState:
     """Refine what was searched of the signals beside (a frequency): Gauss and Newton.
 
     Returns
     -------
-    State
+    ModelState
         Never worse than the one given.
     """
     for number, key in _searched(state):
@@ -119,17 +121,17 @@ def tuned(state: State, score: Score) -> State:
     return state
 
 
-def _searched(state: State) -> list[tuple[int, str]]:
+def _searched(state: ModelState) -> list[tuple[int, str]]:
     return [(k, key) for k, (_, values) in enumerate(state.beside) for key in values]
 
 
-def _own(state: State, number: int) -> FloatArray:
+def _own(state: ModelState, number: int) -> FloatArray:
     """Give the amplitudes of one of the signals beside."""
     counts = [beside_count(state, *item) for item in state.beside[: number + 1]]
     return state.beside_amplitudes[sum(counts[:-1]) : sum(counts)]
 
 
-def finished(state: State, score: Score) -> tuple[State, float]:
+def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     """Simulate a model exactly and refit it to the end."""
     state = state.settled()
     state, _ = refit(state, score)
@@ -138,7 +140,7 @@ def finished(state: State, score: Score) -> tuple[State, float]:
     return state, score_of(state, score)
 
 
-def ready(state: State, score: Score) -> State:
+def ready(state: ModelState, score: Score) -> ModelState:
     """Refit a model under the score that its further effects are to lower.
 
     The score allows for other forms of the effects that the model has, which it was

@@ -13,7 +13,7 @@ from hystbench.blocks.calls import CallsUsedUp
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Values, Variant
 from hystbench.gap.fitting.score import Amplitudes, Score
-from hystbench.gap.fitting.state import State, beside_columns
+from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.record import FloatArray
 
@@ -72,7 +72,7 @@ class Attempt:
     """
 
     def __init__(
-        self, state: State, variant: Variant, score: Score, number: int = 0
+        self, state: ModelState, variant: Variant, score: Score, number: int = 0
     ) -> None:
         self.state, self.variant, self.score = state, variant, score
         self.number = number
@@ -170,7 +170,7 @@ class Attempt:
         if variant.unit:
             return self._scaled(values)
         after = state.sample.take(
-            state.scene.tail(variant.start, variant.build(values))
+            state.simulation.tail(variant.start, variant.build(values))
         )
         if variant.zero is None:
             residual = state.reference - after
@@ -183,17 +183,17 @@ class Attempt:
         variant, state = self.variant, self.state
         if self.zero is None:
             at = {**values, **(variant.zero or {})}
-            signals = state.scene.tail(variant.start, variant.build(at))
+            signals = state.simulation.tail(variant.start, variant.build(at))
             self.zero = state.sample.take(signals)
         return self.zero
 
     def _scaled(self, values: Values) -> tuple[FloatArray, FloatArray]:
         """How the output changes with each parameter that is solved for."""
         variant, state = self.variant, self.state
-        take, tail = state.sample.take, state.scene.tail
+        take, tail = state.sample.take, state.simulation.tail
         zero = dict.fromkeys(variant.unit, 0.0)
         if variant.neutral:
-            now = take(state.scene.output)
+            now = take(state.simulation.output)
         else:
             now = take(tail(variant.start, variant.build({**values, **zero})))
         columns = []
@@ -243,7 +243,7 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
 
 
 @lru_cache(maxsize=1)
-def at_a_glance(state: State, score: Score) -> tuple[State, Score]:
+def at_a_glance(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     """Give a model and its score on the half of the records with most of the gap."""
     slices = state.sample.slices
     if len(slices) < GLANCE:

@@ -21,15 +21,15 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.gap.cache import Result, records_digest, remembered
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
-from hystbench.gap.fitting.state import Added, Free, State
+from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.records.sample import Sample
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray, Record
 
 Mapped = dict[str, Any]
 
 
-def state_mapping(state: State) -> Mapped:
+def state_mapping(state: ModelState) -> Mapped:
     """Give a model as far as it has come, as JSON holds it."""
     at = state.corrected_at
     return {
@@ -53,7 +53,7 @@ def state_mapping(state: State) -> Mapped:
     }
 
 
-def state_key(state: State) -> list[str]:
+def state_key(state: ModelState) -> list[str]:
     """Tell all that a model computes from, in words and digests."""
     return [
         records_digest(state.records),
@@ -62,19 +62,19 @@ def state_key(state: State) -> list[str]:
     ]
 
 
-def state_with_correction(state: State) -> Mapped:
+def state_with_correction(state: ModelState) -> Mapped:
     """Give a model as JSON holds it, and what the quick simulation lacks."""
     lacks = None if state.correction is None else _text(state.correction)
     return state_mapping(state) | {"correction": lacks}
 
 
-def state_again(content: Mapped, like: State) -> State:
+def state_again(content: Mapped, like: ModelState) -> ModelState:
     """Give the model that :func:`state_with_correction` wrote.
 
     Parameters
     ----------
     content : dict
-    like : State
+    like : ModelState
         On the same records, with the same blocks where they are the base's own.
     """
     plain = content | {"corrected_at": None}
@@ -90,7 +90,7 @@ def state_again(content: Mapped, like: State) -> State:
 
 
 def remembered_of(
-    state: State,
+    state: ModelState,
     more: Callable[[], list[Any]],
     compute: Callable[[], Result],
     write: Callable[[Result], Any],
@@ -100,7 +100,7 @@ def remembered_of(
 
     Parameters
     ----------
-    state : State
+    state : ModelState
         One with a simulator of somebody's own is always computed: what it is made of is
         not known. Its outputs are kept elsewhere.
     more : callable
@@ -138,10 +138,10 @@ class Restorer:
         self._own = own
         self._corrections: dict[tuple[Block, ...], FloatArray | None] = {}
 
-    def state(self, content: Mapped) -> State:
+    def state(self, content: Mapped) -> ModelState:
         """Give the model that :func:`state_mapping` wrote."""
         hold = content["hold"]
-        state = State(
+        state = ModelState(
             self.chain(content["chain"]),
             self.records,
             self.sample,
@@ -156,7 +156,7 @@ class Restorer:
             hold=hold,
         )
         beside = tuple(
-            (_beside(item["effect"], item["order"], state.scene), item["values"])
+            (_beside(item["effect"], item["order"], state.simulation), item["values"])
             for item in content["beside"]
         )
         at = content["corrected_at"]
@@ -164,7 +164,7 @@ class Restorer:
             return _replaced(state, beside)
         chain = self.chain(at)
         if chain not in self._corrections:
-            settled = State(chain, self.records, self.sample, hold=hold).settled()
+            settled = ModelState(chain, self.records, self.sample, hold=hold).settled()
             self._corrections[chain] = settled.correction
         return _replaced(state, beside, self._corrections[chain], chain)
 
@@ -208,19 +208,19 @@ def _chain_mapping(chain: Sequence[Block]) -> list[Mapped]:
     return [_block_mapping(block) for block in chain]
 
 
-def _beside(effect: str, order: int, scene: Scene) -> Beside:
+def _beside(effect: str, order: int, simulation: Simulation) -> Beside:
     """Give the shapes of what lies beside, as its effect offers them."""
-    offered = (variant.beside for variant in effects()[effect].variants(scene))
+    offered = (variant.beside for variant in effects()[effect].variants(simulation))
     return next(item for item in offered if item is not None and item.order == order)
 
 
 def _replaced(
-    state: State,
+    state: ModelState,
     beside: tuple[tuple[Beside, Any], ...],
     correction: FloatArray | None = None,
     at: tuple[Block, ...] | None = None,
-) -> State:
-    return State(
+) -> ModelState:
+    return ModelState(
         state.chain,
         state.records,
         state.sample,

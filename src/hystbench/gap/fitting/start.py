@@ -8,11 +8,11 @@ import numpy as np
 
 from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
-from hystbench.gap.fitting.state import Free, State
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.residual import Compared
 from hystbench.gap.records.sample import Sample
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
@@ -23,7 +23,7 @@ def start_state(
     hold: Hold = "band-limited",
     declared: float | None = None,
     offered: tuple[str, ...] | None = None,
-) -> tuple[State, Floor]:
+) -> tuple[ModelState, Floor]:
     """Simulate the base on the fit records and measure the noise floor.
 
     Parameters
@@ -44,9 +44,9 @@ def start_state(
     """
     base = base.with_hold(hold)
     chain = base.chain
-    exact = Scene(chain, records, hold, fine=True).output
+    exact = Simulation(chain, records, hold, fine=True).output
     check_finite(base.name, records, exact)
-    state = State(
+    state = ModelState(
         chain,
         records,
         Sample.of(records),
@@ -82,7 +82,7 @@ def run_base(
     InputError
         If an output is not finite.
     """
-    outputs = Scene(base.with_hold(hold).chain, records, hold).output
+    outputs = Simulation(base.with_hold(hold).chain, records, hold).output
     check_finite(base.name, records, outputs)
     return outputs
 

@@ -16,7 +16,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects.base import Beside, Values
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.simulation.reshape import reshapings
-from hystbench.gap.simulation.simulation import Scene, Signals
+from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.record import FloatArray, Record
 
 
@@ -57,7 +57,7 @@ MANY = 4
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class ModelState:
     """A chain, the effects added to it, and what a refit may change.
 
     Parameters
@@ -92,11 +92,11 @@ class State:
     offered: tuple[str, ...] | None = None
 
     @cached_property
-    def scene(self) -> Scene:
+    def simulation(self) -> Simulation:
         """The chain on the records, simulated quickly."""
-        return Scene(self.chain, self.records, self.hold, quick=True)
+        return Simulation(self.chain, self.records, self.hold, quick=True)
 
-    def on(self, kept: Sequence[int]) -> State:
+    def on(self, kept: Sequence[int]) -> ModelState:
         """Give the state on some of its records, by number."""
         rows = [self.sample.slices[k] for k in kept]
         correction = self.correction
@@ -109,16 +109,16 @@ class State:
             correction=correction,
         )
 
-    def settled(self) -> State:
+    def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""
-        exact = Scene(self.chain, self.records, self.hold, fine=True).output
-        lacks = self.sample.take(exact) - self.sample.take(self.scene.output)
+        exact = Simulation(self.chain, self.records, self.hold, fine=True).output
+        lacks = self.sample.take(exact) - self.sample.take(self.simulation.output)
         return replace(self, correction=lacks, corrected_at=self.chain)
 
     @cached_property
     def residual(self) -> FloatArray:
         """Scored samples of measured minus simulated, without what lies beside."""
-        return self.reference - self.sample.take(self.scene.output)
+        return self.reference - self.sample.take(self.simulation.output)
 
     @cached_property
     def reference(self) -> FloatArray:
@@ -147,10 +147,10 @@ class State:
 
     def _tangent(self, k: int, step: float) -> FloatArray:
         try:
-            moved = scene_of(self, {k: step})
+            moved = simulated_with(self, {k: step})
         except InputError:  # beyond what the block accepts, so the other way
             step = -step
-            moved = scene_of(self, {k: step})
+            moved = simulated_with(self, {k: step})
         return (self.sample.take(moved) - self._simulated) / step
 
     @cached_property
@@ -168,7 +168,7 @@ class State:
                 for factor in FORMS:
                     change = (factor - 1) * value
                     try:
-                        after = scene_of(self, {k: change})
+                        after = simulated_with(self, {k: change})
                     except InputError:
                         continue  # outside what the block accepts: no form of it
                     column = self.sample.take(after) - self._simulated
@@ -179,7 +179,7 @@ class State:
     @cached_property
     def reshapings(self) -> FloatArray:
         """What reshaping the hysteresis could do, shape (scored samples, k)."""
-        return reshapings(self.scene, self.sample)
+        return reshapings(self.simulation, self.sample)
 
     @cached_property
     def stiffness(self) -> FloatArray:
@@ -205,12 +205,12 @@ class State:
         found = np.linalg.lstsq(self.beside_columns, self.residual, rcond=1e-10)[0]
         return np.asarray(found, dtype=np.float64)
 
-    def share(self, other: State, floor: float, gap: float) -> float:
+    def share(self, other: ModelState, floor: float, gap: float) -> float:
         """Tell which share of a gap is gone here and is there in another state.
 
         Parameters
         ----------
-        other : State
+        other : ModelState
         floor : float
             Mean square of the noise.
         gap : float
@@ -253,7 +253,7 @@ class State:
             chain[free.block] = replace(block, **{free.parameter: new})
         return tuple(chain)
 
-    def with_chain(self, chain: tuple[Block, ...]) -> State:
+    def with_chain(self, chain: tuple[Block, ...]) -> ModelState:
         """Give the state with other values in its chain."""
         return replace(self, chain=chain)
 
@@ -272,15 +272,15 @@ class State:
         return -size if value + size > min(about.high, free.high) else size
 
 
-def scene_of(state: State, changes: dict[int, float]) -> Signals:
+def simulated_with(state: ModelState, changes: dict[int, float]) -> Signals:
     """Simulate the chain with some free numbers changed."""
     start = min(state.free[k].block for k in changes)
     while isinstance(state.chain[start], AttachedBlock):
         start -= 1
-    return state.scene.tail(start, state.moved(changes)[start:])
+    return state.simulation.tail(start, state.moved(changes)[start:])
 
 
-def beside_columns(state: State, beside: Beside, values: Values) -> FloatArray:
+def beside_columns(state: ModelState, beside: Beside, values: Values) -> FloatArray:
     """Scored samples of the shapes beside, one block of columns a record."""
     sample = state.sample
     parts = []
@@ -294,14 +294,14 @@ def beside_columns(state: State, beside: Beside, values: Values) -> FloatArray:
     return np.hstack(parts)
 
 
-def beside_count(state: State, beside: Beside, values: Values) -> int:
+def beside_count(state: ModelState, beside: Beside, values: Values) -> int:
     """Give the number of amplitudes of a signal beside, in all records together."""
     each: int = beside.columns(state.records[0], values, beside.order).shape[1]
     return each * len(state.records)
 
 
 def beside_slope(
-    state: State, beside: Beside, values: Values, key: str, amplitudes: FloatArray
+    state: ModelState, beside: Beside, values: Values, key: str, amplitudes: FloatArray
 ) -> FloatArray:
     """How the output changes with a number of the shapes beside."""
     step = SMALL * max(abs(values[key]), SMALL)

@@ -8,12 +8,12 @@ import numpy as np
 
 from hystbench.gap.fitting.refit import score_of
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.residual import rms
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
-def step_error(state: State) -> float | None:
+def step_error(state: ModelState) -> float | None:
     """Measure what the plain simulation misses by its steps, RMS over scored samples.
 
     The state's own residual is that of a simulation in short steps. None where the
@@ -21,7 +21,7 @@ def step_error(state: State) -> float | None:
     """
     if not all(block.seen for block in state.chain):
         return None
-    plain = state.sample.take(Scene(state.chain, state.records, state.hold).output)
+    plain = state.sample.take(Simulation(state.chain, state.records, state.hold).output)
     return rms(plain - (state.measured - state.residual))
 
 
@@ -33,12 +33,12 @@ def floor_with_steps(noise_rms: float, error: float | None) -> float:
     return noise_rms if error is None else float(np.hypot(noise_rms, error))
 
 
-def above_floor(state: State, score: Score) -> float:
+def above_floor(state: ModelState, score: Score) -> float:
     """Tell how much could be gained in the score if all went that is no noise or step.
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     score : Score
         Its floor is that of the noise.
     """

@@ -11,7 +11,7 @@ from scipy.special import ndtri, stdtrit
 
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.sample import Sample
 from hystbench.record import FloatArray
 
@@ -31,7 +31,7 @@ FEW = 4
 """Records that are needed to tell how much they differ."""
 
 
-def standard_errors(state: State, score: Score) -> FloatArray:
+def standard_errors(state: ModelState, score: Score) -> FloatArray:
     """Estimate the standard error of each free number of a model.
 
     Weighted least squares with a covariance that is robust to correlation inside
@@ -41,7 +41,7 @@ def standard_errors(state: State, score: Score) -> FloatArray:
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     score : Score
         Gives the records' weights and the directions.
 
@@ -75,7 +75,7 @@ def standard_errors(state: State, score: Score) -> FloatArray:
     return _errors(columns, residual, usable, state, score.floor)[: len(state.free)]
 
 
-def error_of_size(state: State, floor: float, number: int) -> float:
+def error_of_size(state: ModelState, floor: float, number: int) -> float:
     """Estimate the standard error of an added effect's size, as a share of it.
 
     Of all its numbers together: they may stand in for each other, and none of them be
@@ -87,7 +87,7 @@ def error_of_size(state: State, floor: float, number: int) -> float:
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     floor : float
         Mean square of what no model explains, in squared output units.
     number : int
@@ -108,7 +108,7 @@ def error_of_size(state: State, floor: float, number: int) -> float:
     return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
 
 
-def size_error(state: State, floor_rms: float, number: int) -> float | None:
+def size_error(state: ModelState, floor_rms: float, number: int) -> float | None:
     """Give the same of an effect whose size can be told, else None.
 
     Of a signal beside the chain its own numbers tell; of an effect that others stand
@@ -120,7 +120,7 @@ def size_error(state: State, floor_rms: float, number: int) -> float | None:
     return error if np.isfinite(error) else None
 
 
-def _cleaned(state: State, columns: FloatArray) -> FloatArray:
+def _cleaned(state: ModelState, columns: FloatArray) -> FloatArray:
     """Give the residual without what is solved for beside the free numbers."""
     beta = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
     beta[: len(state.free)] = 0.0
@@ -142,7 +142,7 @@ def _errors(
     columns: FloatArray,
     residual: FloatArray,
     usable: NDArray[np.bool_],
-    state: State,
+    state: ModelState,
     floor: float,
     uncounted: int = 0,
 ) -> FloatArray:
@@ -164,7 +164,7 @@ class Pieces(NamedTuple):
 
 
 def by_record(
-    columns: FloatArray, residual: FloatArray, state: State, floor: float
+    columns: FloatArray, residual: FloatArray, state: ModelState, floor: float
 ) -> Pieces:
     """Give the pieces of least squares in which every record weighs by its residual."""
     normals, pushes = [], []
@@ -215,7 +215,7 @@ def between_records(pieces: Pieces, uncounted: int = 0) -> FloatArray:
     return spread * float(wider) ** 2
 
 
-def on_more_samples(state: State) -> State:
+def on_more_samples(state: ModelState) -> ModelState:
     """Give a model with more of each record's samples scored."""
     sample = Sample.of(state.records, SAMPLES)
     return replace(state, sample=sample, correction=None).settled()

@@ -10,14 +10,14 @@ import numpy as np
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside, Values
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import SMALL, State, beside_count, beside_slope
+from hystbench.gap.fitting.state import SMALL, ModelState, beside_count, beside_slope
 from hystbench.gap.fitting.uncertainty import between_stretches, by_record
 from hystbench.record import FloatArray
 
 Errors = dict[str, float | list[float] | None]
 
 
-def beside_errors(state: State, score: Score) -> list[Errors]:
+def beside_errors(state: ModelState, score: Score) -> list[Errors]:
     """Estimate the standard errors of the signals beside a chain.
 
     The covariance of all amplitudes, of what was searched (a frequency) and of the
@@ -27,7 +27,7 @@ def beside_errors(state: State, score: Score) -> list[Errors]:
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     score : Score
         Gives the noise floor.
 
@@ -66,7 +66,7 @@ def beside_errors(state: State, score: Score) -> list[Errors]:
 
 
 def _covariance(
-    columns: FloatArray, residual: FloatArray, state: State, floor: float
+    columns: FloatArray, residual: FloatArray, state: ModelState, floor: float
 ) -> FloatArray:
     """Covariance of weighted least squares, robust inside stretches of a record."""
     scale = np.sqrt(np.mean(columns**2, axis=0))
@@ -76,7 +76,7 @@ def _covariance(
 
 
 def _told(
-    state: State,
+    state: ModelState,
     beside: Beside,
     values: Values,
     amplitudes: FloatArray,

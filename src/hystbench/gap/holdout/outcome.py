@@ -9,7 +9,7 @@ from typing import Any
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.start import run_base
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.shortfall import shortfall
 from hystbench.gap.holdout.show import as_recorded, nuisance_of, show
 from hystbench.gap.holdout.shrink import (
@@ -34,7 +34,7 @@ from hystbench.record import FloatArray, Record
 
 @dataclass(frozen=True)
 class Outcome:
-    """A finding after the hold-out records were read.
+    """A decision after the hold-out records were read.
 
     Parameters
     ----------
@@ -54,27 +54,27 @@ class Outcome:
 def outcome(
     base: Model,
     decided: Mapping[str, Any],
-    state: State,
+    state: ModelState,
     floor: Floor,
     box: BlackBox,
     records: tuple[Record, ...],
-    steps: Sequence[Rung],
+    rungs: Sequence[Rung],
     own: OwnValues = NONE,
     warnings: Sequence[str] = (),
 ) -> Outcome:
-    """Show a finding on the hold-out records; take back what is worse there.
+    """Show a decision on the hold-out records; take back what is worse there.
 
     Parameters
     ----------
     base : Model
     decided : mapping
         What gap.json holds, but for what the hold-out records show.
-    state, floor, box, records, steps, own
+    state, floor, box, records, rungs, own
         As for :func:`show`.
     warnings : sequence of str
         What of the dataset is hardly meant.
     """
-    shown = show(base, state, floor, box, records, steps, own)
+    shown = show(base, state, floor, box, records, rungs, own)
     content = {
         **decided,
         "withdrawn": None,
@@ -85,7 +85,7 @@ def outcome(
     taken = withdrawal(content)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
-        alone = show(base, steps[0].state, floor, box, records, steps[:1], own)
+        alone = show(base, rungs[0].state, floor, box, records, rungs[:1], own)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **kept}, taken)
         model = base.with_hold(state.hold)
@@ -101,7 +101,7 @@ def as_asked(
     vocabulary: Vocabulary,
     built_in: BuiltIn | None,
     evidence: Evidence,
-    state: State,
+    state: ModelState,
     floor: Floor,
     own: OwnValues,
 ) -> Outcome:

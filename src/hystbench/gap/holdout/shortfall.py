@@ -9,9 +9,9 @@ from typing import Any
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 
-MATTERS = 0.15
+WORTH_A_WORD = 0.15
 """Share of the gap's power that is gone on fit records alone, to be worth a word."""
-NEW_MATTERS = 0.05
+WORTH_A_REASON = 0.05
 """Share that what is new in every record takes, to be named as a reason."""
 
 
@@ -43,7 +43,7 @@ def _less(
 ) -> str:
     """Say by how much less is gone than was promised, and why."""
     names = [item["name"] for item in content["effects"]]
-    if not names or promised is None or kept is None or promised - kept < MATTERS:
+    if not names or promised is None or kept is None or promised - kept < WORTH_A_WORD:
         return ""
     sentence = (
         f"On the fit records {100 * promised:.0f} % of the gap's power above the noise "
@@ -90,7 +90,7 @@ def _runs_away(content: Mapping[str, Any]) -> list[str]:
 def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:
     share = content["fit"]["new_in_every_record"]
     beside = [name for name in names if _is_beside(effects().get(name))]
-    if share < NEW_MATTERS or not beside:
+    if share < WORTH_A_REASON or not beside:
         return []
     return [
         f"{100 * share:.0f} % of it was taken by {' and '.join(beside)}, which is new "

@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.start import run_base
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.black_box import black_box_mapping
 from hystbench.gap.holdout.runs_away import RunsAway, bounded, reach
 from hystbench.gap.holdout.shrink import (
@@ -30,7 +30,7 @@ from hystbench.gap.records.nuisance import (
     degree_that_carries_on,
     path_and_mains,
 )
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
 
@@ -53,11 +53,11 @@ class Shown:
 
 def show(
     base: Model,
-    state: State,
+    state: ModelState,
     floor: Floor,
     box: BlackBox,
     records: tuple[Record, ...],
-    steps: Sequence[Rung],
+    rungs: Sequence[Rung],
     own: OwnValues = NONE,
 ) -> Shown:
     """Compare base and model on hold-out records.
@@ -65,13 +65,13 @@ def show(
     Parameters
     ----------
     base : Model
-    state : State
+    state : ModelState
         The model with all effects that were added.
     floor : Floor
     box : BlackBox
         Fitted to what the base leaves on the fit records.
     records : tuple of Record
-    steps : sequence of Rung
+    rungs : sequence of Rung
         Models on the way from the base to this one.
     own : OwnValues
         What fit records have of their own: a hold-out record may have the same.
@@ -84,7 +84,7 @@ def show(
     ------
     InputError
         If the base's output is not finite on a record. Where a model's is not, the
-        finding stays: the record is told, and counts as nothing closed.
+        decision stays: the record is told, and counts as nothing closed.
     """
     nuisance = nuisance_of(state, own)
     plain = run_base(base, records, state.hold)
@@ -104,7 +104,7 @@ def show(
                 floor,
             ),
         )
-        for rung in steps
+        for rung in rungs
     ]
     content = {
         "gap": mapping(found),
@@ -129,7 +129,7 @@ def _after(record: Record, item: RecordShrink) -> FloatArray:
     return record.y - item.residual_after
 
 
-def nuisance_of(state: State, own: OwnValues) -> Nuisance | None:
+def nuisance_of(state: ModelState, own: OwnValues) -> Nuisance | None:
     """Give regressors of what is new in every record, of the device or its own."""
     nuisance = what_is_new(state)
     if own.kinds and nuisance is None:
@@ -152,7 +152,7 @@ def as_recorded(
     ]
 
 
-def what_is_new(state: State) -> Nuisance | None:
+def what_is_new(state: ModelState) -> Nuisance | None:
     """Give regressors of what is new in every record, if an effect says so."""
     if not state.beside:
         return None
@@ -164,26 +164,26 @@ def what_is_new(state: State) -> Nuisance | None:
     ]
     if all("frequency_hz" in values for _, values in state.beside):
         return path_and_mains(None, tones)
-    outputs = Scene(state.chain, state.records, state.hold).output
+    outputs = Simulation(state.chain, state.records, state.hold).output
     degree = degree_that_carries_on(state.records, outputs, tones)
     return path_and_mains(degree, tones)
 
 
 def _run(
-    name: str, state: State, records: tuple[Record, ...], usual: float
+    name: str, state: ModelState, records: tuple[Record, ...], usual: float
 ) -> tuple[list[FloatArray | None], list[RunsAway]]:
     outputs: list[FloatArray] = []
     refused: dict[str, str] = {}
     for record in records:
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                outputs += Scene(state.chain, (record,), state.hold).output
+                outputs += Simulation(state.chain, (record,), state.hold).output
         except InputError as error:  # a simulator may not take what an effect sends it
             refused[record.name] = str(error)
             outputs.append(np.full(len(record), np.nan))
     return bounded(name, records, outputs, usual, refused)
 
 
-def _name(base: Model, state: State) -> str:
+def _name(base: Model, state: ModelState) -> str:
     effects = " and ".join(item.effect for item in state.added)
     return f"{base.name} with {effects}" if effects else base.name

@@ -1,4 +1,4 @@
-"""What hold-out records do to a finding: they lead its reason, or take names back.
+"""What hold-out records do to a decision: they lead its reason, or take names back.
 
 They choose nothing. A model that is worse on them than the base goes as a whole: to
 keep those of its effects that do better there would be to choose by hold-out records.

@@ -12,7 +12,7 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -38,7 +38,7 @@ class Inside:
     Parameters
     ----------
     base : Model
-    start : State
+    start : ModelState
         The same on the fit records.
     named : Named
     sentence : str
@@ -46,14 +46,14 @@ class Inside:
     """
 
     base: Model
-    start: State
+    start: ModelState
     named: Named
     sentence: str
 
 
 def named_inside(
     base: Model,
-    start: State,
+    start: ModelState,
     floor_rms: float,
     quantities: Quantities,
     identified: bool,
@@ -67,7 +67,7 @@ def named_inside(
     Parameters
     ----------
     base : Model
-    start : State
+    start : ModelState
         The same on the fit records.
     floor_rms : float
     quantities : Quantities
@@ -181,7 +181,9 @@ def chosen(found: Sequence[Hypothesis], floor: float) -> Hypothesis:
     return min(tied, key=lambda item: (item.fitted.state.freedom, item.score))
 
 
-def _rounds(start: State, best: Hypothesis, found: Sequence[Hypothesis]) -> list[Round]:
+def _rounds(
+    start: ModelState, best: Hypothesis, found: Sequence[Hypothesis]
+) -> list[Round]:
     """Write how the effects were found as rounds: each beside those before it.
 
     They come in the order of :func:`way_to`.

@@ -1,4 +1,4 @@
-"""What a finding tells of the effects and their numbers, as gap.json holds it."""
+"""What a decision tells of the effects and their numbers, as gap.json holds it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hystbench.blocks.calls import USED_UP
 from hystbench.blocks.external import External
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.fitting.parameters import parameters_of
-from hystbench.gap.fitting.state import Added, State
+from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty_beside import Errors
 from hystbench.gap.judging.verdict import Left, confidence, error_of
 from hystbench.gap.naming.name import Named
@@ -22,7 +22,7 @@ from hystbench.record import FloatArray, Record
 
 def effect_mapping(
     item: Added,
-    state: State,
+    state: ModelState,
     errors: FloatArray,
     of_beside: Sequence[Errors],
     ranking: Sequence[Candidate],
@@ -35,7 +35,7 @@ def effect_mapping(
     Parameters
     ----------
     item : Added
-    state : State
+    state : ModelState
     errors : ndarray, shape (free numbers,)
     of_beside : sequence of dict
         Standard errors of the signals beside the chain.

@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hystbench.blocks.linear import low_pass
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.operators import play
 from hystbench.record import FloatArray, Record
 
@@ -39,14 +39,14 @@ Columns = list[FloatArray]
 """Of one record, shape (n,) each."""
 
 
-def generic_groups(base: State, state: State) -> dict[str, FloatArray]:
+def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]:
     """Give the groups of columns, each on the scored samples.
 
     Parameters
     ----------
-    base : State
+    base : ModelState
         The model without effects.
-    state : State
+    state : ModelState
         With the named effects.
 
     Returns
@@ -55,7 +55,7 @@ def generic_groups(base: State, state: State) -> dict[str, FloatArray]:
         ``strength``, ``gain``, ``path``, ``slow power``, ``dynamics``, ``rate``,
         ``statics``, ``memory``; no ``strength`` where nothing was added to the chain.
     """
-    before, after = base.scene.output, state.scene.output
+    before, after = base.simulation.output, state.simulation.output
     increments = [b - a for a, b in zip(before, after, strict=True)]
     over_time = _each_record(state, lambda record: _cosines(record, SLOW_COSINES))
     groups = {}
@@ -85,12 +85,12 @@ def generic_groups(base: State, state: State) -> dict[str, FloatArray]:
     return groups
 
 
-def halves(state: State, signals: FloatArray) -> FloatArray:
+def halves(state: ModelState, signals: FloatArray) -> FloatArray:
     """Give signals their two halves of every record as columns of their own.
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     signals : ndarray, shape (scored samples, k)
 
     Returns
@@ -107,7 +107,7 @@ def halves(state: State, signals: FloatArray) -> FloatArray:
     return np.hstack(columns)
 
 
-def _each_record(state: State, make: Callable[[Record], FloatArray]) -> FloatArray:
+def _each_record(state: ModelState, make: Callable[[Record], FloatArray]) -> FloatArray:
     """Give every record columns of its own, zero in the others."""
     made = []
     for record, rows, positions in zip(

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import Products
 from hystbench.gap.judging.known_signals import PATH, generic_groups, halves
 from hystbench.gap.simulation.reshape import orthonormal, products
@@ -135,7 +135,7 @@ NOTHING = Unnamed(0.0)
 """Where everything is owned."""
 
 
-def what_is_unnamed(base: State, state: State, floor_rms: float) -> Unnamed:
+def what_is_unnamed(base: ModelState, state: ModelState, floor_rms: float) -> Unnamed:
     """Measure what the effects of a model cannot own of what they leave.
 
     Three variances of noise are found by evidence (:mod:`grouped_evidence`): ``s0``
@@ -146,7 +146,7 @@ def what_is_unnamed(base: State, state: State, floor_rms: float) -> Unnamed:
 
     Parameters
     ----------
-    base, state : State
+    base, state : ModelState
         Without and with the effects.
     floor_rms : float
         RMS of the noise. A gap of less power than the noise counts as one of as much.
@@ -185,7 +185,7 @@ def what_is_unnamed(base: State, state: State, floor_rms: float) -> Unnamed:
     )
 
 
-def owned(state: State) -> dict[str, FloatArray]:
+def owned(state: ModelState) -> dict[str, FloatArray]:
     """Give the columns that the named effects and the base may own, by group.
 
     Of the base a wrong shape of its hysteresis; of the effects other numbers and forms;
@@ -195,7 +195,7 @@ def owned(state: State) -> dict[str, FloatArray]:
     simulated = state.measured - state.residual
     return {
         "shape": orthonormal(state.reshapings),
-        "mixed shape": orthonormal(products(state.scene, state.sample)),
+        "mixed shape": orthonormal(products(state.simulation, state.sample)),
         "numbers": state.tangents,
         "forms": state.other_forms,
         "constant and gain": np.column_stack([np.ones(rows), simulated]),
@@ -203,14 +203,14 @@ def owned(state: State) -> dict[str, FloatArray]:
     }
 
 
-def _numbers(state: State, increment: FloatArray) -> FloatArray:
+def _numbers(state: ModelState, increment: FloatArray) -> FloatArray:
     """Give what the effects add, and how it changes with each of their numbers."""
     own = {k for item in state.added for k in item.blocks}
     at = [k for k, free in enumerate(state.free) if free.block in own]
     return np.column_stack([increment, state.tangents[:, at]])
 
 
-def _factors(state: State, increment: FloatArray) -> tuple[float, ...]:
+def _factors(state: ModelState, increment: FloatArray) -> tuple[float, ...]:
     """Give the strength of what the effects add in each record, by least squares."""
     found = []
     for part in state.sample.slices:

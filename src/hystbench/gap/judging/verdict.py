@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.unnamed import LOOSE, NOTHING, Unnamed
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.rounds import Candidate
@@ -136,7 +136,7 @@ class Left:
         )
 
 
-def what_is_left(base: State, state: State, floor_rms: float) -> Left:
+def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Left:
     """Measure what the base and what a model leaves, each beside its directions."""
     floor = floor_rms**2
     before, after = (_beyond(x, make_score(x, floor_rms)) for x in (base, state))
@@ -355,7 +355,7 @@ def _box_words(explained: float | None, what: str) -> str:
     )
 
 
-def _beyond(model: State, score: Score) -> float:
+def _beyond(model: ModelState, score: Score) -> float:
     residual, beside = model.residual, model.beside_columns
     rest, _ = score.split(residual)
     if beside.shape[1]:

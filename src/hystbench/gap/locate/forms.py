@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import fft, special
 
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
@@ -25,7 +25,7 @@ DEPENDENT = 1e-5
 
 
 @dataclass(frozen=True)
-class Form:
+class FittedForm:
     """A fitted form: some function of an axis, with its number of free parameters.
 
     Parameters
@@ -59,7 +59,7 @@ class Form:
         return bool(self.added)
 
 
-def saved(samples: Samples, explained: float, freedom: float) -> float:
+def saved(samples: ViewSamples, explained: float, freedom: float) -> float:
     """Give the description length that a form saves, in nats.
 
     ``facts / 2 * log(power before / power after) - freedom / 2 * log(facts)``: the
@@ -76,17 +76,17 @@ def saved(samples: Samples, explained: float, freedom: float) -> float:
 
 
 def fit_form(
-    samples: Samples,
+    samples: ViewSamples,
     words: str,
     columns: Sequence[FloatArray],
     searched: float = 0,
     by_record: bool = False,
-) -> Form:
+) -> FittedForm:
     """Fit columns to the residual by least squares.
 
     Parameters
     ----------
-    samples : Samples
+    samples : ViewSamples
     words : str
     columns : sequence of ndarray, shape (n,)
     searched : float
@@ -107,15 +107,17 @@ def fit_form(
         freedom += int(rank)
     explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
     gained = saved(samples, explained, freedom)
-    return Form(words, fitted, explained, freedom, gained, found / scale)
+    return FittedForm(words, fitted, explained, freedom, gained, found / scale)
 
 
-def best(forms: Sequence[Form]) -> Form:
+def best(forms: Sequence[FittedForm]) -> FittedForm:
     """Give the form that saves most."""
     return max(forms, key=lambda form: form.saved)
 
 
-def named_or(samples: Samples, view: ViewKind, forms: Sequence[Form]) -> Form:
+def named_or(
+    samples: ViewSamples, view: ViewKind, forms: Sequence[FittedForm]
+) -> FittedForm:
     """Give what named effects add in a view; without any the best form of its own."""
     named = [
         replace(
@@ -129,7 +131,9 @@ def named_or(samples: Samples, view: ViewKind, forms: Sequence[Form]) -> Form:
     return best(named or forms)
 
 
-def p_value_of(samples: Samples, form: Form, tests: Sequence[Form] = ()) -> float:
+def p_value_of(
+    samples: ViewSamples, form: FittedForm, tests: Sequence[FittedForm] = ()
+) -> float:
     """Give the F test's p-value: of what is named, or the least of some forms.
 
     The tests have no searched parameters; the least of several is multiplied by their
@@ -139,7 +143,7 @@ def p_value_of(samples: Samples, form: Form, tests: Sequence[Form] = ()) -> floa
     return min(1.0, len(used) * min(_fitted_p_value(samples, one) for one in used))
 
 
-def _fitted_p_value(samples: Samples, form: Form) -> float:
+def _fitted_p_value(samples: ViewSamples, form: FittedForm) -> float:
     rest = samples.residual - form.fitted
     count = effective_count(samples, rest, form.fitted)
     share = form.explained / max(samples.power, 1e-300)
@@ -160,7 +164,9 @@ def f_test(share: float, freedom: float, count: float) -> float:
     return float(special.betainc(left / 2, freedom / 2, np.clip(1.0 - share, 0.0, 1.0)))
 
 
-def effective_count(samples: Samples, rest: FloatArray, fitted: FloatArray) -> float:
+def effective_count(
+    samples: ViewSamples, rest: FloatArray, fitted: FloatArray
+) -> float:
     """Count the independent samples among autocorrelated ones.
 
     A fit picks up the rest where both have power. With the spectra S of the rest,

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.records.residual import Compared, whole_periods
 from hystbench.record import FloatArray
 
@@ -65,7 +65,7 @@ class Spectra:
         return np.asarray(np.clip(np.abs(self.matrix[a, b]) ** 2 / both, 0.0, 1.0))
 
 
-def take_spectra(samples: Samples) -> Spectra:
+def take_spectra(samples: ViewSamples) -> Spectra:
     """Average the spectra of each record by Welch's method, and add the records."""
     lines = [_lines(item) for item in samples.compared]
     frequencies = np.concatenate([frequency for frequency, _ in lines])

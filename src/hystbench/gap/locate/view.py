@@ -10,7 +10,7 @@ from hystbench.gap.view_kinds import ViewKind
 
 SIGNIFICANT = 0.01
 """Of a p-value, for a part of a view to be told as there."""
-MATTERS = 0.01
+LEAST_SHARE = 0.01
 """Of the gap's power, for a part of a view to be told at all."""
 
 

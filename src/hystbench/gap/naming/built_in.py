@@ -22,7 +22,7 @@ from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.search import Trial
 from hystbench.gap.fitting.start import start_state
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
 from hystbench.gap.naming import cached
 from hystbench.gap.naming.rank import make_score
@@ -125,7 +125,7 @@ def put_in(
     return replace(model, name=title, free=free), BuiltIn(base, told)
 
 
-def _with(state: State, score: Score, name: str) -> State:
+def _with(state: ModelState, score: Score, name: str) -> ModelState:
     """Add an effect where and as it scores best, whether it pays or not."""
     tried, declined = cached.tried(effects()[name], state, score)
     blocks = [(attempt, trial) for attempt, trial in tried if not trial.variant.beside]
@@ -145,7 +145,7 @@ def _with(state: State, score: Score, name: str) -> State:
     raise InputError(f"--with {name}: {refused}")
 
 
-def _added(state: State, trial: Trial, score: Score) -> State:
+def _added(state: ModelState, trial: Trial, score: Score) -> ModelState:
     """Add an effect as a trial found it, refitted where the block accepts that."""
     as_found = with_effect(state, trial.variant, trial.values)
     try:

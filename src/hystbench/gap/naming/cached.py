@@ -15,16 +15,16 @@ from hystbench.gap.fitting.serialize import (
     state_again,
     state_with_correction,
 )
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 
 Tried = tuple[Attempt, Trial]
 """A variant beside a model, and how it does over its grid."""
 
 
-def tried(effect: Effect, state: State, score: Score) -> tuple[list[Tried], str]:
+def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried], str]:
     """Score every variant of an effect over its grid; or say why it declines."""
     try:
-        variants = list(effect.variants(state.scene))
+        variants = list(effect.variants(state.simulation))
     except Declined as reason:
         return [], str(reason)
     runnable = [
@@ -71,7 +71,7 @@ def fine(attempt: Attempt, trial: Trial) -> Trial:
     )
 
 
-def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
+def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
     """Add an effect as a trial found it and refit everything together.
 
     Raises
@@ -90,7 +90,7 @@ def added(state: State, trial: Trial, score: Score) -> tuple[State, float]:
     )
 
 
-def finished(state: State, score: Score) -> tuple[State, float]:
+def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     """Simulate a model exactly and refit it to the end."""
     return remembered_of(
         state,
@@ -101,16 +101,16 @@ def finished(state: State, score: Score) -> tuple[State, float]:
     )
 
 
-def _written(result: tuple[State, float]) -> list[Any]:
+def _written(result: tuple[ModelState, float]) -> list[Any]:
     return [state_with_correction(result[0]), result[1]]
 
 
-def _read(kept: list[Any], like: State) -> tuple[State, float]:
+def _read(kept: list[Any], like: ModelState) -> tuple[ModelState, float]:
     return state_again(kept[0], like), kept[1]
 
 
 def _tried(
-    runnable: Sequence[tuple[int, Variant]], state: State, score: Score
+    runnable: Sequence[tuple[int, Variant]], state: ModelState, score: Score
 ) -> tuple[list[Tried], str]:
     """Score variants over their grids; say why none can be, if so."""
     few, few_score = at_a_glance(state, score)
@@ -127,7 +127,7 @@ def _tried(
     return found, "" if found else refused
 
 
-def _needs_rerun(state: State, variant: Variant) -> bool:
+def _needs_rerun(state: ModelState, variant: Variant) -> bool:
     """Tell whether a variant changes what enters a block whose output is stored."""
     behind = state.chain[variant.start :]
     return variant.beside is None and not all(block.reruns for block in behind)

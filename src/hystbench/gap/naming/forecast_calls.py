@@ -8,7 +8,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Declined, Variant
 from hystbench.gap.fitting.search import GLANCE, MANY
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import FINALISTS, MOST
@@ -21,7 +21,7 @@ REFITS = 20
 """Runs over all records that the refits of a likely effect take, on folds too."""
 
 
-def calls_of_a_round(state: State) -> int:
+def calls_of_a_round(state: ModelState) -> int:
     """Estimate the calls that one round of naming needs, from its grids.
 
     What the grids ask is counted. What comes behind them depends on what is found
@@ -29,7 +29,7 @@ def calls_of_a_round(state: State) -> int:
 
     Parameters
     ----------
-    state : State
+    state : ModelState
 
     Returns
     -------
@@ -44,7 +44,7 @@ def calls_of_a_round(state: State) -> int:
     grids, before, names = 0, 0, set()
     for effect in among(state.offered).values():
         try:
-            variants = list(effect.variants(state.scene))
+            variants = list(effect.variants(state.simulation))
         except Declined:
             continue
         for item in variants:
@@ -83,12 +83,12 @@ def keep_back(evidence: Evidence) -> None:
         )
 
 
-def foretell(state: State, say: Say) -> None:
+def foretell(state: ModelState, say: Say) -> None:
     """Tell how long a search will take at most, where a simulator makes it long.
 
     Parameters
     ----------
-    state : State
+    state : ModelState
         The base on the fit records, which has been run.
     say : callable
     """
@@ -108,12 +108,12 @@ def foretell(state: State, say: Say) -> None:
     )
 
 
-def foretell_rest(state: State, rounds: int) -> None:
+def foretell_rest(state: ModelState, rounds: int) -> None:
     """Estimate anew what is still to come, by what a round has really needed.
 
     Parameters
     ----------
-    state : State
+    state : ModelState
         The model before the next round.
     rounds : int
         How many are done.

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
-from hystbench.gap.fitting.state import State
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.compare import compare
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.locate import Contribution
 from hystbench.gap.naming.name import Named
+from hystbench.gap.records.residual import Compared
 
 BASE = "base"
 RETUNED = "base re-tuned"
@@ -15,10 +21,10 @@ class Rung(NamedTuple):
     """A model on the way, and what was done to reach it."""
 
     name: str
-    state: State
+    state: ModelState
 
 
-def rungs(start: State, named: Named) -> tuple[Rung, ...]:
+def rungs(start: ModelState, named: Named) -> tuple[Rung, ...]:
     """Give the base, the base re-tuned where it is free, then effect by effect.
 
     Each rung is the model as it was fitted with the effects that it has: the last one
@@ -28,7 +34,7 @@ def rungs(start: State, named: Named) -> tuple[Rung, ...]:
 
     Parameters
     ----------
-    start : State
+    start : ModelState
         The base as it was given.
     named : Named
     """
@@ -46,3 +52,31 @@ def rungs(start: State, named: Named) -> tuple[Rung, ...]:
             last = set(names)
     # The last one was fitted once more, to the end.
     return (*found[:-1], found[-1]._replace(state=named.state if found[1:] else start))
+
+
+def contributions(
+    ladder: Sequence[Rung], simulated: Mapping[ModelState, list[Compared]]
+) -> list[Contribution]:
+    """Give what each named effect adds to the output of the rung before it.
+
+    Parameters
+    ----------
+    ladder : sequence of Rung
+    simulated : mapping of ModelState to list of Compared
+        States that were simulated before; any other is simulated here.
+    """
+    outputs = [simulated.get(rung.state) or compare(rung.state) for rung in ladder]
+    found = []
+    for (old, new), (before, after) in zip(
+        pairwise(ladder), pairwise(outputs), strict=True
+    ):
+        added = tuple(
+            b.simulated - a.simulated for a, b in zip(before, after, strict=True)
+        )
+        known = {item.effect for item in old.state.added}
+        found += [
+            Contribution(item.effect, effects()[item.effect].shows, added, item.charge)
+            for item in new.state.added
+            if item.effect not in known
+        ]
+    return found

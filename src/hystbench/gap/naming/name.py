@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.gap.fitting.refit import finished, ready
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.step_error import above_floor
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
 from hystbench.gap.naming.rank import make_score, rank
@@ -35,14 +35,14 @@ class Named:
 
     Parameters
     ----------
-    state : State
+    state : ModelState
         The model with all effects that were added.
     rounds : tuple of Round
     gone : tuple of TakenOut
         Effects that were added and went out again.
     """
 
-    state: State
+    state: ModelState
     rounds: tuple[Round, ...] = ()
     gone: tuple[TakenOut, ...] = ()
 
@@ -57,7 +57,7 @@ class Named:
         return replace(self, state=self.rounds[0].before, gone=(*self.gone, *gone))
 
 
-def name(state: State, floor_rms: float, say: Say = silent) -> Named:
+def name(state: ModelState, floor_rms: float, say: Say = silent) -> Named:
     """Add effects to a model for as long as one pays."""
     foretell(state, say)
     found = _path(state, floor_rms, say)
@@ -69,7 +69,7 @@ def name(state: State, floor_rms: float, say: Say = silent) -> Named:
         current().release()
 
 
-def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
+def settled(found: Progress, start: ModelState, floor_rms: float, say: Say) -> Named:
     """Give what a path found, or another where a wrong shape is to go first.
 
     Where a wrong shape of the hysteresis takes more of the gap away than the effect
@@ -96,7 +96,7 @@ def settled(found: Progress, start: State, floor_rms: float, say: Say) -> Named:
     return Named(state, rounds, gone)
 
 
-def _others_than_taken(state: State, rounds: Sequence[Round]) -> bool:
+def _others_than_taken(state: ModelState, rounds: Sequence[Round]) -> bool:
     """Tell whether effects gave way or went: no round has seen just these together."""
     taken = {one.ranking[0].effect for one in rounds if one.taken}
     return {item.effect for item in state.added} != taken
@@ -108,7 +108,7 @@ class Progress:
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     gap : float
         Mean square of the base's gap above the floor.
     rounds : tuple of Round
@@ -118,14 +118,14 @@ class Progress:
         Whether nothing is left that an effect could gain.
     """
 
-    state: State
+    state: ModelState
     gap: float
     rounds: tuple[Round, ...] = ()
     deferred: bool = False
     closed: bool = False
 
     @classmethod
-    def begun(cls, state: State, floor_rms: float) -> Progress:
+    def begun(cls, state: ModelState, floor_rms: float) -> Progress:
         """Start from the base, re-tuned where it has free numbers."""
         floor = floor_rms**2
         if state.free:
@@ -140,7 +140,7 @@ class Progress:
 
 
 def _path(
-    state: State, floor_rms: float, say: Say, shape_first: bool = False
+    state: ModelState, floor_rms: float, say: Say, shape_first: bool = False
 ) -> Progress:
     """Add effects one by one."""
     progress = Progress.begun(state, floor_rms)
@@ -197,13 +197,13 @@ def advance(
     return Progress(state, progress.gap, (*progress.rounds, one), deferred)
 
 
-def _is_closed(state: State, score: Score) -> bool:
+def _is_closed(state: ModelState, score: Score) -> bool:
     """Tell whether the effects that a model has leave nothing to gain."""
     return bool(state.added) and above_floor(state, score) < FURTHER
 
 
 def _shape_takes_more(
-    ranking: tuple[Candidate, ...], before: State, floor: float
+    ranking: tuple[Candidate, ...], before: ModelState, floor: float
 ) -> bool:
     """Tell whether a wrong shape pays and takes twice as much as the best effect."""
     shape = next((x for x in ranking if x.effect == SHAPE and x.state), None)
@@ -217,7 +217,7 @@ def _shape_takes_more(
     return first.state.share(before, floor, gap) < most / 2
 
 
-def _pays(item: Candidate, state: State, floor: float, gap: float) -> bool:
+def _pays(item: Candidate, state: ModelState, floor: float, gap: float) -> bool:
     """Tell whether an effect is to be added.
 
     The first has only to pay. A further one must matter as well, or be beyond doubt:

@@ -17,9 +17,9 @@ from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.refit import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.search import Trial
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming import cached
-from hystbench.gap.naming.rounds import Candidate, Tested, in_order
+from hystbench.gap.naming.rounds import Candidate, TriedVariant, in_order
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.thresholds import (
     CERTAIN,
@@ -34,12 +34,12 @@ from hystbench.gap.thresholds import (
 )
 
 
-def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
+def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
     """Give the score for a model: what could be wrong in its shape is spanned anew.
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     floor_rms : float
     forms : bool
         Whether the added effects may be of another form too; not when their own
@@ -50,7 +50,7 @@ def make_score(state: State, floor_rms: float, forms: bool = True) -> Score:
 
 
 def rank(
-    state: State,
+    state: ModelState,
     score: Score,
     known: Sequence[Effect] | None = None,
     folds: bool = True,
@@ -59,7 +59,7 @@ def rank(
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     score : Score
     known : sequence of Effect, optional
         All that are offered by default.
@@ -96,7 +96,7 @@ def rank(
     ]
     refined.sort(key=lambda trial: trial.score)
     of_effect: dict[str, Trial] = {}
-    tested: dict[str, list[Tested]] = {}
+    tested: dict[str, list[TriedVariant]] = {}
     for trial in refined:
         of_effect.setdefault(trial.variant.effect, trial)
         tested.setdefault(trial.variant.effect, []).append(_tested(trial))
@@ -141,7 +141,7 @@ def rank(
 
 
 def beyond_an_offset(
-    candidates: Sequence[Candidate], before: State, score: Score
+    candidates: Sequence[Candidate], before: ModelState, score: Score
 ) -> list[Candidate]:
     """Charge what a law has beside an offset of the output as a further effect.
 
@@ -167,10 +167,10 @@ def beyond_an_offset(
     return in_order(charged(item) for item in candidates)
 
 
-def _tested(trial: Trial) -> Tested:
+def _tested(trial: Trial) -> TriedVariant:
     variant = trial.variant
     position = variant.start + variant.positions[0] if variant.positions else None
-    return Tested(variant.place, variant.form, position, trial.score)
+    return TriedVariant(variant.place, variant.form, position, trial.score)
 
 
 def _candidate(trial: Trial, now: float) -> Candidate:
@@ -179,7 +179,7 @@ def _candidate(trial: Trial, now: float) -> Candidate:
     return Candidate(variant.effect, variant.place, variant.form, trial.score, gain)
 
 
-def _judged(trial: Trial, state: State, score: Score, now: float) -> Candidate:
+def _judged(trial: Trial, state: ModelState, score: Score, now: float) -> Candidate:
     """Add an effect that gains anything, refit all together, and say what is wrong."""
     variant = trial.variant
     item = _candidate(trial, now)
@@ -202,7 +202,7 @@ def _judged(trial: Trial, state: State, score: Score, now: float) -> Candidate:
     return replace(item, score=value, gain=now - value, state=after)
 
 
-def _not_cut_short(item: Candidate, state: State) -> Candidate:
+def _not_cut_short(item: Candidate, state: ModelState) -> Candidate:
     """Decline what needs calls of a simulator, once a call was not allowed.
 
     Its refit or its folds may have ended before they were done. What lies behind the
@@ -228,7 +228,7 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     return replace(item, state=after, score=value, gain=now - value)
 
 
-def on_folds(item: Candidate, before: State, score: Score) -> Candidate:
+def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
     """Judge a finalist that pays on records that did not fit it.
 
     What it gained on all records, charged for its freedom, it can only lose: a fold

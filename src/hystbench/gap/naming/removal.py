@@ -10,7 +10,7 @@ import numpy as np
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.refit import finished, score_of
-from hystbench.gap.fitting.state import Added, State
+from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty import error_of_size, on_more_samples
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say
@@ -31,17 +31,17 @@ class Without(NamedTuple):
     """A model without one of its effects."""
 
     gone: TakenOut
-    state: State
+    state: ModelState
 
 
 def without_what_goes(
-    state: State, floor_rms: float, gap: float, say: Say
-) -> tuple[State, tuple[TakenOut, ...]]:
+    state: ModelState, floor_rms: float, gap: float, say: Say
+) -> tuple[ModelState, tuple[TakenOut, ...]]:
     """Take out what is needless, then what is not known, while two effects are there.
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     floor_rms : float
     gap : float
         Mean square of the base's gap above the floor.
@@ -49,7 +49,7 @@ def without_what_goes(
 
     Returns
     -------
-    state : State
+    state : ModelState
     gone : tuple of TakenOut
         In the order in which they went.
     """
@@ -61,7 +61,7 @@ def without_what_goes(
     return state, gone
 
 
-def needless(state: State, floor_rms: float, gap: float) -> Without | None:
+def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
     """Find an effect that gains too little beside those that were added later.
 
     An effect is judged by what can be reshaped without it: other forms of itself would
@@ -91,7 +91,7 @@ def is_most_of_it(effect: str, gain: float, share: float) -> bool:
     return effect == SHAPE and gain >= PAYS and share > MOST_OF_IT
 
 
-def unknown(state: State, floor_rms: float) -> Without | None:
+def unknown(state: ModelState, floor_rms: float) -> Without | None:
     """Find a further effect whose size the records do not know.
 
     Where its standard error is more than half of it, the records do not agree on the
@@ -120,6 +120,6 @@ def unknown(state: State, floor_rms: float) -> Without | None:
     return None
 
 
-def _is_judged(item: Added, state: State) -> bool:
+def _is_judged(item: Added, state: ModelState) -> bool:
     blocks = [state.chain[k] for k in item.blocks]
     return bool(blocks) and not any(block.hysteretic for block in blocks)

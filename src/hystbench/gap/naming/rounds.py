@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.thresholds import SHAPE, TIE
 
 
-class Tested(NamedTuple):
+class TriedVariant(NamedTuple):
     """A variant of an effect: where and how it was tried, and its score."""
 
     place: str
@@ -34,13 +34,13 @@ class Candidate:
     gain : float
         By how much it lowers the score: of a finalist that pays the less of what all
         records tell and what records held back do.
-    state : State, optional
+    state : ModelState, optional
         With the effect, jointly refitted; finalists have it.
     declined : str
         Why it could not be judged, if so.
     held_back : float, optional
         What a finalist that pays gains on records held back.
-    variants : tuple of Tested
+    variants : tuple of TriedVariant
         Every place and form of it that could be scored, best first.
     """
 
@@ -49,14 +49,14 @@ class Candidate:
     form: str = ""
     score: float = np.inf
     gain: float = 0.0
-    state: State | None = None
+    state: ModelState | None = None
     declined: str = ""
     held_back: float | None = None
-    variants: tuple[Tested, ...] = ()
+    variants: tuple[TriedVariant, ...] = ()
 
 
 @dataclass(frozen=True)
-class Look:
+class SecondLook:
     """A second look: an effect and its rivals in its place, now that others are there.
 
     Parameters
@@ -84,22 +84,22 @@ class Round:
 
     Parameters
     ----------
-    before : State
+    before : ModelState
     score : float
         Of the model before.
     ranking : tuple of Candidate
         Best first.
     taken : bool
         Whether the first of the ranking was added.
-    looks : tuple of Look
+    looks : tuple of SecondLook
         At the effects that were there when it was, in their order.
     """
 
-    before: State
+    before: ModelState
     score: float
     ranking: tuple[Candidate, ...]
     taken: bool
-    looks: tuple[Look, ...] = ()
+    looks: tuple[SecondLook, ...] = ()
 
 
 def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:

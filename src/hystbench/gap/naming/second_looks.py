@@ -9,20 +9,20 @@ from hystbench.gap.effects import among
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import last_to, removable, without_effect
 from hystbench.gap.fitting.refit import finished
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.rank import make_score, rank
-from hystbench.gap.naming.rounds import Candidate, Look, Round, in_order
+from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import CLOSE, PAYS, SHAPE, SWAP
 
 
 def reconsidered(
-    state: State,
+    state: ModelState,
     rounds: Sequence[Round],
     floor_rms: float,
     say: Say,
     every: bool = False,
-) -> tuple[State, tuple[Look, ...]]:
+) -> tuple[ModelState, tuple[SecondLook, ...]]:
     """Try the rivals of each effect in its place, now that others are there.
 
     The first effect was named while the others were missing: one like it may have
@@ -30,7 +30,7 @@ def reconsidered(
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     rounds : sequence of Round
         Tell which effects came near one.
     floor_rms : float
@@ -40,12 +40,12 @@ def reconsidered(
 
     Returns
     -------
-    state : State
-    looks : tuple of Look
+    state : ModelState
+    looks : tuple of SecondLook
         At each effect in turn; the last one is that at which one gave way, if any did.
     """
-    looks: list[Look] = []
-    better: tuple[int, State, tuple[Candidate, ...]] | None = None
+    looks: list[SecondLook] = []
+    better: tuple[int, ModelState, tuple[Candidate, ...]] | None = None
     for number, item in enumerate(state.added):
         if item.effect == SHAPE or not removable(state, number):
             continue
@@ -65,10 +65,10 @@ def reconsidered(
             ranking = (replace(best, held_back=held_back), *ranking[1:])
             if held_back > PAYS:
                 say(f"{item.effect} gives way to {best.effect}")
-                looks.append(Look(item.effect, have, ranking, best.effect))
+                looks.append(SecondLook(item.effect, have, ranking, best.effect))
                 return last_to(best.state, number), tuple(looks)
         if own is None:
-            looks.append(Look(item.effect, have, ranking, None))
+            looks.append(SecondLook(item.effect, have, ranking, None))
             continue
         if better is None and own.state and own.score < now - SWAP:
             anew, least = finished(own.state, score)
@@ -76,7 +76,7 @@ def reconsidered(
                 anew = last_to(anew, number)
                 better = len(looks), anew, _with(ranking, own, own.form, least, anew)
         shown = _with(ranking, own, item.form, now, as_is)
-        looks.append(Look(item.effect, have, shown, item.effect))
+        looks.append(SecondLook(item.effect, have, shown, item.effect))
     if better is not None:
         place, state, ranking = better
         looks[place] = replace(looks[place], ranking=ranking)
@@ -85,7 +85,11 @@ def reconsidered(
 
 
 def _with(
-    ranking: Sequence[Candidate], own: Candidate, form: str, score: float, state: State
+    ranking: Sequence[Candidate],
+    own: Candidate,
+    form: str,
+    score: float,
+    state: ModelState,
 ) -> tuple[Candidate, ...]:
     """Give a ranking in which an effect stands as a model has it."""
     gain = own.gain + own.score - score

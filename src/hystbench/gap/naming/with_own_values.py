@@ -13,19 +13,19 @@ from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
 from hystbench.gap.fitting.refit import ENOUGH, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
-from hystbench.gap.fitting.state import State
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming import cached
 from hystbench.gap.naming.name import Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say
-from hystbench.gap.simulation.simulation import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import ABOVE_NOISE, PAYS
 from hystbench.record import FloatArray, Record
 
 
 def named_apart(
-    start: State, floor_rms: float, named: Named, say: Say
-) -> tuple[State, Named, OwnValues]:
+    start: ModelState, floor_rms: float, named: Named, say: Say
+) -> tuple[ModelState, Named, OwnValues]:
     """Name anew beside what records have of their own, where that explains them better.
 
     Effects go first: they are laws, with few numbers, that hold for every record. What
@@ -41,7 +41,7 @@ def named_apart(
 
     Parameters
     ----------
-    start : State
+    start : ModelState
         The base on the fit records.
     floor_rms : float
     named : Named
@@ -51,7 +51,7 @@ def named_apart(
 
     Returns
     -------
-    start : State
+    start : ModelState
         The base, on records without what is their own.
     named : Named
     own : OwnValues
@@ -96,7 +96,7 @@ SHARED = {"input-delay", "calibration-error"}
 """Effects that do to all records what each may have of its own."""
 
 
-def without_shared(state: State) -> State:
+def without_shared(state: ModelState) -> ModelState:
     """Give a model without a delay, a gain or an offset that all records share.
 
     Beside one that was named it would not be seen that each record has its own.
@@ -112,7 +112,7 @@ ROUNDS = 3
 
 
 def _likely(
-    start: State, models: Sequence[State], score: Score
+    start: ModelState, models: Sequence[ModelState], score: Score
 ) -> list[tuple[float, OwnValues]]:
     """Find what records have of their own beside models, and the scores with it.
 
@@ -136,7 +136,7 @@ def _likely(
     return sorted(found, key=lambda item: item[0])
 
 
-def _own_values(state: State, start: State, floor: float) -> OwnValues:
+def _own_values(state: ModelState, start: ModelState, floor: float) -> OwnValues:
     """Find what records have of their own beside a model, or look it up."""
     kinds = kinds_of(start)
     return remembered_of(
@@ -148,17 +148,17 @@ def _own_values(state: State, start: State, floor: float) -> OwnValues:
     )
 
 
-def kinds_of(state: State) -> tuple[str, ...]:
+def kinds_of(state: ModelState) -> tuple[str, ...]:
     """Give what may be a record's own: no delay where the base cannot be run again."""
     reruns = all(block.reruns for block in state.chain)
     return KINDS if reruns else tuple(kind for kind in KINDS if kind != "delay")
 
 
-def on_records(state: State, records: tuple[Record, ...]) -> State:
+def on_records(state: ModelState, records: tuple[Record, ...]) -> ModelState:
     """Give a model on other records of the same lengths."""
     return replace(state, records=records, correction=None).settled()
 
 
-def simulated(state: State) -> Sequence[FloatArray]:
+def simulated(state: ModelState) -> Sequence[FloatArray]:
     """Give the output of a model's chain on the fit records."""
-    return Scene(state.chain, state.records, state.hold, fine=True).output
+    return Simulation(state.chain, state.records, state.hold, fine=True).output

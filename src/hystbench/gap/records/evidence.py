@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset
-from hystbench.device_kinds import Kind
+from hystbench.device_kinds import DeviceKind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap.records import folds, nuisance
@@ -56,7 +56,7 @@ class Evidence:
     simulated_column: str | None = None
     warnings: tuple[str, ...] = ()
     quantities: Quantities = NONE_KNOWN
-    device_kind: Kind | None = None
+    device_kind: DeviceKind | None = None
 
     @property
     def input(self) -> Channel:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from hystbench.blocks.base import Block
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.gap.records.sample import Sample
-from hystbench.gap.simulation.simulation import Scene, Signals
+from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
@@ -38,12 +38,12 @@ SMALLEST = 1e-3
 """Directions weaker than this share of the strongest are left out."""
 
 
-def reshapings(scene: Scene, sample: Sample) -> FloatArray:
+def reshapings(simulation: Simulation, sample: Sample) -> FloatArray:
     """Give what reshaping the hysteresis could add to the output.
 
     Parameters
     ----------
-    scene : Scene
+    simulation : Simulation
     sample : Sample
 
     Returns
@@ -51,10 +51,10 @@ def reshapings(scene: Scene, sample: Sample) -> FloatArray:
     ndarray, shape (scored samples, k)
         Without anything in the chain that holds a hysteresis, no column.
     """
-    return _behind(scene, sample, _ways)
+    return _behind(simulation, sample, _ways)
 
 
-def products(scene: Scene, sample: Sample) -> FloatArray:
+def products(simulation: Simulation, sample: Sample) -> FloatArray:
     """Give what a hysteresis could add that is no sum of curves of play operators.
 
     Products of the input and of play operators of it, two of them or the square of one
@@ -63,7 +63,7 @@ def products(scene: Scene, sample: Sample) -> FloatArray:
 
     Parameters
     ----------
-    scene : Scene
+    simulation : Simulation
     sample : Sample
 
     Returns
@@ -71,22 +71,24 @@ def products(scene: Scene, sample: Sample) -> FloatArray:
     ndarray, shape (scored samples, k)
         Without anything in the chain that holds a hysteresis, no column.
     """
-    return _behind(scene, sample, _mixed)
+    return _behind(simulation, sample, _mixed)
 
 
 def _behind(
-    scene: Scene,
+    simulation: Simulation,
     sample: Sample,
-    make: Callable[[Scene, Sample | None], list[Signals]],
+    make: Callable[[Simulation, Sample | None], list[Signals]],
 ) -> FloatArray:
     """Make signals of the hysteresis and send them through what follows it."""
-    if scene.loop is None:
+    if simulation.loop is None:
         return np.zeros((len(sample), 0))
-    behind = scene.chain[scene.behind_hysteresis :]
+    behind = simulation.chain[simulation.behind_hysteresis :]
     at = None if behind else sample  # what nothing follows is wanted there alone
-    ways = make(scene, at)
+    ways = make(simulation, at)
     if behind:
-        return np.column_stack([sample.take(_sent(scene, behind, way)) for way in ways])
+        return np.column_stack(
+            [sample.take(_sent(simulation, behind, way)) for way in ways]
+        )
     return np.column_stack([np.concatenate(way) for way in ways])
 
 
@@ -106,29 +108,29 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     return np.ascontiguousarray(np.linalg.solve(triangle, basis.T).T)
 
 
-def _ways(scene: Scene, sample: Sample | None) -> list[Signals]:
+def _ways(simulation: Simulation, sample: Sample | None) -> list[Signals]:
     """Give ways in which the output of the hysteresis could differ.
 
     Of whole records, or of scored samples.
     """
-    place = scene.loop
+    place = simulation.loop
     assert place is not None  # noqa: S101  (the caller has looked)
-    block, v = scene.chain[place], scene.before[place]
+    block, v = simulation.chain[place], simulation.before[place]
     ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
-    sources = [v] if block.seen else [v, scene.before[place + 1]]
+    sources = [v] if block.seen else [v, simulation.before[place + 1]]
     for signals in sources:
         ways += _powers(signals, sample)
     own: list[Signals] = []
     if isinstance(block, GeneralizedPrandtlIshlinskii):
-        own = [_at(x, sample) for x in _own(scene, block, v)]
+        own = [_at(x, sample) for x in _own(simulation, block, v)]
     return ways + own
 
 
-def _mixed(scene: Scene, sample: Sample | None) -> list[Signals]:
+def _mixed(simulation: Simulation, sample: Sample | None) -> list[Signals]:
     """Give products of what enters the hysteresis and of play operators of it."""
-    place = scene.loop
+    place = simulation.loop
     assert place is not None  # noqa: S101  (the caller has looked)
-    signals = scene.before[place]
+    signals = simulation.before[place]
     amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
     thresholds = np.arange(MIXED) / (MIXED + 1)  # the first is the input itself
     plays = [
@@ -174,7 +176,7 @@ def _powers(signals: Signals, sample: Sample | None) -> list[Signals]:
 
 
 def _own(
-    scene: Scene, block: GeneralizedPrandtlIshlinskii, v: Signals
+    simulation: Simulation, block: GeneralizedPrandtlIshlinskii, v: Signals
 ) -> list[Signals]:
     """Give a few groups of the block's operators, and tangents of its envelopes."""
     count = len(block.thresholds)
@@ -184,26 +186,30 @@ def _own(
         for z in v
     ]
     ways: list[Signals] = [tuple(z[:, k] for z in sums) for k in range(len(groups))]
-    now = scene.run((block,), v)
+    now = simulation.run((block,), v)
     slope = 1.0 / (max(float(np.abs(z).max()) for z in v) or 1.0)
     for k, value in enumerate(block.envelope):
         moved = list(block.envelope)
         least = 0.1 * (slope if k in SLOPES else 1.0)
         moved[k] = value + SMALL * max(abs(value), least)
-        other = scene.run((replace(block, envelope=tuple(moved)),), v)
+        other = simulation.run((replace(block, envelope=tuple(moved)),), v)
         ways.append(tuple(a - b for a, b in zip(other, now, strict=True)))
     return ways
 
 
-def _sent(scene: Scene, behind: tuple[Block, ...], signals: Signals) -> Signals:
+def _sent(
+    simulation: Simulation, behind: tuple[Block, ...], signals: Signals
+) -> Signals:
     """Send a small change of the hysteresis's output through the blocks behind it."""
     if not behind:
         return signals
-    now = scene.before[scene.behind_hysteresis]
-    size = SMALL * scene.largest(scene.behind_hysteresis)
+    now = simulation.before[simulation.behind_hysteresis]
+    size = SMALL * simulation.largest(simulation.behind_hysteresis)
     change = size / max(float(max(np.abs(s).max() for s in signals)), 1e-300)
     moved = tuple(z + change * s for z, s in zip(now, signals, strict=True))
     return tuple(
         (after - before) / change
-        for after, before in zip(scene.run(behind, moved), scene.output, strict=True)
+        for after, before in zip(
+            simulation.run(behind, moved), simulation.output, strict=True
+        )
     )

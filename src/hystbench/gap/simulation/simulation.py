@@ -22,7 +22,7 @@ Signals = tuple[FloatArray, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class Simulation:
     """A chain on records; what is computed once is kept.
 
     Parameters
