@@ -23,8 +23,7 @@ from hystbench.gap.run import close_gap
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
-
-from .tiny import BASE, LAG_S, write_tiny
+from tests.gap.tiny import BASE, LAG_S, write_tiny
 
 
 @pytest.fixture(scope="module")

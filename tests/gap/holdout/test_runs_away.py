@@ -206,7 +206,7 @@ def test_what_is_beyond_any_use_runs_away_though_it_is_a_number(size):
 
 def test_a_simulator_may_refuse_what_an_effect_sends_it():
     """It takes the held-out input as it is, but not with the effect before it."""
-    simulator = block("external", function="tests.gap.test_bounded:narrow")
+    simulator = block("external", function="tests.gap.holdout.test_runs_away:narrow")
     base, start, after, floor = squared(0.05, simulator)
     t = np.arange(600) / 600
     held = tuple(

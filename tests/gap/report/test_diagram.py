@@ -11,7 +11,7 @@ from matplotlib.text import Text
 
 from hystbench.figures.style import PAGE, in_style
 from hystbench.gap.report.diagram import figure_of, words_of
-from tests.gap.test_parts import (
+from tests.gap.report.test_parts import (
     FELT,
     FRICTION,
     IMPEDANCE,

@@ -17,8 +17,7 @@ from hystbench.gap.fitting.start import start_state
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
-
-from .tiny import write_tiny
+from tests.gap.tiny import write_tiny
 
 #: What an effect needs in the chain, and those that a chain with hysteresis refuses.
 NEEDS = {"stiffness-hardening": ["resonance"]}

@@ -21,7 +21,7 @@ from hystbench.record import Channel, Record
 from hystbench.schema import check_against_schema
 from tests.gap.oscillators import DAMPING, DT, HERTZ, LEVELS, PERIOD, simulate
 
-AIRCRAFT = Path(__file__).parents[2].parent / "shared" / "data" / "f16-ground-vibration"
+AIRCRAFT = Path(__file__).parents[3].parent / "shared" / "data" / "f16-ground-vibration"
 CLASSES = {
     "linear": "none",
     "hardening": "hardening",

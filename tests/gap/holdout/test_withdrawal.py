@@ -18,8 +18,7 @@ from hystbench.gap.run import close_gap
 from hystbench.gap.schema import SCHEMA
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
-
-from .tiny import BASE, write_tiny
+from tests.gap.tiny import BASE, write_tiny
 
 
 def content(before=1.0, after=0.5, verdict="named", names=("creep",), **gap):

@@ -1,4 +1,4 @@
-"""Samples that were interpolated carry no weight in the gap's scores."""
+"""ViewSamples that were interpolated carry no weight in the gap's scores."""
 
 from dataclasses import replace
 
@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.gap.holdout.shrink import ladder, shrink
 from hystbench.gap.judging.black_box import BlackBox
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import make_folds
@@ -102,7 +102,7 @@ def test_views_of_samples_do_not_see_them(both):
     seen = []
     for records in both:
         items = tuple(Compared(*x) for x in zip(records, base(records), strict=True))
-        view = Samples(items, Floor(0.02, "declared", {}), 1)
+        view = ViewSamples(items, Floor(0.02, "declared", {}), 1)
         assert len(view.residual) == len(view.time) == len(view.input) == 4 * 1994
         assert view.slices[-1].stop == 4 * 1994
         seen.append(view.residual)

@@ -14,8 +14,7 @@ from hystbench.gap.records.sample import Sample
 from hystbench.gap.records.windows import decay_of_free_mass, windows
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
-
-from .inside_host import search
+from tests.gap.inside_host import search
 
 DT = 0.005
 NOISE = 0.02

@@ -9,8 +9,7 @@ from hystbench.gap.inside.hosts import best_host
 from hystbench.gap.inside.name import chosen
 from hystbench.gap.inside.stores import stores
 from hystbench.record import Channel, Record
-
-from .inside_host import search
+from tests.gap.inside_host import search
 
 DT, COUNT, FINE = 4.0, 800, 80
 NOISE = 0.02

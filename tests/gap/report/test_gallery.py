@@ -7,7 +7,7 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.report.gallery import write_gallery, write_sentences
 from hystbench.gap.report.words import verdict_text
-from tests.gap.test_report import GAP, write_folder
+from tests.gap.report.test_report import GAP, write_folder
 
 PICTURES = ("model.svg", "model.png", "residual.svg", "residual.png")
 #: SVG that a page can carry several of.

@@ -18,7 +18,7 @@ from tests.gap.made import CURRENT, record
 
 RATE = 1000.0
 MADE: list[int] = []
-"""Samples of each call that was made."""
+"""ViewSamples of each call that was made."""
 
 
 def bent(u, dt):
@@ -41,7 +41,7 @@ def goes_on(u, dt):
     return y
 
 
-NAME = "tests.gap.test_foretell:bent"
+NAME = "tests.gap.naming.test_forecast_calls:bent"
 
 
 def evidence():
@@ -130,7 +130,7 @@ def test_too_few_calls_are_refused_in_one_line(bound, tmp_path):
 @pytest.mark.parametrize("function", ["drawn", "goes_on"])
 @pytest.mark.parametrize("as_file", [False, True])
 def test_a_function_that_gives_another_output_is_refused(function, as_file, tmp_path):
-    name = f"tests.gap.test_foretell:{function}"
+    name = f"tests.gap.naming.test_forecast_calls:{function}"
     if as_file:
         content = {
             "name": "rig",

@@ -11,8 +11,9 @@ from hystbench.errors import InputError
 from hystbench.gap import decision as decision_module
 from hystbench.gap.decision import decide, find
 from hystbench.gap.effects import effects
+from hystbench.gap.experiment import tell_apart
 from hystbench.gap.experiment.limits import Limits
-from hystbench.gap.experiment.next_experiment import next_experiment, tell_apart
+from hystbench.gap.experiment.next_experiment import next_experiment
 from hystbench.gap.experiment.separation import Pair
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect

@@ -4,7 +4,7 @@ import pytest
 
 from hystbench.gap.report import write_report
 from tests.browser.seen import SIZES, all_faults, look
-from tests.gap.test_report import GAP, Reader, write_folder
+from tests.gap.report.test_report import GAP, Reader, write_folder
 
 
 @pytest.fixture(scope="module")
