@@ -210,7 +210,7 @@ def decide(
         left = what_is_left(start, named.state, floor.rms)
     records, state = start.records, named.state
     compared = compare(start)
-    box = black_box(compared, floor)
+    box = black_box(compared, floor.rms)
     after = compared if state is start else compare(state)
     lone = lone_share([item.residual for item in after])
     differs = unrepeated(after, floor.rms)

@@ -111,7 +111,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     ]
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
-    box = black_box(compare(start), floor)
+    box = black_box(compare(start), floor.rms)
     shown = outcome(
         base,
         decided,

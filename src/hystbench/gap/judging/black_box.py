@@ -17,7 +17,6 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.gap.judging.regressors import Columns, Family
 from hystbench.gap.judging.ridge import Moments
-from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray, Mask, Record
@@ -235,7 +234,7 @@ def _fastest(record: Record) -> float:
     return float(np.quantile(np.abs(np.gradient(record.u, record.dt)), 0.995))
 
 
-def black_box(compared: Sequence[Compared], floor: Floor) -> BlackBox:
+def black_box(compared: Sequence[Compared], floor_rms: float) -> BlackBox:
     """Fit the yardstick to what the base leaves on the fit records."""
     folds = make_folds([item.record for item in compared], whole=False)
-    return BlackBox.fit(compared, folds, floor.rms)
+    return BlackBox.fit(compared, folds, floor_rms)
