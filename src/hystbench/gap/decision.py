@@ -27,8 +27,9 @@ from hystbench.gap.fitting.uncertainty import (
     standard_errors,
 )
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
+from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.inside.name import beats, named_inside
-from hystbench.gap.judging.black_box import BlackBox, black_box
+from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.judging.gap_json import (
     effect_mapping,
     not_tried,
@@ -43,7 +44,7 @@ from hystbench.gap.judging.verdict import (
     what_mends,
 )
 from hystbench.gap.locate import locate
-from hystbench.gap.naming.ladder import Rung, contributions, rungs
+from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.naming.name import LITTLE, Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
@@ -63,44 +64,28 @@ own in every window of any error; and each begins at zero wherever the mass is, 
 no curve over its place has a meaning."""
 
 
-@dataclass(frozen=True)
-class Decision:
+@dataclass(frozen=True, kw_only=True)
+class Decision(FitResult):
     """What the fit records decide; hold-out records have not been read.
 
     Parameters
     ----------
-    base : Model
     model : Model
-        With the effects that were added.
-    state : ModelState
-        The same on the fit records.
-    floor : Floor
+        The base with the effects that were added.
     left : Left
-    black_box : BlackBox
-        Fitted to what the base leaves.
     content : mapping
         What gap.json holds, but for what the hold-out records show.
     curves : mapping
         What the pictures of where the gap is are drawn from.
     experiment : Experiment, optional
         What would tell likely effects apart best.
-    rungs : tuple of Rung
-        The models on the way from the base to the last effect.
-    own : OwnValues
-        What some records have of their own.
     """
 
-    base: Model
     model: Model
-    state: ModelState
-    floor: Floor
     left: Left
-    black_box: BlackBox
     content: Mapping[str, Any]
     curves: Mapping[str, Any]
     experiment: Experiment | None
-    rungs: tuple[Rung, ...]
-    own: OwnValues
 
 
 def find(
@@ -287,16 +272,16 @@ def decide(
         content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
     return Decision(
         base,
-        model,
         state,
         floor,
-        left,
         box,
-        content,
-        where.curves(),
-        experiment,
         ladder,
         own,
+        model=model,
+        left=left,
+        content=content,
+        curves=where.curves(),
+        experiment=experiment,
     )
 
 

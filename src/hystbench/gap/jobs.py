@@ -14,6 +14,7 @@ from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.outcome import as_asked, outcome
+from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.naming.ladder import Rung
@@ -107,27 +108,16 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     fit = own.taken_off(evidence.fit, evidence.hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
-    rungs = [
+    rungs = tuple(
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
-    ]
+    )
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(compare(start), floor.rms)
-    shown = outcome(
-        base,
-        decided,
-        state,
-        floor,
-        box,
-        evidence.hold_out,
-        rungs,
-        own,
-        evidence.warnings,
-    )
+    fitted = FitResult(base, state, floor, box, rungs, own)
+    shown = outcome(fitted, decided, evidence)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
-    shown = as_asked(shown, vocabulary, built_in, evidence, state, floor, own)
-    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
-    shown = replace(shown, content=content)
+    shown = as_asked(shown, fitted, evidence, vocabulary, built_in)
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.files import whole_folder, write_csv, write_json
-from hystbench.gap.behaviour import say_in_words, with_device
+from hystbench.gap.behaviour import say_in_words
 from hystbench.gap.decision import Decision, find
 from hystbench.gap.experiment.excitations import write_experiment
 from hystbench.gap.fitting.start import run_base
@@ -127,31 +127,10 @@ def closed_gap(
     )
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.
-    shown = outcome(
-        decision.base,
-        decision.content,
-        decision.state,
-        decision.floor,
-        decision.black_box,
-        evidence.hold_out,
-        decision.rungs,
-        decision.own,
-        evidence.warnings,
-    )
-    shown = as_asked(
-        shown,
-        vocabulary,
-        built_in,
-        evidence,
-        decision.state,
-        decision.floor,
-        decision.own,
-    )
-    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
-    shown = replace(shown, content=content)
-    return Closed(
-        replace(decision, model=shown.model, content=content), shown, evidence
-    )
+    shown = outcome(decision, decision.content, evidence)
+    shown = as_asked(shown, decision, evidence, vocabulary, built_in)
+    decision = replace(decision, model=shown.model, content=shown.content)
+    return Closed(decision, shown, evidence)
 
 
 def found_on_fit(

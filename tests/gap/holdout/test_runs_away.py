@@ -16,7 +16,7 @@ from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.runs_away import FAR, bounded, reach
-from hystbench.gap.holdout.show import show
+from hystbench.gap.holdout.show import FitResult, show
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.evidence import Evidence
@@ -197,7 +197,8 @@ def test_what_is_beyond_any_use_runs_away_though_it_is_a_number(size):
     u = np.where(np.arange(600) < 300, 0.5, size)
     held = (record(u, 12 * u, name="far", use="hold-out"),)
     rungs = (Rung("base", start), Rung("asymmetry", after))
-    shown = show(base, after, floor, black_box(compare(start), floor.rms), held, rungs)
+    box = black_box(compare(start), floor.rms)
+    shown = show(FitResult(base, after, floor, box, rungs), held)
     assert [item["record"] for item in shown.content["runs_away"]] == ["far"]
     assert shown.content["runs_away"][0]["from_s"] == pytest.approx(0.3)
     assert np.isnan(shown.outputs[0][1]).all()
@@ -214,7 +215,8 @@ def test_a_simulator_may_refuse_what_an_effect_sends_it():
         for name, size in (("near", 0.5), ("far", 1.0))
     )
     rungs = (Rung("base", start), Rung("asymmetry", after))
-    shown = show(base, after, floor, black_box(compare(start), floor.rms), held, rungs)
+    box = black_box(compare(start), floor.rms)
+    shown = show(FitResult(base, after, floor, box, rungs), held)
     (away,) = shown.content["runs_away"]
     assert (away["record"], away["from_s"]) == ("far", 0.0)
     assert "it raised ValueError: current beyond 1 A" in away["refused"]

@@ -96,9 +96,9 @@ def retuned():
 
 
 def test_the_ladder_of_a_re_tuned_base_on_records_it_has_not_seen(retuned):
-    base, found, _ = retuned
+    _, found, _ = retuned
     held = measured((block("gain", value=11.0),), noise=0.05, seed=9)
-    shown = show(base, found.state, found.floor, found.black_box, held, found.rungs)
+    shown = show(found, held)
     ladder = shown.content["ladder"]
     assert [item["name"] for item in ladder] == [BASE, RETUNED]
     assert ladder[0]["rms"] == pytest.approx(shown.content["gap"]["before"])

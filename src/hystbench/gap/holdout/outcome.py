@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from hystbench.gap.behaviour import with_device
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.start import run_base
-from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.shortfall import shortfall
-from hystbench.gap.holdout.show import as_recorded, nuisance_of, show
+from hystbench.gap.holdout.show import FitResult, as_recorded, nuisance_of, show
 from hystbench.gap.holdout.shrink import (
     ladder,
 )
@@ -22,14 +21,12 @@ from hystbench.gap.holdout.withdrawal import (
     withdrawal,
     without_names,
 )
-from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.naming.built_in import BuiltIn
-from hystbench.gap.naming.ladder import BASE, Rung
+from hystbench.gap.naming.ladder import BASE
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.records.floor import Floor
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
@@ -52,40 +49,32 @@ class Outcome:
 
 
 def outcome(
-    base: Model,
-    decided: Mapping[str, Any],
-    state: ModelState,
-    floor: Floor,
-    box: BlackBox,
-    records: tuple[Record, ...],
-    rungs: Sequence[Rung],
-    own: OwnValues = NONE,
-    warnings: Sequence[str] = (),
+    fitted: FitResult, decided: Mapping[str, Any], evidence: Evidence
 ) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
     Parameters
     ----------
-    base : Model
+    fitted : FitResult
     decided : mapping
         What gap.json holds, but for what the hold-out records show.
-    state, floor, box, records, rungs, own
-        As for :func:`show`.
-    warnings : sequence of str
-        What of the dataset is hardly meant.
+    evidence : Evidence
     """
-    shown = show(base, state, floor, box, records, rungs, own)
+    shown = show(fitted, evidence.hold_out)
     content = {
         **decided,
         "withdrawn": None,
         **shown.content,
-        "warnings": list(warnings),
+        "warnings": list(evidence.warnings),
     }
+    base, state = fitted.base, fitted.state
     model = augmented(base, state).with_hold(state.hold)
     taken = withdrawal(content)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
-        alone = show(base, rungs[0].state, floor, box, records, rungs[:1], own)
+        first = fitted.rungs[0]
+        unchanged = replace(fitted, state=first.state, rungs=(first,))
+        alone = show(unchanged, evidence.hold_out)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **kept}, taken)
         model = base.with_hold(state.hold)
@@ -98,31 +87,30 @@ def outcome(
 
 def as_asked(
     shown: Outcome,
+    fitted: FitResult,
+    evidence: Evidence,
     vocabulary: Vocabulary,
     built_in: BuiltIn | None,
-    evidence: Evidence,
-    state: ModelState,
-    floor: Floor,
-    own: OwnValues,
 ) -> Outcome:
-    """Tell which effects the user put in or left out, and what those put in do.
+    """Tell which effects the user put in or left out, and what the device makes of all.
 
     Parameters
     ----------
     shown : Outcome
+    fitted : FitResult
+    evidence : Evidence
     vocabulary : Vocabulary
     built_in : BuiltIn or None
         None where no effect was put in.
-    evidence : Evidence
-    state, floor, own
-        As for :func:`show`.
     """
     content = with_what_was_asked(shown.content, vocabulary)
     if built_in is not None:
         records = evidence.hold_out
         outputs = run_base(built_in.alone, records, evidence.hold)
-        mine = as_recorded(own, records, outputs, floor)
-        ((_, alone),) = ladder(records, [(BASE, mine)], nuisance_of(state, own))
+        mine = as_recorded(fitted.own, records, outputs, fitted.floor)
+        nuisance = nuisance_of(fitted.state, fitted.own)
+        ((_, alone),) = ladder(records, [(BASE, mine)], nuisance)
         assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
         content = with_built_in(content, built_in, alone)
+    content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)

@@ -36,6 +36,32 @@ from hystbench.record import FloatArray, Record
 
 
 @dataclass(frozen=True)
+class FitResult:
+    """What the fit records fix; hold-out records are compared with it.
+
+    Parameters
+    ----------
+    base : Model
+    state : ModelState
+        The model with all effects that were added, on the fit records.
+    floor : Floor
+    black_box : BlackBox
+        Fitted to what the base leaves on the fit records.
+    rungs : tuple of Rung
+        The models on the way from the base to the last effect.
+    own : OwnValues
+        What some records have of their own: a hold-out record may have the same.
+    """
+
+    base: Model
+    state: ModelState
+    floor: Floor
+    black_box: BlackBox
+    rungs: tuple[Rung, ...]
+    own: OwnValues = NONE
+
+
+@dataclass(frozen=True)
 class Shown:
     """What the hold-out records show.
 
@@ -51,30 +77,13 @@ class Shown:
     outputs: list[tuple[FloatArray, FloatArray]]
 
 
-def show(
-    base: Model,
-    state: ModelState,
-    floor: Floor,
-    box: BlackBox,
-    records: tuple[Record, ...],
-    rungs: Sequence[Rung],
-    own: OwnValues = NONE,
-) -> Shown:
+def show(fitted: FitResult, records: tuple[Record, ...]) -> Shown:
     """Compare base and model on hold-out records.
 
     Parameters
     ----------
-    base : Model
-    state : ModelState
-        The model with all effects that were added.
-    floor : Floor
-    box : BlackBox
-        Fitted to what the base leaves on the fit records.
+    fitted : FitResult
     records : tuple of Record
-    rungs : sequence of Rung
-        Models on the way from the base to this one.
-    own : OwnValues
-        What fit records have of their own: a hold-out record may have the same.
 
     Returns
     -------
@@ -86,6 +95,7 @@ def show(
         If the base's output is not finite on a record. Where a model's is not, the
         decision stays: the record is told, and counts as nothing closed.
     """
+    base, state, floor, own = fitted.base, fitted.state, fitted.floor, fitted.own
     nuisance = nuisance_of(state, own)
     plain = run_base(base, records, state.hold)
     usual = reach(plain, floor.rms)
@@ -104,7 +114,7 @@ def show(
                 floor,
             ),
         )
-        for rung in rungs
+        for rung in fitted.rungs
     ]
     content = {
         "gap": mapping(found),
@@ -114,7 +124,9 @@ def show(
             for name, value in ladder(records, stages, nuisance)
         ],
         "runs_away": [item.mapping() for item in lost],
-        "black_box": black_box_mapping(box, records, before, found, nuisance),
+        "black_box": black_box_mapping(
+            fitted.black_box, records, before, found, nuisance
+        ),
     }
     outputs = [
         (record.y - item.residual_before, _after(record, item))
