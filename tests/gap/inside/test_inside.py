@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Moved
+from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.hosts import best_host, one_coordinate
 from hystbench.gap.records.nuisance import left_over

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 
 from hystbench.gap.effects.base import (
     Effect,
-    Law,
-    Moved,
     Variant,
     logarithmic,
     places_in_drive,
     places_inside,
 )
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_drive
+from hystbench.gap.effects.base import Effect, Variant, places_in_drive
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
 

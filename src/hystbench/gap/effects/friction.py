@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.smooth_friction import SmoothFriction
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
 HOLDS = 1e-7

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_sensor
+from hystbench.gap.effects.base import Effect, Variant, places_in_sensor
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
 

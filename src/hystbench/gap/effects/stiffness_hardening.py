@@ -14,15 +14,8 @@ from hystbench.blocks.exponential_stiffness import ExponentialStiffness
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import (
-    LINEAR,
-    Declined,
-    Effect,
-    Law,
-    Moved,
-    Values,
-    Variant,
-)
+from hystbench.gap.effects.base import LINEAR, Declined, Effect, Values, Variant
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
 Before = tuple[Block, ...]

@@ -152,9 +152,11 @@ def _run(rival: Rival, u: FloatArray, dt: float) -> _Ran | None:
     return _Ran(output, tangents) if whole else None
 
 
-def parameter_tangents(
-    model: Model, names: Sequence[str], step: float = 1e-3
-) -> Tangents:
+CHANGE = 1e-3
+"""Relative change by which a direction is taken; of 0 an absolute one."""
+
+
+def parameter_tangents(model: Model, names: Sequence[str]) -> Tangents:
     """Directions in which a refit of named parameters moves a model's output.
 
     Without them a single sine seems to tell a lag from a delay that another time
@@ -166,8 +168,6 @@ def parameter_tangents(
     names : sequence of str
         Its parameters that a refit may change; numbers, or lists of them that are
         changed together, by a common factor.
-    step : float
-        Relative change; of 0 an absolute one.
     """
 
     def beside(name: str) -> Iterator[Model]:
@@ -176,9 +176,9 @@ def parameter_tangents(
         if isinstance(value, str):
             raise InputError(f"{name}: {value!r} is no number; expected one to refit")
         if isinstance(value, tuple):
-            new = [item * (1 + step) for item in value]
+            new = [item * (1 + CHANGE) for item in value]
         else:
-            new = value * (1 + step) if value else step
+            new = value * (1 + CHANGE) if value else CHANGE
         # A zero that stands for "none" has no neighbour: the block refuses it.
         with contextlib.suppress(InputError):
             yield model.with_values({name: new})

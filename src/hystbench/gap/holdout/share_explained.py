@@ -53,7 +53,7 @@ def share_explained(
 
 
 def resampled_rms(
-    residuals: Sequence[Sequence[FloatArray]], draws: int = DRAWS, seed: int = 0
+    residuals: Sequence[Sequence[FloatArray]],
 ) -> FloatArray:
     """RMS of residuals over all records, of draws of records and blocks within them.
 
@@ -66,7 +66,6 @@ def resampled_rms(
     ----------
     residuals : sequence of (ndarray, ...), shape (n,) each
         Of each record, those of one or more models: the same draws serve them all.
-    draws, seed : int
 
     Returns
     -------
@@ -77,7 +76,7 @@ def resampled_rms(
     D. N. Politis, J. P. Romano, "A circular block-resampling procedure for stationary
     data", in: Exploring the Limits of Bootstrap, Wiley, 1992.
     """
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     lengths = np.array([len(models[0]) for models in residuals])
     blocks = np.maximum(1, lengths // BLOCKS)
     # Sums over a block are differences of cumulative sums.
@@ -86,15 +85,15 @@ def resampled_rms(
         for models, block in zip(residuals, blocks.tolist(), strict=True)
     ]
     counts = lengths // blocks
-    powers = np.zeros((len(sums), draws, len(residuals[0])))
+    powers = np.zeros((len(sums), DRAWS, len(residuals[0])))
     for place, total in enumerate(sums):
         block, count = blocks[place], counts[place]
-        starts = random.integers(0, lengths[place], (draws, count))
+        starts = random.integers(0, lengths[place], (DRAWS, count))
         powers[place] = (total[:, starts + block] - total[:, starts]).sum(axis=-1).T
         powers[place] *= lengths[place] / (block * count)
-    drawn = random.integers(0, len(sums), (draws, len(sums)))
+    drawn = random.integers(0, len(sums), (DRAWS, len(sums)))
     # A record that is drawn twice is rebuilt twice.
-    rebuilt = random.integers(0, draws, drawn.shape)
+    rebuilt = random.integers(0, DRAWS, drawn.shape)
     power = powers[drawn, rebuilt].sum(axis=1)
     power /= lengths[drawn].sum(axis=1)[:, None]
     # Differences of sums may fall below zero by rounding.

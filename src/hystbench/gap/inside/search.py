@@ -14,7 +14,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among, effects
-from hystbench.gap.effects.base import Changed, Law, Moved
+from hystbench.gap.effects.law import Changed, Law, Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged

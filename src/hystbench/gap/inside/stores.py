@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.blocks.held import Hold
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.effects.base import Changed, Filled
+from hystbench.gap.effects.law import Changed, Filled
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.records.sample import Sample
 from hystbench.record import Record

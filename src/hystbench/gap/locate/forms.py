@@ -18,6 +18,8 @@ FACTS = 300
 a model is not white (docs/gap-method.md, "The score")."""
 HOLD = 0.8
 """Of what a view explains, that its range holds."""
+BINS = 50
+"""Of as many samples each, in which the narrowest range is looked for."""
 SMOOTH = 17
 """Bins over which the spectrum of what is left is smoothed."""
 DEPENDENT = 1e-5
@@ -193,19 +195,15 @@ def hats(values: FloatArray, knots: int) -> list[FloatArray]:
     return [np.interp(values, places, row) for row in np.eye(knots)]
 
 
-def narrowest(
-    axis: FloatArray, weights: FloatArray, bins: int = 50
-) -> tuple[float, float]:
+def narrowest(axis: FloatArray, weights: FloatArray) -> tuple[float, float]:
     """Give the range of fewest samples that holds most of the weight.
 
     Parameters
     ----------
     axis, weights : ndarray, shape (n,)
-    bins : int
-        Bins of as many samples each.
     """
     order = np.argsort(axis)
-    starts = np.unique(np.linspace(0, len(axis), bins + 1)[:-1].astype(np.int64))
+    starts = np.unique(np.linspace(0, len(axis), BINS + 1)[:-1].astype(np.int64))
     first, last = narrowest_bins(np.add.reduceat(weights[order], starts))
     end = starts[last + 1] if last + 1 < len(starts) else len(axis) - 1
     return float(axis[order[starts[first]]]), float(axis[order[end]])

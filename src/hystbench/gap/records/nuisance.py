@@ -25,7 +25,7 @@ LEAST = math.ceil(SHORTEST / FIRST)
 Nuisance = Callable[[Record], FloatArray]
 
 
-def split_first(record: Record, part: float = FIRST) -> Mask:
+def split_first(record: Record) -> Mask:
     """Mark the samples that are scored: all but the first part of a record.
 
     Raises
@@ -33,11 +33,11 @@ def split_first(record: Record, part: float = FIRST) -> Mask:
     InputError
         If the record is too short to divide.
     """
-    first = round(part * len(record))
-    if len(record) * part < SHORTEST:
+    first = round(FIRST * len(record))
+    if len(record) * FIRST < SHORTEST:
         raise InputError(
             f"record {record.name}: {len(record)} samples; expected enough for a "
-            f"first {part:.0%} that estimates and a rest that is scored"
+            f"first {FIRST:.0%} that estimates and a rest that is scored"
         )
     return np.arange(len(record)) >= first
 

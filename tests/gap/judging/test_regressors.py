@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.judging.landmarks import Landmarks
+from hystbench.gap.judging.regressors import Landmarks
 
 
 def kernel(a, b):
