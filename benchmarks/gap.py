@@ -29,7 +29,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.records.evidence import Evidence, load_evidence
-from hystbench.gap.run import close_gap
+from hystbench.gap.run import closed_gap
 from hystbench.record import Record
 
 CASES = 15
@@ -89,9 +89,11 @@ def close(evidence: Evidence, model: str) -> str:
     """Find what the model lacks, without the page; give its names."""
     base, _ = load_base(model, evidence)
     with tempfile.TemporaryDirectory() as out:
-        found = close_gap(evidence, base, Path(out, "gap"), report=False)
-    named = "+".join(item["name"] for item in found.content["effects"])
-    return named or str(found.content["verdict"])
+        found = closed_gap(evidence, base)
+        found.write(Path(out, "gap"), report=False)
+    content = found.decision.content
+    named = "+".join(item["name"] for item in content["effects"])
+    return named or str(content["verdict"])
 
 
 def one_round(evidence: Evidence, model: str, candidates: int, share: float) -> str:

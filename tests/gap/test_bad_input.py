@@ -13,9 +13,9 @@ import yaml
 from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.run import close_gap
 from hystbench.model import load_model
 from hystbench.written import ENTRIES, TEMPORARY
+from tests.gap.closing import close_gap
 from tests.gap.made import record, write_folder
 
 ABOUT = {

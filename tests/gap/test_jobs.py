@@ -19,10 +19,10 @@ from hystbench.gap.report.tables import (
     write_records,
     write_summary,
 )
-from hystbench.gap.run import close_gap
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
+from tests.gap.closing import close_gap
 from tests.gap.tiny import BASE, LAG_S, write_tiny
 
 

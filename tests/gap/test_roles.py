@@ -15,9 +15,9 @@ from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec
 from hystbench.challenge.writing import write_case
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.run import close_gap
 from hystbench.model import load_model
 from hystbench.written import ENTRIES
+from tests.gap.closing import close_gap
 
 READ_LAST = ("gap", "records", "ladder", "black_box", "shortfall", "reason")
 """Keys of gap.json that the hold-out records fill; their figure leads the reason."""

@@ -37,12 +37,7 @@ from hystbench.gap.judging.gap_json import (
     simulator_mapping,
 )
 from hystbench.gap.judging.unnamed import what_is_unnamed
-from hystbench.gap.judging.verdict import (
-    Left,
-    judge,
-    what_is_left,
-    what_mends,
-)
+from hystbench.gap.judging.verdict import Left, judge, what_is_left, what_mends
 from hystbench.gap.locate import locate
 from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.naming.name import LITTLE, Named, name

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -160,35 +159,6 @@ def found_on_fit(
         inside_of(base, evidence),
     )
     return decision, built_in
-
-
-def close_gap(
-    evidence: Evidence,
-    base: Model,
-    folder: Path,
-    *,
-    report: bool = True,
-    **asked: Any,
-) -> Decision:
-    """Search a gap as :func:`closed_gap` does, and write the result to a folder.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    base : Model
-    folder : Path
-        As for :meth:`Closed.write`; what stands in the way is refused before the
-        search.
-    report : bool
-        Whether to write the page.
-    **asked
-        As for :func:`closed_gap`.
-    """
-    check_units(evidence, base, asked.get("place", "model"))
-    will_write(folder, evidence)
-    closed = closed_gap(evidence, base, **asked)
-    closed.write(folder, report)
-    return closed.decision
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:

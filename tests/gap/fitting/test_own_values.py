@@ -15,10 +15,10 @@ from hystbench.gap.fitting.own_values import NONE, Own, OwnValues, fitted, own_v
 from hystbench.gap.jobs import decide_in, show_in
 from hystbench.gap.naming.with_own_values import without_shared
 from hystbench.gap.records.evidence import load_evidence
-from hystbench.gap.run import close_gap
 from hystbench.gap.schema import RECORD_VALUES
 from hystbench.model import Model
 from hystbench.schema import check_against_schema
+from tests.gap.closing import close_gap
 from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
 from tests.gap.small import block, state_of
 

@@ -21,8 +21,8 @@ from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.report.tables import write_summary
-from hystbench.gap.run import close_gap
 from hystbench.model import Model, load_model
+from tests.gap.closing import close_gap
 from tests.gap.conftest import without_rendering
 from tests.gap.made import CURRENT, DISPLACEMENT, record
 from tests.gap.small import block, measured

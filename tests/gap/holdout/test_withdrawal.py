@@ -14,10 +14,10 @@ from hystbench.gap.holdout.withdrawal import (
 from hystbench.gap.jobs import DECISION, decide_in, show_in
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.words import verdict_sentence
-from hystbench.gap.run import close_gap
 from hystbench.gap.schema import SCHEMA
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
+from tests.gap.closing import close_gap
 from tests.gap.tiny import BASE, write_tiny
 
 

@@ -12,7 +12,7 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.naming.forecast_calls import calls_of_a_round, foretell
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.run import close_gap
+from tests.gap.closing import close_gap
 from tests.gap.conftest import without_rendering
 from tests.gap.made import CURRENT, record
 

@@ -14,8 +14,8 @@ from hystbench.gap.records.folds import make_folds
 from hystbench.gap.records.nuisance import left_over, path_and_mains
 from hystbench.gap.records.residual import Compared
 from hystbench.gap.records.sample import Sample
-from hystbench.gap.run import close_gap
 from hystbench.model import load_model
+from tests.gap.closing import close_gap
 from tests.gap.made import record, sine
 from tests.gap.tiny import LAG_S, write_tiny
 

@@ -10,14 +10,7 @@ from matplotlib.transforms import Bbox
 
 from hystbench.errors import InputError
 from hystbench.figures.style import PAGE, in_style
-from hystbench.gap.locate.picture import (
-    Axis,
-    Bars,
-    Cells,
-    Panel,
-    Picture,
-    series,
-)
+from hystbench.gap.locate.picture import Axis, Bars, Cells, Panel, Picture, series
 from hystbench.gap.report import pictures, write_report
 from hystbench.gap.report.page import OPTIONAL, headline
 from hystbench.gap.report.read import Content

@@ -11,9 +11,7 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.start import run_base
 from hystbench.gap.holdout.shortfall import shortfall
 from hystbench.gap.holdout.show import FitResult, as_recorded, nuisance_of, show
-from hystbench.gap.holdout.shrink import (
-    ladder,
-)
+from hystbench.gap.holdout.shrink import ladder
 from hystbench.gap.holdout.withdrawal import (
     first_figure,
     with_built_in,

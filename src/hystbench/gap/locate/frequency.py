@@ -10,12 +10,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.locate.distortion import take_distortion
-from hystbench.gap.locate.forms import (
-    fit_form,
-    named_or,
-    narrowest_bins,
-    p_value_of,
-)
+from hystbench.gap.locate.forms import fit_form, named_or, narrowest_bins, p_value_of
 from hystbench.gap.locate.picture import (
     FREQUENCY,
     Axis,

@@ -7,13 +7,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.gap.locate.forms import (
-    best,
-    fit_form,
-    named_or,
-    narrowest,
-    p_value_of,
-)
+from hystbench.gap.locate.forms import best, fit_form, named_or, narrowest, p_value_of
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.gap.records.floor import periodogram
