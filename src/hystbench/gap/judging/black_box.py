@@ -1,4 +1,4 @@
-"""The yardstick: a black box of the residual, judged on folds of the fit records.
+"""A black box of the residual, judged on folds of the fit records.
 
 It is judged on blocks of every record; an effect has to pay on whole records where
 there are three or more. So the black box has the easier task: of sines of one frequency
@@ -235,6 +235,6 @@ def _fastest(record: Record) -> float:
 
 
 def black_box(compared: Sequence[Compared], floor_rms: float) -> BlackBox:
-    """Fit the yardstick to what the base leaves on the fit records."""
+    """Fit the black box to what the base leaves on the fit records."""
     folds = make_folds([item.record for item in compared], whole=False)
     return BlackBox.fit(compared, folds, floor_rms)
