@@ -5,9 +5,10 @@ The cases are the first of the development set of the blind contest: twelve reco
 memory is its own; its seconds leave out the start of Python, the imports and reading
 the records.
 
-How the cost grows is told by one round of naming (:func:`hystbench.gap.rank.rank`),
-since more data may take more rounds. Fewer samples are the first part of each record,
-fewer candidates the first of the effects in alphabetical order.
+How the cost grows is told by one round of naming
+(:func:`hystbench.gap.naming.rank.rank`), since more data may take more rounds. Fewer
+samples are the first part of each record, fewer candidates the first of the effects in
+alphabetical order.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from pathlib import Path
 from time import perf_counter, process_time
 
 from benchmarks.timing import peak_mib, write_table
-from hystbench.gap.bases import load_base
+from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
-from hystbench.gap.evidence import Evidence, load_evidence
-from hystbench.gap.rank import make_score, rank
-from hystbench.gap.run import close_gap
-from hystbench.gap.start import start_state
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.records.evidence import Evidence, load_evidence
+from hystbench.gap.run import closed_gap
 from hystbench.record import Record
 
 CASES = 15
@@ -88,9 +89,11 @@ def close(evidence: Evidence, model: str) -> str:
     """Find what the model lacks, without the page; give its names."""
     base, _ = load_base(model, evidence)
     with tempfile.TemporaryDirectory() as out:
-        found = close_gap(evidence, base, Path(out, "gap"), report=False)
-    named = "+".join(item["name"] for item in found.content["effects"])
-    return named or str(found.content["verdict"])
+        found = closed_gap(evidence, base)
+        found.write(Path(out, "gap"), report=False)
+    content = found.decision.content
+    named = "+".join(item["name"] for item in content["effects"])
+    return named or str(content["verdict"])
 
 
 def one_round(evidence: Evidence, model: str, candidates: int, share: float) -> str:

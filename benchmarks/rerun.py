@@ -20,7 +20,7 @@ from typing import Any
 
 from benchmarks.gap import make_cases
 from benchmarks.timing import write_table
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.interface.gap import find_gap
 
 CASES = 1

@@ -7,7 +7,7 @@ import yaml
 from hystbench.copies import common_piece
 from hystbench.dataset import load_dataset
 from hystbench.doubts import doubts
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.records.evidence import load_evidence
 from tests.gap.made import record, sine, write_folder
 from tests.messages import message
 

@@ -206,9 +206,9 @@ def searched():
             content=CONTENT | {"run": len(calls)},
         )
 
-    def outcome(base, decided, state, floor, box, records, *others):
-        outputs = [(record.y, record.y) for record in records]
-        return run_module.Outcome(base, decided, outputs)
+    def outcome(fitted, decided, evidence):
+        outputs = [(record.y, record.y) for record in evidence.hold_out]
+        return run_module.Outcome(fitted.base, decided, outputs)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run_module, "find", find)

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from hystbench.dataset_schema import SCHEMA
-from hystbench.device_kinds import Kind
+from hystbench.device_kinds import DeviceKind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
 from hystbench.quantities import Quantities, Quantity, quantity_of
@@ -171,9 +171,9 @@ class Dataset:
         return quantity_of(place, channel["unit"], channel.get("quantity"))
 
     @property
-    def device_kind(self) -> Kind | None:
+    def device_kind(self) -> DeviceKind | None:
         """Kind of the device, if dataset.yaml tells it."""
-        kind: Kind | None = self.about.get("device", {}).get("kind")
+        kind: DeviceKind | None = self.about.get("device", {}).get("kind")
         return kind
 
     @property

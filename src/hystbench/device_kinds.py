@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal, get_args
 
-Kind = Literal[
+DeviceKind = Literal[
     "magnetostrictive",
     "piezoelectric",
     "electromechanical",
@@ -19,14 +19,14 @@ Kind = Literal[
     "mechanical",
 ]
 
-KINDS: tuple[Kind, ...] = get_args(Kind)
+KINDS: tuple[DeviceKind, ...] = get_args(DeviceKind)
 
-_MAGNETIC: Sequence[Kind] = ("magnetostrictive", "electromechanical")
-_ELECTRIC: Sequence[Kind] = (*_MAGNETIC, "piezoelectric", "electronic")
-_MOVING: Sequence[Kind] = (*_MAGNETIC, "piezoelectric", "hydraulic", "mechanical")
+_MAGNETIC: Sequence[DeviceKind] = ("magnetostrictive", "electromechanical")
+_ELECTRIC: Sequence[DeviceKind] = (*_MAGNETIC, "piezoelectric", "electronic")
+_MOVING: Sequence[DeviceKind] = (*_MAGNETIC, "piezoelectric", "hydraulic", "mechanical")
 
 #: By effect, then by cause: the kinds of devices that it acts in.
-CAUSES: Mapping[str, Mapping[str, Sequence[Kind]]] = {
+CAUSES: Mapping[str, Mapping[str, Sequence[DeviceKind]]] = {
     "outflow": {
         "a free outlet, whose flow goes with the root of the level": ("hydraulic",),
         "radiation, or heat that is carried off by its own draught": ("thermal",),
@@ -158,7 +158,7 @@ CAUSES: Mapping[str, Mapping[str, Sequence[Kind]]] = {
 BEHAVIOURS: Mapping[str, str] = {"eddy-diffusion": "diffusion-like lag"}
 
 
-def causes_of(effect: str, kind: Kind | None = None) -> tuple[str, ...]:
+def causes_of(effect: str, kind: DeviceKind | None = None) -> tuple[str, ...]:
     """Give what usually causes an effect, in a kind of device or in any.
 
     Parameters
@@ -176,7 +176,7 @@ def causes_of(effect: str, kind: Kind | None = None) -> tuple[str, ...]:
     return tuple(cause for cause, kinds in rows if kind is None or kind in kinds)
 
 
-def impossible_in(kind: Kind | None) -> tuple[str, ...]:
+def impossible_in(kind: DeviceKind | None) -> tuple[str, ...]:
     """Name the effects that a kind of device cannot have; none where it is unknown."""
     if kind is None:
         return ()

@@ -24,9 +24,9 @@ def run(tmp_path, monkeypatch):
     data, base = write_tiny(tmp_path)
     asked = []
 
-    finding = SimpleNamespace(experiment=None, content={"no_experiment": "no way"})
+    decision = SimpleNamespace(experiment=None, content={"no_experiment": "no way"})
     found = SimpleNamespace(
-        closed=SimpleNamespace(finding=finding),
+        closed=SimpleNamespace(decision=decision),
         effects=(),
         verdict="named",
         content={"reason": "the gap is closed"},

@@ -5,7 +5,7 @@ import pytest
 import yaml
 
 from hystbench.commands.jobs import gap_check as module
-from hystbench.gap import bases
+from hystbench.gap.bases import load as bases
 from tests.gap.made import record, sine, write_folder
 from tests.gap.tiny import write_tiny
 from tests.messages import message

@@ -7,7 +7,7 @@ import pytest
 
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.comparison import write_cells
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 
 from .made import make_run, published_runs
 
@@ -24,7 +24,7 @@ def cell(evidence, signal, model, metric="mse"):
 
 
 def test_every_printed_number_has_a_row_even_when_nothing_ran():
-    cells = compare_cells(Evidence())
+    cells = compare_cells(ClaimEvidence())
     assert len(cells) == 124
     assert all(c.ours is None and c.status == "not run" for c in cells)
     assert all(math.isinf(c.distance) and not c.ran for c in cells)
@@ -32,7 +32,7 @@ def test_every_printed_number_has_a_row_even_when_nothing_ran():
 
 def test_ratio_by_hand():
     # printed 0.0094; ten times that is a log10 ratio of 1
-    found = cell(Evidence(runs={FIRST: make_run(*FIRST, 0.094)}), *FIRST)
+    found = cell(ClaimEvidence(runs={FIRST: make_run(*FIRST, 0.094)}), *FIRST)
     assert found.published == "0.0094"
     assert found.log10_ratio == pytest.approx(1)
     assert found.distance == pytest.approx(1)
@@ -40,11 +40,11 @@ def test_ratio_by_hand():
 
 
 def test_digits_stay_as_printed():
-    assert cell(Evidence(), "sine-100hz", "rdgpi", "re").published == "0.1"
+    assert cell(ClaimEvidence(), "sine-100hz", "rdgpi", "re").published == "0.1"
 
 
 def test_a_diverged_run_has_no_number_and_says_where():
-    found = cell(Evidence(runs={FIRST: make_run(*FIRST, None)}), *FIRST)
+    found = cell(ClaimEvidence(runs={FIRST: make_run(*FIRST, None)}), *FIRST)
     assert found.ours is None
     assert found.log10_ratio is None
     assert found.ran
@@ -52,17 +52,17 @@ def test_a_diverged_run_has_no_number_and_says_where():
 
 
 def test_a_perfect_run_is_infinitely_below():
-    found = cell(Evidence(runs={FIRST: make_run(*FIRST, 0.0)}), *FIRST)
+    found = cell(ClaimEvidence(runs={FIRST: make_run(*FIRST, 0.0)}), *FIRST)
     assert found.log10_ratio == -math.inf
 
 
 def test_measured_records_stay_out():
     run = make_run(*FIRST, 0.01, origin="measured")
-    assert not cell(Evidence(runs={FIRST: run}), *FIRST).ran
+    assert not cell(ClaimEvidence(runs={FIRST: run}), *FIRST).ran
 
 
 def test_consistency_of_the_printed_pair_goes_along():
-    evidence = Evidence()
+    evidence = ClaimEvidence()
     assert cell(evidence, "sine-200hz", "delayed").published_consistent == "no"
     assert (
         cell(evidence, "multisine-10-30-50hz", "volterra").published_consistent
@@ -73,7 +73,7 @@ def test_consistency_of_the_printed_pair_goes_along():
 
 def test_cells_as_csv(tmp_path):
     runs = published_runs({FIRST: None})
-    write_cells(compare_cells(Evidence(runs=runs)), tmp_path / "cells.csv")
+    write_cells(compare_cells(ClaimEvidence(runs=runs)), tmp_path / "cells.csv")
     with (tmp_path / "cells.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     assert len(rows) == 124

@@ -22,7 +22,7 @@ from hystbench.compare.claims.operators import (
 )
 from hystbench.compare.draws import Drawn
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import Evidence, OrderPoint
+from hystbench.compare.evidence import ClaimEvidence, OrderPoint
 from hystbench.published import FILTERS, Printed
 
 from .made import (
@@ -65,16 +65,18 @@ IDENTITY |= {"a4": 1e4, "a5": 1e-4, "a6": 0, "a7": 0}
 def runs(changes=None, **fields):
     """Printed errors but for some, and every run with these fields."""
     found = published_runs(changes)
-    return Evidence(runs={cell: replace(run, **fields) for cell, run in found.items()})
+    return ClaimEvidence(
+        runs={cell: replace(run, **fields) for cell, run in found.items()}
+    )
 
 
 def with_envelope(envelope):
     """Give the text other envelopes."""
-    return Evidence(text=replace(TEXT, envelope=envelope))
+    return ClaimEvidence(text=replace(TEXT, envelope=envelope))
 
 
 def identified(**changes):
-    return Evidence(identification=make_identification(**changes))
+    return ClaimEvidence(identification=make_identification(**changes))
 
 
 def gpo_on_sines(values):
@@ -83,7 +85,7 @@ def gpo_on_sines(values):
 
 
 def order_points(mse):
-    return Evidence(
+    return ClaimEvidence(
         order_sweep=tuple(
             OrderPoint(model, order, mse(order))
             for model in FILTERS
@@ -95,7 +97,7 @@ def order_points(mse):
 def edges(**changes):
     """Give the edge of each filter on the sines, twice the bound, but for changes."""
     usual = Edge("", "", 0.1, 0.5, 1.0, 0.4, 2.0, -1.0)
-    return Evidence(
+    return ClaimEvidence(
         edges=tuple(
             replace(usual, signal=s, model=model, **changes)
             for s in SINES
@@ -121,7 +123,7 @@ ONE = {"gpo": 0.01, "backlash": 1.0, "volterra": 2.0, "delayed": 2.0, "rdgpi": 3
 BEST = {(p.signal, p.model): ONE[p.model] for p in PAIRS}
 
 CASES = {
-    "gpo-asymmetric": (Evidence(), with_envelope(IDENTITY)),
+    "gpo-asymmetric": (ClaimEvidence(), with_envelope(IDENTITY)),
     "envelopes-non-decreasing": (
         identified(),
         identified(envelope={**TEXT.envelope, "a1": -0.36}),
@@ -130,9 +132,9 @@ CASES = {
         identified(envelope={**TEXT.envelope, "a3": 0.0}),
         identified(),
     ),
-    "eq7": (with_envelope(IDENTITY), Evidence()),
-    "eq8": (with_envelope(IDENTITY), Evidence()),
-    "eq12": (with_envelope(IDENTITY), Evidence()),
+    "eq7": (with_envelope(IDENTITY), ClaimEvidence()),
+    "eq8": (with_envelope(IDENTITY), ClaimEvidence()),
+    "eq12": (with_envelope(IDENTITY), ClaimEvidence()),
     "eq14": (
         identified(),
         # all the weight on x(k-30): at 1 Hz it lags by 2 pi 3 ms, which is 1.9 %
@@ -158,15 +160,15 @@ CASES = {
         identified(envelope={**TEXT.envelope, "a4": 1.0}),
     ),
     "envelopes-serve-every-rate": (
-        Evidence(envelope_errors={("a", "identified"): 1, ("a", "published"): 2}),
-        Evidence(envelope_errors={("a", "identified"): 3, ("a", "published"): 2}),
+        ClaimEvidence(envelope_errors={("a", "identified"): 1, ("a", "published"): 2}),
+        ClaimEvidence(envelope_errors={("a", "identified"): 3, ("a", "published"): 2}),
     ),
     "eq19-order": (runs(), runs(largest_eigenvalue=5.5)),
     "eq19-convergence": (edges(), edges(edge=0.9)),
     "mu-governs": (edges(), edges(speed_trend=0.9)),
     "same-order": (
         runs(),
-        Evidence(
+        ClaimEvidence(
             runs=published_runs()
             | {(CHIRP, "gpo"): make_run(CHIRP, "gpo", 1.0, order=20)}
         ),
@@ -186,36 +188,38 @@ CASES = {
         order_points(lambda n: 1 - n / 100),
     ),
     "sines-major-loops": (
-        Evidence(records=sine_records(lambda f: 13.0)),
-        Evidence(records=sine_records(lambda f: 13.0, minor=0.4)),
+        ClaimEvidence(records=sine_records(lambda f: 13.0)),
+        ClaimEvidence(records=sine_records(lambda f: 13.0, minor=0.4)),
     ),
     "peak-to-peak-changes": (
-        Evidence(records=sine_records(lambda f: 13 - f / 50)),
-        Evidence(records=sine_records(lambda f: 13.0)),
+        ClaimEvidence(records=sine_records(lambda f: 13 - f / 50)),
+        ClaimEvidence(records=sine_records(lambda f: 13.0)),
     ),
     "chirp-decrease": (
-        Evidence(records=chirp_record(as_paper)),
-        Evidence(records=chirp_record(lambda t: 10 + t)),
+        ClaimEvidence(records=chirp_record(as_paper)),
+        ClaimEvidence(records=chirp_record(lambda t: 10 + t)),
     ),
     "chirp-increase": (
-        Evidence(records=chirp_record(as_paper)),
-        Evidence(records=chirp_record(no_resonance)),
+        ClaimEvidence(records=chirp_record(as_paper)),
+        ClaimEvidence(records=chirp_record(no_resonance)),
     ),
     "chirp-oscillation": (
-        Evidence(records=chirp_record(as_paper)),
-        Evidence(records=chirp_record(lambda t: 13 - 2 * np.abs(t - 1.5))),
+        ClaimEvidence(records=chirp_record(as_paper)),
+        ClaimEvidence(records=chirp_record(lambda t: 13 - 2 * np.abs(t - 1.5))),
     ),
     "chirp-times": (
-        Evidence(records=chirp_record(no_resonance)),
-        Evidence(records={CHIRP: replace(chirp_record(no_resonance)[CHIRP], dt=2e-4)}),
+        ClaimEvidence(records=chirp_record(no_resonance)),
+        ClaimEvidence(
+            records={CHIRP: replace(chirp_record(no_resonance)[CHIRP], dt=2e-4)}
+        ),
     ),
     "resonance": (
-        Evidence(records=chirp_record(as_paper)),
-        Evidence(records=chirp_record(no_resonance)),
+        ClaimEvidence(records=chirp_record(as_paper)),
+        ClaimEvidence(records=chirp_record(no_resonance)),
     ),
     "nonlocal-memory": (
-        Evidence(records=sum_records()),
-        Evidence(
+        ClaimEvidence(records=sum_records()),
+        ClaimEvidence(
             records={
                 name: replace(record, u=sine(1.0, 5), y=sine(1.0, 5))
                 for name, record in sum_records().items()
@@ -223,22 +227,24 @@ CASES = {
         ),
     ),
     "sampling": (
-        Evidence(records=sum_records()),
-        Evidence(records={SUM: replace(sum_records()[SUM], dt=1e-3)}),
+        ClaimEvidence(records=sum_records()),
+        ClaimEvidence(records={SUM: replace(sum_records()[SUM], dt=1e-3)}),
     ),
     "amplitude": (
-        Evidence(records=sine_records(lambda f: 13.0) | chirp_record(no_resonance)),
-        Evidence(
+        ClaimEvidence(
+            records=sine_records(lambda f: 13.0) | chirp_record(no_resonance)
+        ),
+        ClaimEvidence(
             records=sine_records(lambda f: 13.0) | chirp_record(no_resonance, 0.7)
         ),
     ),
     "sums-lines": (
-        Evidence(records=sum_records(scale=1.264)),
-        Evidence(records=sum_records(odd=0.05)),
+        ClaimEvidence(records=sum_records(scale=1.264)),
+        ClaimEvidence(records=sum_records(odd=0.05)),
     ),
     "random-band": (
-        Evidence(records=sum_records()),
-        Evidence(records=sum_records(outside=1.0)),
+        ClaimEvidence(records=sum_records()),
+        ClaimEvidence(records=sum_records(outside=1.0)),
     ),
     "gpo-best-anywhere": (runs(BEST), runs()),
     "linear-filter-poor": (runs(), runs({(CHIRP, "delayed"): 0.01})),
@@ -292,22 +298,22 @@ NEEDS_NO_RUN = ON_THE_PLAY | {"gpo-asymmetric", "eq7", "eq8", "eq12"}
 @pytest.mark.parametrize("name", sorted(set(CASES) - NEEDS_NO_RUN))
 def test_claim_without_its_runs_is_not_testable(name):
     with pytest.raises(NotTestable, match="not run"):
-        BY_ID[name].ours(Evidence())
-    verdict = judge(BY_ID[name], Evidence()).verdict
+        BY_ID[name].ours(ClaimEvidence())
+    verdict = judge(BY_ID[name], ClaimEvidence()).verdict
     assert verdict == ("refuted by the paper" if name in REFUTED else "not testable")
 
 
 def test_one_missing_run_is_named():
     found = published_runs()
     del found[SINES[3], "gpo"]
-    judgement = judge(BY_ID["gpo-re-rises"], Evidence(runs=found))
+    judgement = judge(BY_ID["gpo-re-rises"], ClaimEvidence(runs=found))
     assert judgement.verdict == "not testable"
     assert judgement.evidence == "not run: gpo on sine-060hz"
 
 
 def test_runs_on_measured_records_do_not_count():
     found = {c: replace(r, origin="measured") for c, r in published_runs().items()}
-    judgement = judge(BY_ID["sums-gpo-best"], Evidence(runs=found))
+    judgement = judge(BY_ID["sums-gpo-best"], ClaimEvidence(runs=found))
     assert judgement.verdict == "not testable"
 
 
@@ -350,10 +356,10 @@ def test_divergence_at_the_lowest_order_is_no_fall(name):
 def test_the_order_is_judged_under_both_rules(name):
     good, bad = (case.order_sweep for case in CASES[name])
     good = tuple(replace(point, rule="constant") for point in good)
-    found = judge(BY_ID[name], Evidence(order_sweep=good, order_sweep_other=bad))
+    found = judge(BY_ID[name], ClaimEvidence(order_sweep=good, order_sweep_other=bad))
     assert found.verdict == "not reproduced"
     assert "mu constant: " in found.evidence
-    both = Evidence(order_sweep=good, order_sweep_other=good)
+    both = ClaimEvidence(order_sweep=good, order_sweep_other=good)
     assert judge(BY_ID[name], both).verdict == "reproduced"
 
 
@@ -407,7 +413,7 @@ def test_the_errors_of_a_drawn_signal_are_its_medians():
 def test_two_diverged_filters_say_nothing_of_the_envelopes():
     signals = ("sine-010hz", "sine-020hz")
     errors = {(s, e): math.inf for s in signals for e in ("identified", "published")}
-    evidence = Evidence(envelope_errors=errors)
+    evidence = ClaimEvidence(envelope_errors=errors)
     found = judge(BY_ID["envelopes-serve-every-rate"], evidence)
     assert found.verdict == "not reproduced"
 
@@ -415,7 +421,7 @@ def test_two_diverged_filters_say_nothing_of_the_envelopes():
 def test_what_the_papers_own_numbers_bear_out():
     found = {
         j.claim.id: j.published_bears_out
-        for j in judge_all(Evidence())
+        for j in judge_all(ClaimEvidence())
         if j.published_bears_out != "not in tables"
     }
     assert found == BORN_OUT
@@ -428,7 +434,7 @@ def test_what_they_bear_out_follows_from_the_numbers():
         else p
         for p in PAIRS
     )
-    judgement = judge(BY_ID["sines-gpo-best"], Evidence(published=changed))
+    judgement = judge(BY_ID["sines-gpo-best"], ClaimEvidence(published=changed))
     assert judgement.published_bears_out == "yes"
 
 
@@ -466,11 +472,11 @@ def test_an_asymmetric_operator_is_seen():
 
 @pytest.mark.parametrize("name", sorted(ON_THE_PLAY))
 def test_claims_on_the_play_hold(name):
-    assert judge(BY_ID[name], Evidence()).verdict == "reproduced"
+    assert judge(BY_ID[name], ClaimEvidence()).verdict == "reproduced"
 
 
 def test_ledger_as_csv(tmp_path):
-    judgements = judge_all(Evidence())
+    judgements = judge_all(ClaimEvidence())
     write_claims(judgements, tmp_path / "claims.csv")
     with (tmp_path / "claims.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.compare.cells import compare_cells
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.off import off_cells, write_off
 
 from .made import make_record, make_run, published_runs
@@ -25,7 +25,7 @@ def known(cell, evidence):
 
 def test_only_mse_beyond_a_factor_of_2_is_off():
     runs = published_runs({CELL: 0.0187, ("sine-010hz", "delayed"): 0.2880 / 2.01})
-    evidence = Evidence(runs=runs)
+    evidence = ClaimEvidence(runs=runs)
     found = [
         (o.cell.signal, o.cell.model)
         for o in off_cells(compare_cells(evidence), evidence)
@@ -40,34 +40,36 @@ def test_direction_and_company_by_hand():
         ("sine-010hz", "delayed"): 0.29,
         ("sine-020hz", "gpo"): 0.01,
     }
-    text = known(CELL, Evidence(runs=published_runs(changes)))
+    text = known(CELL, ClaimEvidence(runs=published_runs(changes)))
     assert text.startswith("Ours is too high by a factor of 10;")
     assert "2 of 4 filters on this signal" in text
     assert "on 2 of 13 signals lie on that side" in text
     assert text.endswith(".")
-    text = known(CELL, Evidence(runs=published_runs({CELL: 0.00094})))
+    text = known(CELL, ClaimEvidence(runs=published_runs({CELL: 0.00094})))
     assert text.startswith("Ours is too low by a factor of 10;")
 
 
 def test_an_inconsistent_pair_is_told():
     # the delayed row of 200 Hz is refuted by the other three
     cell = ("sine-200hz", "delayed")
-    assert "cannot be true" in known(cell, Evidence(runs=published_runs({cell: 9.0})))
-    assert "cannot" not in known(CELL, Evidence(runs=published_runs({CELL: 9.0})))
+    assert "cannot be true" in known(
+        cell, ClaimEvidence(runs=published_runs({cell: 9.0}))
+    )
+    assert "cannot" not in known(CELL, ClaimEvidence(runs=published_runs({CELL: 9.0})))
 
 
 def test_share_of_the_start_by_hand():
     # of a sum of 10 the last three quarters hold 0.75 * 4 = 3
     runs = published_runs()
     runs[CELL] = make_run(*CELL, 10.0, mse_after_transient=4.0, transient_fraction=0.25)
-    text = known(CELL, Evidence(runs=runs))
+    text = known(CELL, ClaimEvidence(runs=runs))
     assert "the first 25 % of the record hold 70 % of our squared error" in text
 
 
 def test_rms_and_spread_are_told():
     # the tables imply 9.17 um at 10 Hz
     y = np.full(100, 2 * 9.17)
-    evidence = Evidence(
+    evidence = ClaimEvidence(
         runs=published_runs({CELL: 0.094}),
         records={"sine-010hz": make_record("sine-010hz", y, y)},
         spreads={(*CELL, "mse"): (0.001, 0.1)},
@@ -78,7 +80,7 @@ def test_rms_and_spread_are_told():
 
 
 def test_a_diverged_run_is_off_and_has_no_ratio(tmp_path):
-    evidence = Evidence(runs=published_runs({CELL: None}))
+    evidence = ClaimEvidence(runs=published_runs({CELL: None}))
     write_off(off_cells(compare_cells(evidence), evidence), tmp_path / "off.csv")
     with (tmp_path / "off.csv").open(encoding="utf-8") as stream:
         (row,) = csv.DictReader(stream)
@@ -87,7 +89,7 @@ def test_a_diverged_run_is_off_and_has_no_ratio(tmp_path):
 
 
 def test_the_ratio_in_the_file(tmp_path):
-    evidence = Evidence(runs=published_runs({CELL: 0.094}))
+    evidence = ClaimEvidence(runs=published_runs({CELL: 0.094}))
     write_off(off_cells(compare_cells(evidence), evidence), tmp_path / "off.csv")
     with (tmp_path / "off.csv").open(encoding="utf-8") as stream:
         (row,) = csv.DictReader(stream)

@@ -13,7 +13,7 @@ from hystbench.compare.claims.claim import Claim, Judgement
 from hystbench.compare.constants import Row
 from hystbench.compare.draws import Drawn
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.summary import (
     claim_counts,
     constant_tap_finding,
@@ -102,7 +102,7 @@ def test_two_diverged_runs_and_equal_runs_have_no_order():
 
 
 def test_runs_as_printed_agree_everywhere():
-    evidence = Evidence(runs=published_runs())
+    evidence = ClaimEvidence(runs=published_runs())
     found = summarise(compare_cells(evidence), judge_all(evidence))
     assert found["cells"] == found["cells_published"] == 52
     assert found["within_factor_2"] == 1
@@ -120,7 +120,7 @@ def test_runs_as_printed_agree_everywhere():
 
 
 def test_inconsistent_cells_leave_by_rule():
-    found = summarise(compare_cells(Evidence()), ())["without_inconsistent"]
+    found = summarise(compare_cells(ClaimEvidence()), ())["without_inconsistent"]
     # 4 filter pairs are refuted, 2 more undecided
     assert found["without_no"]["cells_published"] == 48
     assert found["without_no_and_undecided"]["cells_published"] == 46
@@ -129,7 +129,7 @@ def test_inconsistent_cells_leave_by_rule():
 def test_held_out_signals_stand_apart():
     held_out = {"sine-060hz", "chirp-1-100hz"}
     changed = {(s, m): 1e6 for s in held_out for m in ("gpo", "delayed")}
-    evidence = Evidence(runs=published_runs(changed))
+    evidence = ClaimEvidence(runs=published_runs(changed))
     found = summarise(compare_cells(evidence), (), held_out)
     assert found["held_out"]["cells"] == 8
     assert found["held_out"]["within_factor_2"] == 0.5
@@ -150,14 +150,14 @@ def test_rms_error_by_hand():
     record = make_record("sine-200hz", np.sin(time), y)
     measured = make_record("sine-150hz", np.sin(time), y, origin="measured")
     found = rms_error_percent(
-        Evidence(records={"sine-200hz": record, "sine-150hz": measured})
+        ClaimEvidence(records={"sine-200hz": record, "sine-150hz": measured})
     )
     assert found == {"sine-200hz": pytest.approx(100, abs=1)}
 
 
 def test_rms_errors_of_the_halves_are_not_mixed():
     errors = {"sine-010hz": -1.0, "sine-020hz": 2.0, "sine-060hz": -7.0}
-    found = summarise(compare_cells(Evidence()), (), {"sine-060hz"}, errors)
+    found = summarise(compare_cells(ClaimEvidence()), (), {"sine-060hz"}, errors)
     assert found["calibrated"]["largest_rms_error_percent"] == 2
     assert found["held_out"]["largest_rms_error_percent"] == 7
     assert found["rms_error_percent"] == errors
@@ -186,7 +186,7 @@ def test_reproduced_claims_are_counted_by_where_they_hold():
 
 
 def test_re_and_table_4_do_not_count_among_the_filters():
-    found = summarise(compare_cells(Evidence()), ())
+    found = summarise(compare_cells(ClaimEvidence()), ())
     assert found["cells_published"] == sum(p.table != 4 for p in PAIRS)
 
 
@@ -241,7 +241,7 @@ def test_the_rms_of_a_drawn_signal_counts_as_used():
     errors = {"sine-010hz": -1.0, "sine-060hz": -7.0, "sine-120hz": 2.0}
     held_out = {"sine-060hz", "sine-120hz"}
     found = summarise(
-        compare_cells(Evidence()), (), held_out, errors, rms_used={"sine-060hz"}
+        compare_cells(ClaimEvidence()), (), held_out, errors, rms_used={"sine-060hz"}
     )
     assert found["calibrated"]["largest_rms_error_percent"] == 7
     assert found["held_out"]["largest_rms_error_percent"] == 2
@@ -250,7 +250,7 @@ def test_the_rms_of_a_drawn_signal_counts_as_used():
 def test_a_drawn_signal_has_the_median_and_the_range_of_its_draws():
     signal = "multisine-random-0-100hz"
     errors = {("gpo", "mse"): (0.3, 0.1, 0.2), ("gpo", "re"): (0.3, 0.1, math.inf)}
-    evidence = Evidence(
+    evidence = ClaimEvidence(
         runs=published_runs(), drawn={signal: Drawn(errors, (4.0, 5.0, 7.0))}
     )
     cells = {
@@ -275,7 +275,9 @@ def test_orderings_of_the_halves_are_apart():
         for model, value in zip(ranked, sorted(ours.values())[::-1], strict=True)
     }
     found = summarise(
-        compare_cells(Evidence(runs=published_runs(worst))), (), {sine, "sine-120hz"}
+        compare_cells(ClaimEvidence(runs=published_runs(worst))),
+        (),
+        {sine, "sine-120hz"},
     )
     assert found["held_out"]["orderings"]["agree"] == 6
     assert found["held_out"]["orderings"]["compared"] == 12
@@ -316,7 +318,7 @@ def test_the_two_findings_by_hand():
 
 def test_every_claim_is_told_once():
     """What held-out signals judge, the others by basis, and what is not judged."""
-    listed = judge_all(Evidence(runs=published_runs()))
+    listed = judge_all(ClaimEvidence(runs=published_runs()))
     counts = claim_counts(listed)
     others = counts["claims_elsewhere"].values()
     told = len(counts["claims_on_held_out"]) + sum(sum(x.values()) for x in others)

@@ -8,7 +8,7 @@ import pytest
 
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.comparison import compare_evidence
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.tables import Table, paper_table, paper_tables
 from hystbench.compare.verdict import (
     first_result,
@@ -24,7 +24,7 @@ def table(number, changes=None, missing=()):
     runs = published_runs(changes)
     for cell in missing:
         del runs[cell]
-    return paper_table(number, compare_cells(Evidence(runs=runs)))
+    return paper_table(number, compare_cells(ClaimEvidence(runs=runs)))
 
 
 def row(number, signal, error, **options):
@@ -37,7 +37,7 @@ def row(number, signal, error, **options):
 
 def test_shapes_are_those_of_the_paper():
     # two lines a signal; signal, error and two columns a model
-    shapes = [t.frame.shape for t in paper_tables(compare_cells(Evidence()))]
+    shapes = [t.frame.shape for t in paper_tables(compare_cells(ClaimEvidence()))]
     assert shapes == [(18, 10), (2, 10), (6, 10), (20, 6)]
 
 
@@ -123,7 +123,7 @@ def test_tables_are_written_in_three_formats(tmp_path):
 
 @pytest.fixture
 def comparison():
-    return compare_evidence(Evidence(runs=published_runs()))
+    return compare_evidence(ClaimEvidence(runs=published_runs()))
 
 
 def test_verdict_takes_its_numbers_from_the_summary(comparison):
@@ -135,7 +135,7 @@ def test_verdict_takes_its_numbers_from_the_summary(comparison):
 
 
 def test_verdict_without_runs_says_so():
-    summary = compare_evidence(Evidence()).summary
+    summary = compare_evidence(ClaimEvidence()).summary
     assert "No filter was run" in sentences(summary)[0]
 
 
@@ -146,7 +146,7 @@ def test_verdict_where_most_diverged_says_so(comparison):
 
 def test_verdict_never_mixes_calibrated_and_held_out():
     held_out = ("sine-060hz", "chirp-1-100hz")
-    summary = compare_evidence(Evidence(runs=published_runs()), held_out).summary
+    summary = compare_evidence(ClaimEvidence(runs=published_runs()), held_out).summary
     changed = summary | {
         "calibrated": summary["calibrated"] | {"within_factor_2": 0.5},
         "held_out": summary["held_out"] | {"within_factor_2": 0.125},
@@ -169,7 +169,7 @@ def test_verdict_never_mixes_calibrated_and_held_out():
 def test_the_first_result_has_numbers_and_links():
     held_out = ("sine-060hz", "chirp-1-100hz")
     found = compare_evidence(
-        Evidence(runs=published_runs({("sine-060hz", "gpo"): 1.0})), held_out
+        ClaimEvidence(runs=published_runs({("sine-060hz", "gpo"): 1.0})), held_out
     )
     usual = {
         "constant_tap": 0.0,
@@ -231,7 +231,7 @@ def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
 
 
 def test_the_small_table_keeps_the_halves_apart():
-    found = compare_evidence(Evidence(runs=published_runs()), ("sine-060hz",))
+    found = compare_evidence(ClaimEvidence(runs=published_runs()), ("sine-060hz",))
     text = verdict_markdown(found.summary)
     for part in (
         "held out: gpo",
@@ -256,6 +256,6 @@ def test_a_diverged_run_is_told_below_its_table():
     runs = published_runs()
     first = next(iter(runs))
     runs[first] = make_run(*first, None, diverged=told)
-    table = paper_table(1, compare_cells(Evidence(runs=runs)))
+    table = paper_table(1, compare_cells(ClaimEvidence(runs=runs)))
     assert f"{first[0]}, {first[1]}: {told}" in table.legend
     assert "diverged" in table.markdown()

@@ -7,7 +7,7 @@ import pytest
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.comparison import write_cells
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.twins import Holding, holding_text, read_holdings, read_spreads
 from hystbench.errors import InputError
 
@@ -58,7 +58,7 @@ def test_one_twin_has_no_spread(tmp_path):
 
 
 def test_cells_carry_half_and_spread(spreads, tmp_path):
-    evidence = Evidence(runs=published_runs(), spreads=spreads)
+    evidence = ClaimEvidence(runs=published_runs(), spreads=spreads)
     write_cells(compare_cells(evidence, ["sine-020hz"]), tmp_path / "cells.csv")
     with (tmp_path / "cells.csv").open(encoding="utf-8") as stream:
         rows = {
@@ -81,7 +81,7 @@ def test_holdings_are_counted_by_family(holdings):
 
 
 def test_where_a_claim_holds_stands_beside_its_verdict(holdings, tmp_path):
-    evidence = Evidence(runs=published_runs(), holdings=holdings)
+    evidence = ClaimEvidence(runs=published_runs(), holdings=holdings)
     judged = tmp_path / "judged.csv"
     write_claims(judge_all(evidence), judged)
     with judged.open(encoding="utf-8") as stream:

@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 
 from hystbench.blocks import registry
-from hystbench.gap.sample import Sample
-from hystbench.gap.scene import Scene
-from hystbench.gap.score import Score
-from hystbench.gap.state import State
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
 
@@ -80,7 +80,7 @@ def measured(chain, noise=0.0, seed=0, given=None):
     """Records whose output is a chain's, with white noise."""
     rng = np.random.default_rng(seed)
     given = records() if given is None else given
-    outputs = Scene(tuple(chain), given, "band-limited").output
+    outputs = Simulation(tuple(chain), given, "band-limited").output
     return tuple(
         record(
             one.u,
@@ -106,7 +106,7 @@ def write_lagging(folder):
 def state_of(chain, given=None, count=300, **more):
     """Start from a chain, few samples scored."""
     given = records() if given is None else given
-    return State(tuple(chain), given, Sample.of(given, count), **more).settled()
+    return ModelState(tuple(chain), given, Sample.of(given, count), **more).settled()
 
 
 def plain_score(state, floor=1e-6):

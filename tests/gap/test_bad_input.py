@@ -12,10 +12,10 @@ import yaml
 
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.run import close_gap
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
 from hystbench.written import ENTRIES, TEMPORARY
+from tests.gap.closing import close_gap
 from tests.gap.made import record, write_folder
 
 ABOUT = {
@@ -169,8 +169,8 @@ def test_a_drive_that_saturates_is_named_once_the_dataset_says_that_it_is_real(r
         table[:, 2] = np.round(12 * driven / step) * step
     refused(rig, "one.csv", "clipped", "'stands_still: [output]'", records=records)
     shutil.rmtree(rig.out.parent / "rig")
-    finding = rig(records=records, real=["output"])
-    (effect,) = finding.content["effects"]
+    decision = rig(records=records, real=["output"])
+    (effect,) = decision.content["effects"]
     assert effect["name"] == "drive-saturation"
     assert effect["parameters"]["limit"]["value"] == pytest.approx(limit, rel=0.02)
 
@@ -274,8 +274,8 @@ def test_records_of_different_rates_are_no_fault(rig):
     records = tables()
     records["two"] = records["two"][::2]
     records["three"] = records["three"][::4]
-    finding = rig(records=records)
-    assert len({one.dt for one in finding.state.records}) == 2
+    decision = rig(records=records)
+    assert len({one.dt for one in decision.state.records}) == 2
     assert (rig.out / "gap.json").is_file()
 
 

@@ -11,14 +11,14 @@ import pytest
 from hystbench.device_kinds import KINDS
 from hystbench.gap.behaviour import in_words
 from hystbench.gap.effects import effects
-from hystbench.gap.evidence import load_evidence
 from hystbench.gap.jobs import decide_in, show_in
-from hystbench.gap.run import close_gap
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.schema import SCHEMA
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.interface.gap import find_gap
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema
+from tests.gap.closing import close_gap
 from tests.gap.conftest import without_rendering
 from tests.gap.tiny import write_tiny
 

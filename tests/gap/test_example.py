@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.dataset import load_dataset
-from hystbench.gap.bases import load_base
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.bases.load import load_base
+from hystbench.gap.decision import find
 from hystbench.gap.example import whole_period, write_example
-from hystbench.gap.finding import find
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.measurement import measure
 from hystbench.model import load_model
 from hystbench.record import Channel, Record
@@ -106,7 +106,7 @@ def named(settings, twin, tmp_path_factory):
     base, _ = load_base(str(folder / "base.yaml"), evidence)
     with pytest.MonkeyPatch.context() as patch:
         # What would tell likely effects apart takes long and decides nothing.
-        patch.setattr("hystbench.gap.finding.tell_apart", lambda *given: (None, ""))
+        patch.setattr("hystbench.gap.decision.tell_apart", lambda *given: (None, ""))
         content = find(evidence.name, evidence.fit, base, evidence.hold).content
     assert content["verdict"] == "named"
     return {item["name"]: item["parameters"] for item in content["effects"]}

@@ -12,18 +12,18 @@ import pytest
 from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import VOCABULARY
 from hystbench.challenge.spec import CaseSpec
-from hystbench.gap import name as naming
-from hystbench.gap.compared import Compared
+from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
-from hystbench.gap.finding import find
-from hystbench.gap.floor import noise_floor
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.judging.unnamed import what_is_unnamed
+from hystbench.gap.judging.verdict import LONE, judge, what_is_left
 from hystbench.gap.locate import locate
-from hystbench.gap.lone import lone_share
-from hystbench.gap.rank import make_score, rank
-from hystbench.gap.start import start_state
+from hystbench.gap.naming import name as naming
+from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.records.disturbances import lone_share
+from hystbench.gap.records.floor import noise_floor
+from hystbench.gap.records.residual import Compared
 from hystbench.gap.thresholds import PAYS, SHAPE, TIE
-from hystbench.gap.unnamed import what_is_unnamed
-from hystbench.gap.verdict import LONE, judge, what_is_left
 from tests.gap.halved import first_halves
 
 SEED = 1
@@ -104,7 +104,7 @@ def test_where_nothing_is_hidden_nothing_is_named(family):
 def decided(monkeypatch):
     """What gap.json says of one hidden effect, by all that decides."""
     # What would tell likely effects apart takes long and decides nothing.
-    monkeypatch.setattr("hystbench.gap.finding.tell_apart", lambda *given: (None, ""))
+    monkeypatch.setattr("hystbench.gap.decision.tell_apart", lambda *given: (None, ""))
 
     def decide(name, family):
         return find("hidden", *hidden((name,), family)).content

@@ -9,12 +9,11 @@ import shutil
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.evidence import load_evidence
 from hystbench.gap.example import slow_loop_model
 from hystbench.gap.jobs import BASE as BASE_FILE
 from hystbench.gap.jobs import DECISION, decide_in, show_in
-from hystbench.gap.run import close_gap
-from hystbench.gap.summary import (
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.report.tables import (
     write_adds,
     write_effects,
     write_records,
@@ -23,8 +22,8 @@ from hystbench.gap.summary import (
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel
-
-from .tiny import BASE, LAG_S, write_tiny
+from tests.gap.closing import close_gap
+from tests.gap.tiny import BASE, LAG_S, write_tiny
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 import pytest
 
 from hystbench.gap.effects import effects
-from hystbench.gap.rank import make_score, rank
+from hystbench.gap.naming.rank import make_score, rank
 from tests.gap.small import block, measured, records, state_of
 
 NOISE = 0.02

@@ -7,9 +7,9 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
-from hystbench.gap.rank import rank
-from hystbench.gap.search import Attempt, coarse
-from hystbench.gap.work import tried
+from hystbench.gap.fitting.search import Attempt, coarse
+from hystbench.gap.naming.cached import tried
+from hystbench.gap.naming.rank import rank
 from tests.gap.small import block, measured, plain_score, state_of
 
 NOISE = 0.02
@@ -23,8 +23,8 @@ class Lags:
     def __init__(self, *refused):
         self.refused = refused
 
-    def variants(self, scene):
-        (lag,) = effects()["drive-lag"].variants(scene)
+    def variants(self, simulation):
+        (lag,) = effects()["drive-lag"].variants(simulation)
 
         def refuse(values):
             raise InputError(f"time_constant_s: {values['time_constant_s']:g} is not")
@@ -43,7 +43,7 @@ def beside():
 
 def test_a_variant_that_refuses_every_point_declines_with_the_last_message(beside):
     state, score = beside
-    (variant,) = Lags(True).variants(state.scene)
+    (variant,) = Lags(True).variants(state.simulation)
     last = variant.grids["time_constant_s"][-1]
     with pytest.raises(Declined, match=f"^time_constant_s: {last:g} is not$"):
         coarse(Attempt(state, variant, score))

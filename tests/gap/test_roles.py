@@ -14,10 +14,10 @@ import pytest
 from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec
 from hystbench.challenge.writing import write_case
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.run import close_gap
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
 from hystbench.written import ENTRIES
+from tests.gap.closing import close_gap
 
 READ_LAST = ("gap", "records", "ladder", "black_box", "shortfall", "reason")
 """Keys of gap.json that the hold-out records fill; their figure leads the reason."""
@@ -121,7 +121,7 @@ def modules_of(folder):
 
 def test_no_module_of_the_gap_imports_the_generator_at_any_depth(root):
     found = set(modules_of(root / "src" / "hystbench" / "gap"))
-    assert "hystbench.gap.scene" in found
+    assert "hystbench.gap.simulation.simulation" in found
     assert not [item for item in found if item.startswith("hystbench.challenge")]
 
 

@@ -5,13 +5,13 @@ from types import SimpleNamespace
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.built_in import put_in
 from hystbench.gap.effects import effects
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.outcome import with_what_was_asked
-from hystbench.gap.rank import make_score, rank
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.holdout.withdrawal import with_what_was_asked
+from hystbench.gap.naming.built_in import put_in
+from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.words import rerun_commands, verdict_sentence
-from hystbench.gap.start import start_state
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.interface.gap import find_gap
 from hystbench.model import load_model
@@ -157,13 +157,13 @@ def test_the_command_passes_what_was_asked(tiny, tmp_path, monkeypatch):
 
     def find(dataset, model, **more):
         given.update(more)
-        finding = SimpleNamespace(experiment=None, content={})
+        decision = SimpleNamespace(experiment=None, content={})
         return SimpleNamespace(
             effects=(),
             verdict="no-gap",
             content={"reason": "none is there"},
             save=lambda out, report: None,
-            closed=SimpleNamespace(finding=finding),
+            closed=SimpleNamespace(decision=decision),
         )
 
     monkeypatch.setattr(module, "find_gap", find)

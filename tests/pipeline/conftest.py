@@ -106,7 +106,7 @@ IMPORTED = (
     *("snakemake.executors.dryrun", "snakemake.executors.local"),
     *("pandas", "grimp", "pulp", "jsonschema", "docutils.core"),
     *("hystbench.settings", "hystbench.settings_checks", "hystbench.figures"),
-    *("hystbench.model", "hystbench.gap.vocabulary", "hystbench.gap.asked"),
+    *("hystbench.model", "hystbench.gap.vocabulary", "hystbench.gap.bases.kinds"),
     *("hystbench.challenge.contest.plan", "hystbench.commands.rival"),
 )
 FORKING = multiprocessing.get_context("forkserver")

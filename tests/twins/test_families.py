@@ -14,7 +14,7 @@ from hystbench.errors import InputError
 from hystbench.group import group
 from hystbench.model import load_model
 from hystbench.signals import Signal, sine
-from hystbench.twins.families import ASYMMETRY, FAMILIES, OFFSET, Task, scaled
+from hystbench.twins.families import ASYMMETRY, FAMILIES, OFFSET, FamilyTask, scaled
 from hystbench.twins.family_fit import fit_family
 from hystbench.twins.search import Unknown
 
@@ -35,7 +35,7 @@ def made(name, frequency_hz, amplitude=0.632):
 
 def task(model=GMA, rms=(9.17, 8.67)):
     signals = (made("sine-010hz", 10), made("sine-040hz", 40, 0.7))
-    return Task(model, made("sine-001hz", 1), signals, rms, seed=1)
+    return FamilyTask(model, made("sine-001hz", 1), signals, rms, seed=1)
 
 
 def unmoved(model):

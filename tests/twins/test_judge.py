@@ -6,7 +6,7 @@ import pytest
 
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.halves import holds, on_signals
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.twins import read_holdings, read_spreads
 from hystbench.twins.experiments import CONFIGURED, Experiment
 from hystbench.twins.judge import results_on_runs, write_twins
@@ -21,7 +21,7 @@ HELD_OUT.append("multisine-random-0-100hz")
 def outcome(changes, name, family="gpi", experiment=CONFIGURED):
     """Runs as printed, but for some MSE."""
     twin = SimpleNamespace(name=name, family=family)
-    return Outcome(twin, experiment, Evidence(runs=published_runs(changes)))
+    return Outcome(twin, experiment, ClaimEvidence(runs=published_runs(changes)))
 
 
 @pytest.mark.parametrize("claim", [c.id for c in CLAIMS if c.kind == "result"])

@@ -2,7 +2,7 @@
 # `snakemake gap` runs the worked example (config: gap: twin) and the datasets listed
 # there; `all` leaves it out for its time.
 from hystbench.dataset import load_dataset
-from hystbench.gap.asked import check_base
+from hystbench.gap.bases.kinds import check_base
 from hystbench.gap.vocabulary import Vocabulary
 
 GAP = f"{RESULTS}/gap"

@@ -7,13 +7,12 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.asked import check_base
+from hystbench.gap.bases.kinds import check_base
 from hystbench.gap.behaviour import in_words
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.limits import Limits
-from hystbench.gap.run import will_write
+from hystbench.gap.experiment.limits import Limits
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.run import will_write, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
-from hystbench.gap.wanted import write_wanted
 from hystbench.interface.gap import find_gap
 
 
@@ -85,8 +84,8 @@ def gap(
     found.save(out, report)
     say(f"{found.verdict}: {found.content['reason']}")  # once all is written
     if write_experiment is not None:
-        finding = found.closed.finding
-        click.echo(write_wanted(finding, evidence.input, write_experiment))
+        decision = found.closed.decision
+        click.echo(write_next_experiment(decision, evidence.input, write_experiment))
     effects = [in_words(effect.name) for effect in found.effects]
     named = f": {', '.join(effects)}" if effects else ""
     put_in = f" (you put in {', '.join(with_)})" if with_ else ""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from hystbench.compare.evidence import Cell, Evidence, Run
+from hystbench.compare.evidence import Cell, ClaimEvidence, Run
 from hystbench.published import METRICS, Metric
 from hystbench.published.consistency import Standing, standings
 
@@ -95,13 +95,13 @@ def _status(run: Run | None, ours: float | None) -> str:
 
 
 def compare_cells(
-    evidence: Evidence, held_out: Iterable[str] = ()
+    evidence: ClaimEvidence, held_out: Iterable[str] = ()
 ) -> tuple[ComparedCell, ...]:
     """Set ours beside each of the 124 printed numbers, run or not.
 
     Parameters
     ----------
-    evidence : Evidence
+    evidence : ClaimEvidence
     held_out : iterable of str
         Signals whose published errors the twin was not fitted to.
     """

@@ -11,7 +11,7 @@ from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.edges import Edge, write_margins
-from hystbench.compare.evidence import Evidence, read_evidence
+from hystbench.compare.evidence import ClaimEvidence, read_evidence
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
@@ -81,7 +81,9 @@ def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in signals(load()) if name not in seen)
 
 
-def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Comparison:
+def compare_evidence(
+    evidence: ClaimEvidence, held_out: Iterable[str] = ()
+) -> Comparison:
     """Compare evidence that is already read; ``held_out`` as in ``summarise``."""
     unseen = set(held_out)
     cells = compare_cells(evidence, unseen)

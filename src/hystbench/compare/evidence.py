@@ -122,7 +122,7 @@ class Identification:
 
 
 @dataclass(frozen=True)
-class Evidence:
+class ClaimEvidence:
     """All that the claims are judged by; what was not run is missing here.
 
     ``spreads`` and ``holdings`` are what other twins say, and ``constants`` what the
@@ -276,7 +276,7 @@ def read_evidence(
     runs: Iterable[str | Path],
     records: Iterable[str | Path] = (),
     **files: str | Path | None,
-) -> Evidence:
+) -> ClaimEvidence:
     """Read the files of a comparison.
 
     Parameters
@@ -302,4 +302,4 @@ def read_evidence(
         if path is not None
     }
     named = {record.name: record for record in map(load_record, records)}
-    return Evidence(runs=found, records=named, **read)
+    return ClaimEvidence(runs=found, records=named, **read)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import FACTOR, rms_error_percent
 from hystbench.published import FILTERS
@@ -38,7 +38,9 @@ class OffCell:
         return None if ours is None else ours / float(self.cell.published)
 
 
-def off_cells(cells: Sequence[ComparedCell], evidence: Evidence) -> tuple[OffCell, ...]:
+def off_cells(
+    cells: Sequence[ComparedCell], evidence: ClaimEvidence
+) -> tuple[OffCell, ...]:
     """Find the cells of MSE that are off; a diverged run is off.
 
     RE is the same error over the same record, so that MSE alone is looked at.
@@ -54,7 +56,7 @@ def write_off(off: Iterable[OffCell], path: str | Path) -> None:
 
 
 def _sentence(
-    cell: ComparedCell, cells: Sequence[ComparedCell], evidence: Evidence
+    cell: ComparedCell, cells: Sequence[ComparedCell], evidence: ClaimEvidence
 ) -> str:
     if cell.ours is None:
         return f"Ours {cell.status}."
@@ -104,14 +106,14 @@ def _consistency(cell: ComparedCell) -> str:
     }[cell.published_consistent]
 
 
-def _record(cell: ComparedCell, evidence: Evidence) -> str:
+def _record(cell: ComparedCell, evidence: ClaimEvidence) -> str:
     percent = rms_error_percent(evidence).get(cell.signal)
     if percent is None:
         return ""
     return f"the RMS displacement is off by {percent:+.1f} %"
 
 
-def _start_up(cell: ComparedCell, evidence: Evidence) -> str:
+def _start_up(cell: ComparedCell, evidence: ClaimEvidence) -> str:
     run = evidence.runs[cell.signal, cell.model]
     share = run.start_up_share
     if share is None or run.error_kind == "free-run simulation":

@@ -19,7 +19,7 @@ from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
 from hystbench.compare.constants import Row
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.published import FILTERS
 from hystbench.published.consistency import check
 
@@ -265,7 +265,7 @@ def summarise(
     }
 
 
-def rms_error_percent(evidence: Evidence) -> dict[str, float]:
+def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
     """Hold the twin's RMS displacement against the one that the tables imply.
 
     Returns

@@ -10,8 +10,8 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from hystbench.device_kinds import BEHAVIOURS, Kind, behaviour_of, causes_of
-from hystbench.gap.say import Say
+from hystbench.device_kinds import BEHAVIOURS, DeviceKind, behaviour_of, causes_of
+from hystbench.gap.progress import Say
 from hystbench.quantities import Quantities
 
 _NAMED_BY_A_CAUSE = re.compile(rf"(?<![\w-])({'|'.join(BEHAVIOURS)})(?![\w-])")
@@ -43,7 +43,7 @@ def for_readers(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def with_device(
-    content: Mapping[str, Any], kind: Kind | None, quantities: Quantities
+    content: Mapping[str, Any], kind: DeviceKind | None, quantities: Quantities
 ) -> dict[str, Any]:
     """Tell what the device is, and what causes the effects in it.
 
@@ -77,7 +77,7 @@ def with_device(
     return told
 
 
-def _with_causes(effects: list[dict[str, Any]], kind: Kind | None) -> list[Any]:
+def _with_causes(effects: list[dict[str, Any]], kind: DeviceKind | None) -> list[Any]:
     return [
         item
         | {

@@ -8,24 +8,21 @@ from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_json
 from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.built_in import BuiltIn
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.finding import Finding, black_box
-from hystbench.gap.floor import Floor
-from hystbench.gap.kept import Restorer, state_mapping
-from hystbench.gap.own_values import OwnValues
-from hystbench.gap.run import (
-    DECISIVE,
-    SHOWN,
-    as_asked,
-    found_on_fit,
-    outcome,
-    write_shown,
-)
-from hystbench.gap.rungs import Rung
-from hystbench.gap.say import Say, silent
-from hystbench.gap.start import start_state
-from hystbench.gap.unnamed import SHARE
+from hystbench.gap.decision import Decision
+from hystbench.gap.fitting.compare import compare
+from hystbench.gap.fitting.own_values import OwnValues
+from hystbench.gap.fitting.serialize import Restorer, state_mapping
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.holdout.outcome import as_asked, outcome
+from hystbench.gap.holdout.show import FitResult
+from hystbench.gap.judging.black_box import black_box
+from hystbench.gap.naming.built_in import BuiltIn
+from hystbench.gap.naming.ladder import Rung
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.run import DECISIVE, SHOWN, found_on_fit, write_shown
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
 from hystbench.model import Model
 from hystbench.written import writes
@@ -43,9 +40,9 @@ def decide_in(
     base: Model,
     limits: Mapping[str, float] | None = None,
     say: Say = silent,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     vocabulary: Vocabulary = EVERYTHING,
-) -> Finding:
+) -> Decision:
     """Decide on the fit records; write the decision and the curves to a folder.
 
     Parameters
@@ -66,28 +63,28 @@ def decide_in(
     writes(*(folder / name for name in DECIDED))
     say = say_in_words(say)
     vocabulary = vocabulary.in_device(evidence.device_kind)
-    finding, built_in = found_on_fit(
+    decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
-    content = with_device(finding.content, evidence.device_kind, evidence.quantities)
-    finding = replace(finding, content=content)
+    content = with_device(decision.content, evidence.device_kind, evidence.quantities)
+    decision = replace(decision, content=content)
     kept = {
-        "floor": asdict(finding.floor),
-        "state": state_mapping(finding.state),
+        "floor": asdict(decision.floor),
+        "state": state_mapping(decision.state),
         "rungs": [
             {"name": item.name, "state": state_mapping(item.state)}
-            for item in finding.rungs
+            for item in decision.rungs
         ],
         "without": list(vocabulary.without),
         "with": list(vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
     }
     with whole_folder(folder, DECIDED) as fresh:
-        write_json(fresh / "curves.json", finding.curves)
-        finding.base.save(fresh / BASE)
+        write_json(fresh / "curves.json", decision.curves)
+        decision.base.save(fresh / BASE)
         write_json(fresh / NAMED, kept)
-        write_json(fresh / DECISION, finding.content)
-    return finding
+        write_json(fresh / DECISION, decision.content)
+    return decision
 
 
 def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
@@ -111,27 +108,16 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     fit = own.taken_off(evidence.fit, evidence.hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
-    steps = [
+    rungs = tuple(
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
-    ]
-    start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
-    box = black_box(start, floor)
-    shown = outcome(
-        base,
-        decided,
-        state,
-        floor,
-        box,
-        evidence.hold_out,
-        steps,
-        own,
-        evidence.warnings,
     )
+    start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
+    box = black_box(compare(start), floor.rms)
+    fitted = FitResult(base, state, floor, box, rungs, own)
+    shown = outcome(fitted, decided, evidence)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
-    shown = as_asked(shown, vocabulary, built_in, evidence, state, floor, own)
-    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
-    shown = replace(shown, content=content)
+    shown = as_asked(shown, fitted, evidence, vocabulary, built_in)
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

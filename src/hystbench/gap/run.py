@@ -2,43 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from hystbench.files import whole_folder, write_csv, write_json
-from hystbench.gap.augmented import augmented
-from hystbench.gap.behaviour import say_in_words, with_device
-from hystbench.gap.built_in import BuiltIn, put_in
-from hystbench.gap.evidence import Evidence, check_units, inside_of
-from hystbench.gap.finding import Finding, find
-from hystbench.gap.floor import Floor
-from hystbench.gap.foretell import keep_back
-from hystbench.gap.outcome import (
-    first_figure,
-    with_built_in,
-    with_what_was_asked,
-    withdrawal,
-    without_names,
-)
-from hystbench.gap.own_values import NONE, OwnValues
-from hystbench.gap.rungs import BASE, Rung
-from hystbench.gap.say import Say, silent
-from hystbench.gap.shortfall import shortfall
-from hystbench.gap.shown import as_recorded, nuisance_of, show
-from hystbench.gap.shrink import (
-    ladder,
-)
-from hystbench.gap.start import run_base
-from hystbench.gap.state import State
-from hystbench.gap.unnamed import SHARE
+from hystbench.gap.behaviour import say_in_words
+from hystbench.gap.decision import Decision, find
+from hystbench.gap.experiment.excitations import write_experiment
+from hystbench.gap.fitting.start import run_base
+from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
+from hystbench.gap.inside.name import inside_of
+from hystbench.gap.naming.built_in import BuiltIn, put_in
+from hystbench.gap.naming.forecast_calls import keep_back
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence, check_units
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary
-from hystbench.gap.yardstick import BlackBox
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.record import Channel, FloatArray, Record
 from hystbench.written import writes
 
 DECISIVE = ("gap.json", "model.yaml")
@@ -56,13 +40,13 @@ class Closed:
 
     Parameters
     ----------
-    finding : Finding
+    decision : Decision
         Its ``model`` and ``content`` are those after the hold-out records were read.
     outcome : Outcome
     evidence : Evidence
     """
 
-    finding: Finding
+    decision: Decision
     outcome: Outcome
     evidence: Evidence
 
@@ -84,7 +68,7 @@ class Closed:
             nothing is written then.
         """
         with whole_folder(folder, RESULT) as fresh:
-            write_json(fresh / "curves.json", self.finding.curves)
+            write_json(fresh / "curves.json", self.decision.curves)
             write_shown(fresh, self.evidence.hold_out, self.outcome)
             if report:
                 from hystbench.gap.report import write_report  # late: it draws
@@ -104,7 +88,7 @@ def closed_gap(
     *,
     place: str = "model",
     limits: Mapping[str, float] | None = None,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     vocabulary: Vocabulary = EVERYTHING,
     say: Say = silent,
 ) -> Closed:
@@ -137,28 +121,15 @@ def closed_gap(
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
-    finding, built_in = found_on_fit(
+    decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
     # From here on the hold-out records are read: they choose nothing, and may take
     # back what was named.
-    shown = outcome(
-        finding.base,
-        finding.content,
-        finding.state,
-        finding.floor,
-        finding.black_box,
-        evidence.hold_out,
-        finding.rungs,
-        finding.own,
-        evidence.warnings,
-    )
-    shown = as_asked(
-        shown, vocabulary, built_in, evidence, finding.state, finding.floor, finding.own
-    )
-    content = with_device(shown.content, evidence.device_kind, evidence.quantities)
-    shown = replace(shown, content=content)
-    return Closed(replace(finding, model=shown.model, content=content), shown, evidence)
+    shown = outcome(decision, decision.content, evidence)
+    shown = as_asked(shown, decision, evidence, vocabulary, built_in)
+    decision = replace(decision, model=shown.model, content=shown.content)
+    return Closed(decision, shown, evidence)
 
 
 def found_on_fit(
@@ -168,14 +139,14 @@ def found_on_fit(
     say: Say,
     unnamed_share: float,
     vocabulary: Vocabulary,
-) -> tuple[Finding, BuiltIn | None]:
+) -> tuple[Decision, BuiltIn | None]:
     """Put in what is asked for, and find what the fit records say is missing.
 
     Parameters are those of :func:`closed_gap`, and of the vocabulary what the device
     can have.
     """
     base, built_in = put_in(base, evidence, vocabulary.fixed, say)
-    finding = find(
+    decision = find(
         evidence.name,
         evidence.fit,
         base,
@@ -187,36 +158,7 @@ def found_on_fit(
         vocabulary.offered,
         inside_of(base, evidence),
     )
-    return finding, built_in
-
-
-def close_gap(
-    evidence: Evidence,
-    base: Model,
-    folder: Path,
-    *,
-    report: bool = True,
-    **asked: Any,
-) -> Finding:
-    """Search a gap as :func:`closed_gap` does, and write the result to a folder.
-
-    Parameters
-    ----------
-    evidence : Evidence
-    base : Model
-    folder : Path
-        As for :meth:`Closed.write`; what stands in the way is refused before the
-        search.
-    report : bool
-        Whether to write the page.
-    **asked
-        As for :func:`closed_gap`.
-    """
-    check_units(evidence, base, asked.get("place", "model"))
-    will_write(folder, evidence)
-    closed = closed_gap(evidence, base, **asked)
-    closed.write(folder, report)
-    return closed.finding
+    return decision, built_in
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:
@@ -237,105 +179,33 @@ def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> 
     write_json(folder / "gap.json", outcome.content)
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """A finding after the hold-out records were read.
-
-    Parameters
-    ----------
-    model : Model
-        The base, where they took the names back.
-    content : dict
-        What gap.json holds.
-    outputs : list of (ndarray, ndarray)
-        Outputs before and after, of each record; NaN where the model runs away on it.
-    """
-
-    model: Model
-    content: dict[str, Any]
-    outputs: list[tuple[FloatArray, FloatArray]]
-
-
-def outcome(
-    base: Model,
-    decided: Mapping[str, Any],
-    state: State,
-    floor: Floor,
-    box: BlackBox,
-    records: tuple[Record, ...],
-    steps: Sequence[Rung],
-    own: OwnValues = NONE,
-    warnings: Sequence[str] = (),
-) -> Outcome:
-    """Show a finding on the hold-out records; take back what is worse there.
-
-    Parameters
-    ----------
-    base : Model
-    decided : mapping
-        What gap.json holds, but for what the hold-out records show.
-    state, floor, box, records, steps, own
-        As for :func:`show`.
-    warnings : sequence of str
-        What of the dataset is hardly meant.
-    """
-    shown = show(base, state, floor, box, records, steps, own)
-    content = {
-        **decided,
-        "withdrawn": None,
-        **shown.content,
-        "warnings": list(warnings),
-    }
-    model = augmented(base, state).with_hold(state.hold)
-    taken = withdrawal(content)
-    if taken is not None:
-        # The ladder and what runs away stay: they tell why.
-        alone = show(base, steps[0].state, floor, box, records, steps[:1], own)
-        kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
-        content = without_names({**content, **kept}, taken)
-        model = base.with_hold(state.hold)
-        shown = alone
-    elif content["effects"] or content["verdict"] == "parameters":
-        content["reason"] = f"{first_figure(content)}; {content['reason']}"
-    content["shortfall"] = shortfall(content)
-    return Outcome(model, content, shown.outputs)
-
-
-def as_asked(
-    shown: Outcome,
-    vocabulary: Vocabulary,
-    built_in: BuiltIn | None,
-    evidence: Evidence,
-    state: State,
-    floor: Floor,
-    own: OwnValues,
-) -> Outcome:
-    """Tell which effects the user put in or left out, and what those put in do.
-
-    Parameters
-    ----------
-    shown : Outcome
-    vocabulary : Vocabulary
-    built_in : BuiltIn or None
-        None where no effect was put in.
-    evidence : Evidence
-    state, floor, own
-        As for :func:`show`.
-    """
-    content = with_what_was_asked(shown.content, vocabulary)
-    if built_in is not None:
-        records = evidence.hold_out
-        outputs = run_base(built_in.alone, records, evidence.hold)
-        mine = as_recorded(own, records, outputs, floor)
-        ((_, alone),) = ladder(records, [(BASE, mine)], nuisance_of(state, own))
-        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
-        content = with_built_in(content, built_in, alone)
-    return replace(shown, content=content)
-
-
 def _write_hold_out(
     path: Path, record: Record, before: FloatArray, after: FloatArray
 ) -> None:
     table = np.column_stack([record.time, record.y, before, after])
     rows = ([f"{value:.9g}" for value in row] for row in table.tolist())
     write_csv(path, ["time_s", "measured", "before", "after"], rows)
+
+
+def write_next_experiment(decision: Decision, channel: Channel, path: Path) -> str:
+    """Write the excitation that tells likely effects apart, or tell why there is none.
+
+    Parameters
+    ----------
+    decision : Decision
+    channel : Channel
+        The input's.
+    path : Path
+        A CSV file, or an archive by its suffix ``.npz``.
+
+    Returns
+    -------
+    str
+        A line that tells what was done.
+    """
+    if decision.experiment is None:
+        needless = "no effects that were tried need to be told apart"
+        why = decision.content.get("no_experiment", needless)
+        return f"{path}: not written: {why}"
+    write_experiment(decision.experiment.excitation, channel, path)
+    return f"{path}: {decision.experiment.sentence}"

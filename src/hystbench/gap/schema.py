@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 from hystbench.device_kinds import KINDS
+from hystbench.gap.view_kinds import ViewKind
 from hystbench.quantities import QUANTITIES
 
 NUMBER = {"type": "number"}
@@ -51,19 +52,7 @@ EFFECT = _object(
 
 VIEW = _object(
     {
-        "view": {
-            "enum": [
-                "frequency",
-                "amplitude",
-                "rate",
-                "branch",
-                "slow-time",
-                "delay",
-                "unexplained",
-                "record",
-                "level",
-            ]
-        },
+        "view": {"enum": list(get_args(ViewKind))},
         "axis": {"type": "string"},
         "from": {"type": ["number", "string"]},
         "to": {"type": ["number", "string"]},

@@ -50,4 +50,10 @@ SWAP = 3.0
 CLOSE = 0.6
 """Rivals are those with this share of the gain of the best of a round."""
 
+UNNAMED_SHARE = 0.01
+"""Share of the power of the gap that may stay unnamed: a tenth of its rms."""
+
+ABOVE_NOISE = 0.5
+"""Power above the floor, in floors, that makes what is left worth a word."""
+
 SHAPE = "hysteresis-shape"

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from hystbench.device_kinds import Kind, impossible_in
+from hystbench.device_kinds import DeviceKind, impossible_in
 from hystbench.errors import InputError, nearest
 
 
@@ -32,7 +32,7 @@ class Vocabulary:
 
     without: tuple[str, ...] = ()
     fixed: tuple[str, ...] = ()
-    kind: Kind | None = None
+    kind: DeviceKind | None = None
 
     def __post_init__(self) -> None:
         """Refuse names that mean nothing."""
@@ -57,7 +57,7 @@ class Vocabulary:
         """Take names in any sequence."""
         return cls(tuple(without), tuple(fixed))
 
-    def in_device(self, kind: Kind | None) -> Vocabulary:
+    def in_device(self, kind: DeviceKind | None) -> Vocabulary:
         """Leave out what a kind of device cannot have."""
         return replace(self, kind=kind)
 

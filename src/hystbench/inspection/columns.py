@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from hystbench.device_kinds import Kind
+from hystbench.device_kinds import DeviceKind
 from hystbench.errors import InputError, nearest
 from hystbench.formats import Column, Table
 from hystbench.inspection.clocks import clock_of
@@ -61,7 +61,7 @@ class Given:
     sampling_frequency_hz: float | None = None
     hold_out: tuple[str, ...] = ()
     missing: str | None = None
-    device: Kind | None = None
+    device: DeviceKind | None = None
 
 
 @dataclass(frozen=True)

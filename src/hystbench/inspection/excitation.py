@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.record import FloatArray
 
-Kind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
+ExcitationKind = Literal["sine", "sum of sines", "sweep", "steps", "ramps", "broadband"]
 
 STANDS = 0.8
 """Share of samples at which the input stands still, of steps."""
@@ -41,7 +41,7 @@ class Excitation:
         Largest rate.
     """
 
-    kind: Kind
+    kind: ExcitationKind
     low_hz: float
     high_hz: float
     low: float
@@ -85,7 +85,7 @@ def excitation_of(u: FloatArray, dt: float) -> Excitation:
     )
 
 
-def _kind(u: FloatArray, power: FloatArray) -> Kind:
+def _kind(u: FloatArray, power: FloatArray) -> ExcitationKind:
     steps = np.abs(np.diff(u))
     reach = float(np.ptp(u))
     if np.mean(steps < 1e-6 * reach) > STANDS:

@@ -11,8 +11,8 @@ import numpy as np
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError
 from hystbench.formats import read_table
-from hystbench.gap.compared import Compared
-from hystbench.gap.usable import REAL, check_usable
+from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.usable import REAL, check_usable
 from hystbench.inspection.excitation import Excitation, excitation_of
 from hystbench.inspection.missing import cannot_be_bridged
 from hystbench.periods import find_period

@@ -12,7 +12,7 @@ from hystbench.blocks.base import Block
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, Variant
-from hystbench.gap.state import State, beside_columns
+from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.record import FloatArray
 
 POINTS = 6
@@ -52,12 +52,12 @@ class Shape:
     charge: float
 
 
-def shapes_of(state: State) -> tuple[list[Shape], dict[str, str]]:
+def shapes_of(state: ModelState) -> tuple[list[Shape], dict[str, str]]:
     """Simulate every effect of the vocabulary beside a base.
 
     Parameters
     ----------
-    state : State
+    state : ModelState
         The base on the records.
 
     Returns
@@ -70,7 +70,7 @@ def shapes_of(state: State) -> tuple[list[Shape], dict[str, str]]:
     declined: dict[str, str] = {}
     for name, effect in effects().items():
         try:
-            variants = list(effect.variants(state.scene))
+            variants = list(effect.variants(state.simulation))
         except Declined as why:
             declined[name] = str(why)
             continue
@@ -81,7 +81,7 @@ def shapes_of(state: State) -> tuple[list[Shape], dict[str, str]]:
     return shapes, declined
 
 
-def _of_variant(state: State, variant: Variant) -> Iterator[Shape]:
+def _of_variant(state: ModelState, variant: Variant) -> Iterator[Shape]:
     """Give the shapes of one variant at a few points of its range."""
     for point in itertools.product(*_thinned(variant)):
         values = dict(zip(variant.grids, point, strict=True))
@@ -101,13 +101,15 @@ def _thinned(variant: Variant) -> list[Sequence[float]]:
     return axes
 
 
-def _at(state: State, variant: Variant, values: dict[str, float]) -> Iterator[Shape]:
+def _at(
+    state: ModelState, variant: Variant, values: dict[str, float]
+) -> Iterator[Shape]:
     about = (variant.effect, variant.form, variant.place, values)
     if variant.beside is not None:
         columns = beside_columns(state, variant.beside, values)
         yield Shape(*about, "", None, columns, 1.0, variant.freedom)
         return
-    take, tail = state.sample.take, state.scene.tail
+    take, tail = state.sample.take, state.simulation.tail
 
     def output(given: dict[str, float]) -> tuple[FloatArray, Block]:
         blocks = variant.build(given)
@@ -119,7 +121,7 @@ def _at(state: State, variant: Variant, values: dict[str, float]) -> Iterator[Sh
     elif variant.unit and not variant.neutral:
         now, _ = output(zero)
     else:
-        now = take(state.scene.output)
+        now = take(state.simulation.output)
     for name, step in variant.unit.items() or ((("", 1.0)),):
         after, block = output({**zero, name: step} if name else zero)
         column = after - now

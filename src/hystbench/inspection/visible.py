@@ -17,11 +17,11 @@ from scipy.optimize import brentq
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.reshape import orthonormal, products, reshapings
-from hystbench.gap.sample import Sample
-from hystbench.gap.scene import Scene
-from hystbench.gap.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
-from hystbench.gap.state import State
+from hystbench.gap.fitting.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import PAYS
 from hystbench.inspection.shapes import Shape, shapes_of
 from hystbench.model import Model
@@ -108,7 +108,7 @@ def seen_effects(
         If the base does not run on the records.
     """
     sample = Sample.of(records)
-    state = State(base.chain, tuple(records), sample, hold=hold)  # type: ignore[arg-type]
+    state = ModelState(base.chain, tuple(records), sample, hold=hold)  # type: ignore[arg-type]
     shapes, declined = shapes_of(state)
     own = _own(state)
     if "hysteresis" in declined:
@@ -131,28 +131,32 @@ def seen_effects(
     return tuple(sorted(found, key=lambda item: (item.seen_from, item.effect)))
 
 
-def _own(state: State) -> FloatArray:
+def _own(state: ModelState) -> FloatArray:
     """Give an orthonormal basis of what the base could do as well."""
-    scene, sample = state.scene, state.sample
+    simulation, sample = state.simulation, state.sample
     one = np.ones((len(sample), 1))
-    output = sample.take(scene.output)[:, None]
+    output = sample.take(simulation.output)[:, None]
     return orthonormal(
-        np.hstack([one, output, reshapings(scene, sample), products(scene, sample)])
+        np.hstack(
+            [one, output, reshapings(simulation, sample), products(simulation, sample)]
+        )
     )
 
 
-def _hysteresis(state: State) -> list[Shape]:
+def _hysteresis(state: ModelState) -> list[Shape]:
     """Give the hysteresis of the base itself, as what stands beside a gain alone."""
-    scene, sample = state.scene, state.sample
-    place = scene.hysteresis
+    simulation, sample = state.simulation, state.sample
+    place = simulation.hysteresis
     if place is None:
         return []
-    block = scene.chain[place]
+    block = simulation.chain[place]
     gain = registry()["gain"].from_mapping({"value": 1.0})
-    straight = scene.run((gain, *scene.chain[place + 1 :]), scene.before[place])
+    straight = simulation.run(
+        (gain, *simulation.chain[place + 1 :]), simulation.before[place]
+    )
     plain = sample.take(straight)
     line = np.column_stack([np.ones(len(sample)), plain])
-    loop = sample.take(scene.output)
+    loop = sample.take(simulation.output)
     loop = loop - line @ np.linalg.lstsq(line, loop, rcond=None)[0]
     if not loop.any():
         return []
@@ -187,7 +191,7 @@ class _Judge:
     """What it takes for a shape to stand out, on some records over some noise."""
 
     def __init__(
-        self, state: State, own: FloatArray, floor: float, reach: float
+        self, state: ModelState, own: FloatArray, floor: float, reach: float
     ) -> None:
         self.state, self.own, self.floor, self.reach = state, own, floor, reach
         self.slices = state.sample.slices
@@ -363,7 +367,7 @@ def runs(base: Model, records: Sequence[Record], hold: str) -> tuple[FloatArray,
     InputError
         If an output is not finite.
     """
-    outputs = Scene(base.chain, tuple(records), hold).output  # type: ignore[arg-type]
+    outputs = Simulation(base.chain, tuple(records), hold).output  # type: ignore[arg-type]
     for record, output in zip(records, outputs, strict=True):
         if not np.isfinite(output).all():
             raise InputError(

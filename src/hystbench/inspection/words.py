@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from hystbench.figures.style import unit_text
-from hystbench.gap.units import written
+from hystbench.gap.fitting.parameter_units import written
 from hystbench.inspection.check import Check
 from hystbench.inspection.facts import Facts
 from hystbench.inspection.visible import Seen

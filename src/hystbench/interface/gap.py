@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, Any, Literal
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
 from hystbench.gap.behaviour import in_words
-from hystbench.gap.evidence import Evidence, load_evidence
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import Closed, closed_gap
-from hystbench.gap.say import Say, silent
-from hystbench.gap.unnamed import SHARE
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from hystbench.gap.experiment import Experiment
+    from hystbench.gap.experiment.next_experiment import Experiment
     from hystbench.interface.picture import Picture
 
 Table = Literal["records", "effects", "ranking"]
@@ -74,7 +74,7 @@ class Gap:
     Parameters
     ----------
     closed : Closed
-        The finding and what the hold-out records showed.
+        The decision and what the hold-out records showed.
     note : str
         Where the simulator comes from.
     places : mapping
@@ -126,7 +126,7 @@ class Gap:
     @property
     def experiment(self) -> Experiment | None:
         """The excitation that would tell likely effects apart, if one is needed."""
-        return self.closed.finding.experiment
+        return self.closed.decision.experiment
 
     def __repr__(self) -> str:
         """Tell the verdict, the residual before and after, and the effects."""
@@ -251,7 +251,7 @@ def find_gap(
     without: Sequence[str] = (),
     with_: Sequence[str] = (),
     limits: Mapping[str, float] | None = None,
-    unnamed_share: float = SHARE,
+    unnamed_share: float = UNNAMED_SHARE,
     calls: int | None = None,
     keep_calls: bool = True,
     cache: bool = True,
@@ -272,7 +272,7 @@ def find_gap(
         Effects that the search must not name.
     with_ : sequence of str
         Effects that are in the model from the start: they are fitted, and are no
-        finding.
+        decision.
     limits : mapping of str to float, optional
         What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
     unnamed_share : float
@@ -303,7 +303,7 @@ def find_gap(
         evidence = _evidence(dataset)
     place = str(dataset.path if isinstance(dataset, Dataset) else dataset)
     with _kept(calls, keep_calls, cache, say):
-        from hystbench.gap.bases import load_base  # late: what it needs depends
+        from hystbench.gap.bases.load import load_base  # late: what it needs depends
 
         base, note = load_base(
             str(model) if isinstance(model, Path) else model, evidence
@@ -339,7 +339,7 @@ def _kept(calls: int | None, keep_calls: bool, cache: bool, say: Say) -> Iterato
     """Let what is computed within the block be kept, as far as that is wanted."""
     from hystbench.blocks.calls import Calls, counted
     from hystbench.blocks.kept_outputs import KeptOutputs, folder_of_user
-    from hystbench.gap.remembered import Remembered, folder, remembering
+    from hystbench.gap.cache import Remembered, folder, remembering
 
     outputs = KeptOutputs(folder_of_user(), say) if keep_calls else None
     store = Remembered(folder(), say) if cache else None

@@ -117,7 +117,7 @@ def scaled(unknown: Unknown, largest: float, swing: float) -> Unknown:
 
 
 @dataclass(frozen=True)
-class Task:
+class FamilyTask:
     """What a family is fitted to.
 
     Parameters

@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.model import Model
 from hystbench.model_content import Provenance
 from hystbench.record import FloatArray
-from hystbench.twins.families import ASYMMETRY, OFFSET, THINNING, Family, Task
+from hystbench.twins.families import ASYMMETRY, OFFSET, THINNING, Family, FamilyTask
 from hystbench.twins.search import Tell, Values, descend, to_point
 
 SCALE = 0.01
@@ -39,7 +39,7 @@ class FamilyFit:
 
 def fit_family(
     family: Family,
-    task: Task,
+    task: FamilyTask,
     starts: int = 12,
     evaluations: int = 50,
     tell: Tell = lambda line: None,
@@ -53,7 +53,7 @@ def fit_family(
     ----------
     family : Family
         One of :data:`hystbench.twins.families.FAMILIES`.
-    task : Task
+    task : FamilyTask
     starts, evaluations : int
         Of the first stage, and at most in the second one, slopes not counted.
     tell : callable
@@ -101,7 +101,7 @@ def fit_family(
     return FamilyFit(twin, tuple(at_bounds))
 
 
-def judge(task: Task, twin: Model) -> Mapping[str, Any]:
+def judge(task: FamilyTask, twin: Model) -> Mapping[str, Any]:
     """Tell how near a twin comes: error of the loop (relative) and of RMS (percent)."""
     names = [signal.name for signal in task.signals]
     percent = [round(100 * float(each), 4) for each in task.rms_errors(twin)]
@@ -111,7 +111,7 @@ def judge(task: Task, twin: Model) -> Mapping[str, Any]:
     }
 
 
-def _with_provenance(twin: Model, family: Family, task: Task) -> Model:
+def _with_provenance(twin: Model, family: Family, task: FamilyTask) -> Model:
     fitted = Provenance(
         "calibrated",
         f"Fitted to the slow loop of {task.model.name} and to the implied RMS of "

@@ -9,7 +9,7 @@ from typing import Any
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import Claim
 from hystbench.compare.claims.halves import holds
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.twins import CLAIM_COLUMNS, ERROR_COLUMNS
 from hystbench.files import write_csv
 from hystbench.twins.experiments import CONFIGURED
@@ -18,9 +18,9 @@ from hystbench.twins.parts import Outcome
 WORDS = {True: "yes", False: "no", None: "not testable"}
 
 
-def results_on_runs(evidence: Evidence) -> tuple[Claim, ...]:
+def results_on_runs(evidence: ClaimEvidence) -> tuple[Claim, ...]:
     """List the claims that are results and that runs, and only runs, can judge."""
-    nothing = Evidence()
+    nothing = ClaimEvidence()
     return tuple(
         claim
         for claim in CLAIMS

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from hystbench.compare.evidence import Evidence, OrderPoint, Run, identification_of
+from hystbench.compare.evidence import ClaimEvidence, OrderPoint, Run, identification_of
 from hystbench.errors import InputError, nearest
 from hystbench.order_errors import filters_by_order
 from hystbench.record import Record
@@ -45,7 +45,7 @@ class Outcome:
 
     twin: Twin
     experiment: Experiment
-    evidence: Evidence
+    evidence: ClaimEvidence
 
 
 def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
@@ -138,7 +138,7 @@ def join(
     found = []
     for number, experiment in enumerate(every):
         own = [[each, *each["experiments"]][number] for each in filters]
-        evidence = Evidence(
+        evidence = ClaimEvidence(
             records=records_of(twin, experiment, settings),
             identification=identification_of(fitted["identified"], twin.place),
             runs={

@@ -11,7 +11,7 @@ from hystbench import options
 from hystbench.files import whole_folder, write_json
 from hystbench.model import load_model
 from hystbench.signals import load_signal
-from hystbench.twins.families import FAMILIES, Task
+from hystbench.twins.families import FAMILIES, FamilyTask
 from hystbench.twins.family_fit import fit_family, judge
 from hystbench.twins.targets import targets
 
@@ -37,7 +37,7 @@ def families(
     """
     excitations = tuple(load_signal(path) for path in signals)
     wanted = targets(signal.name for signal in excitations)
-    task = Task(
+    task = FamilyTask(
         load_model(model),
         load_signal(loop),
         excitations,

@@ -8,10 +8,10 @@ import click
 
 from hystbench import options
 from hystbench.files import write_text
-from hystbench.gap.asked import IDENTIFIED, check_base
-from hystbench.gap.bases import given_base
-from hystbench.gap.evidence import load_evidence
-from hystbench.gap.start import run_base
+from hystbench.gap.bases.kinds import IDENTIFIED, check_base
+from hystbench.gap.bases.load import given_base
+from hystbench.gap.fitting.start import run_base
+from hystbench.gap.records.evidence import load_evidence
 
 
 @click.command()

@@ -7,11 +7,11 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases import load_base
-from hystbench.gap.evidence import check_units, load_evidence
+from hystbench.gap.bases.load import load_base
 from hystbench.gap.jobs import decide_in
+from hystbench.gap.records.evidence import check_units, load_evidence
+from hystbench.gap.run import write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
-from hystbench.gap.wanted import write_wanted
 
 
 @click.command()
@@ -45,7 +45,7 @@ def gap_decide(
     if note:
         click.echo(note, err=True)
     check_units(evidence, base, model)
-    finding = decide_in(
+    decision = decide_in(
         out,
         evidence,
         base,
@@ -57,5 +57,5 @@ def gap_decide(
     if write_experiment is not None:
         # The folder is a job's output, with the signal or without.
         write_experiment.parent.mkdir(parents=True, exist_ok=True)
-        told = write_wanted(finding, evidence.input, write_experiment)
+        told = write_next_experiment(decision, evidence.input, write_experiment)
         click.echo(told, err=True)

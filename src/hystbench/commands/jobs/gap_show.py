@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases import written_base
-from hystbench.gap.evidence import load_evidence
+from hystbench.gap.bases.load import written_base
 from hystbench.gap.jobs import show_in
+from hystbench.gap.records.evidence import load_evidence
 
 
 @click.command()

@@ -9,7 +9,7 @@ import click
 from hystbench import options
 from hystbench.files import read_json
 from hystbench.gap.report.gallery import write_sentences
-from hystbench.gap.summary import (
+from hystbench.gap.report.tables import (
     write_adds,
     write_effects,
     write_records,

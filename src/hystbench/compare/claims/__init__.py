@@ -31,7 +31,7 @@ from hystbench.compare.claims.claim import (
     judge,
 )
 from hystbench.compare.claims.halves import about_signals, on_signals
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.rows import write_fields
 from hystbench.yaml_files import parse_yaml
 
@@ -51,7 +51,7 @@ COLUMNS = (
 )
 
 
-def _cannot(_: Evidence, reason: str) -> Numbers:
+def _cannot(_: ClaimEvidence, reason: str) -> Numbers:
     raise NotTestable(reason)
 
 
@@ -97,13 +97,13 @@ CLAIMS = _read_table()
 
 
 def judge_all(
-    evidence: Evidence, held_out: Iterable[str] = ()
+    evidence: ClaimEvidence, held_out: Iterable[str] = ()
 ) -> tuple[Judgement, ...]:
     """Judge every claim of the ledger.
 
     Parameters
     ----------
-    evidence : Evidence
+    evidence : ClaimEvidence
     held_out : iterable of str
         Signals that no fit has read. A claim that is judged by them and by others is
         also judged on them alone.
@@ -112,7 +112,7 @@ def judge_all(
     return tuple(_judge(claim, evidence, alone) for claim in CLAIMS)
 
 
-def _judge(claim: Claim, evidence: Evidence, alone: Evidence) -> Judgement:
+def _judge(claim: Claim, evidence: ClaimEvidence, alone: ClaimEvidence) -> Judgement:
     judged = judge(claim, evidence)
     if claim.basis != "fitted" or not about_signals(claim, alone):
         return judged

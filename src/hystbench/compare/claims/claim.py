@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from hystbench.compare.cells import twin_runs
-from hystbench.compare.evidence import Cell, Evidence, Run
+from hystbench.compare.evidence import Cell, ClaimEvidence, Run
 from hystbench.compare.twins import Holding, holding_text
 from hystbench.published import FILTERS
 
@@ -19,7 +19,7 @@ Verdict = Literal[
     "reproduced", "not reproduced", "not testable", "refuted by the paper"
 ]
 BornOut = Literal["yes", "no", "not in tables"]
-Kind = Literal["result", "theory", "condition", "notation"]
+ClaimKind = Literal["result", "theory", "condition", "notation"]
 """What was found, derived, set up for the experiment, or is a matter of writing."""
 Basis = Literal["", "held-out", "fitted", "constrained", "built-in"]
 """What the twin knew of a claim before it was judged.
@@ -47,7 +47,7 @@ _CONDITION = re.compile(r"(?:(\S+) \* )?(\w+) (<=|<|==|>=|>) (?:(\S+) \* )?(\S+)
 
 
 @dataclass(frozen=True)
-class Finding:
+class Tested:
     """Whether a claim holds, and the numbers that say so in one sentence."""
 
     holds: bool
@@ -143,7 +143,7 @@ class Test:
     says: str = ""
     otherwise: str = ""
 
-    def __call__(self, evidence: Evidence) -> Finding:
+    def __call__(self, evidence: ClaimEvidence) -> Tested:
         """Judge the claim by evidence.
 
         Raises
@@ -154,7 +154,7 @@ class Test:
         numbers = self.measure(evidence, **self.arguments)
         holds = all(condition.holds(numbers) for condition in self.holds)
         text = self.says if holds or not self.otherwise else self.otherwise
-        return Finding(holds, Sentence().vformat(text, (), numbers))
+        return Tested(holds, Sentence().vformat(text, (), numbers))
 
 
 @dataclass(frozen=True)
@@ -184,11 +184,11 @@ class Claim:
     id: str
     claim: str
     where: str
-    kind: Kind
+    kind: ClaimKind
     reading: str
     basis: str
-    ours: Callable[[Evidence], Finding]
-    theirs: Callable[[Evidence], Finding] | None = None
+    ours: Callable[[ClaimEvidence], Tested]
+    theirs: Callable[[ClaimEvidence], Tested] | None = None
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,7 @@ class Judgement:
         return holding_text(self.holdings)
 
 
-def judge(claim: Claim, evidence: Evidence) -> Judgement:
+def judge(claim: Claim, evidence: ClaimEvidence) -> Judgement:
     """Judge one claim by our evidence and by the paper's own numbers."""
     verdict: Verdict
     try:
@@ -239,7 +239,7 @@ def need_runs(cells: Iterable[Cell], there: Iterable[Cell]) -> None:
         raise NotTestable(f"not run: {missing[0]}{more}")
 
 
-def lms_runs(evidence: Evidence, models: Iterable[str] = FILTERS) -> list[Run]:
+def lms_runs(evidence: ClaimEvidence, models: Iterable[str] = FILTERS) -> list[Run]:
     """List the twin's runs of the adaptive filters.
 
     Raises

@@ -9,7 +9,7 @@ from itertools import pairwise
 from hystbench.compare.cells import twin_runs
 from hystbench.compare.claims.claim import NotTestable, Numbers, need_runs, number
 from hystbench.compare.claims.statistics import rank_correlation
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.published import FILTERS, METRICS, MODELS, Metric, Pair, sine_frequency
 
 TABLES = {"sines": (1,), "chirp": (2,), "sums": (3,), "all": (1, 2, 3)}
@@ -61,7 +61,7 @@ class Errors:
         return dict(sorted(found.items(), key=lambda sine: sine[1]))
 
 
-def read_errors(evidence: Evidence, of: str) -> Errors:
+def read_errors(evidence: ClaimEvidence, of: str) -> Errors:
     """Look up the errors of the twin, or the published ones."""
     values: dict[tuple[str, str, Metric], float] = {}
     if of == "published":
@@ -80,7 +80,7 @@ def read_errors(evidence: Evidence, of: str) -> Errors:
 
 
 def least(
-    evidence: Evidence,
+    evidence: ClaimEvidence,
     signals: str,
     winner: str,
     models: Sequence[str] = FILTERS,
@@ -121,7 +121,7 @@ def _least(
     return {"beaten": 0, "told": told}
 
 
-def least_anywhere(evidence: Evidence, of: str = "twin") -> Numbers:
+def least_anywhere(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     """Compare the GPO filter with all models, where each of them has errors."""
     errors = read_errors(evidence, of)
     with_rdgpi = errors.signals(4)
@@ -135,7 +135,7 @@ def least_anywhere(evidence: Evidence, of: str = "twin") -> Numbers:
     return {"beaten": 0, "told": f"{first['told']}; {second['told']}"}
 
 
-def advantage(evidence: Evidence, of: str = "twin") -> Numbers:
+def advantage(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     """Follow the next best filter's MSE over the GPO's along the sines."""
     errors = read_errors(evidence, of)
     sines = list(errors.sines)
@@ -155,7 +155,7 @@ def advantage(evidence: Evidence, of: str = "twin") -> Numbers:
 
 
 def along_sines(
-    evidence: Evidence, model: str, metric: Metric, of: str = "twin"
+    evidence: ClaimEvidence, model: str, metric: Metric, of: str = "twin"
 ) -> Numbers:
     """Follow an error from each sine to the next."""
     errors = read_errors(evidence, of)
@@ -182,7 +182,7 @@ def along_sines(
 
 
 def largest_at_low_sines(
-    evidence: Evidence, model: str, up_to_hz: float, of: str = "twin"
+    evidence: ClaimEvidence, model: str, up_to_hz: float, of: str = "twin"
 ) -> Numbers:
     """Compare the filters at the lowest sines."""
     errors = read_errors(evidence, of)
@@ -202,7 +202,7 @@ def largest_at_low_sines(
 
 
 def chirp_and_sines(
-    evidence: Evidence, model: str, up_to_hz: float, of: str = "twin"
+    evidence: ClaimEvidence, model: str, up_to_hz: float, of: str = "twin"
 ) -> Numbers:
     """Hold the chirp against the sines of its band."""
     errors = read_errors(evidence, of)

@@ -8,7 +8,7 @@ from statistics import median
 
 from hystbench.compare.claims.claim import NotTestable, Numbers, lms_runs
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import Evidence, OrderPoint
+from hystbench.compare.evidence import ClaimEvidence, OrderPoint
 from hystbench.published import FILTERS
 
 ONE_STEP_SIZE = ("gpo", "backlash", "delayed")
@@ -17,7 +17,7 @@ Curves = Mapping[str, Sequence[tuple[int, float]]]
 """Order and MSE of each filter, by rising order."""
 
 
-def bound_and_eigenvalue(evidence: Evidence) -> Numbers:
+def bound_and_eigenvalue(evidence: ClaimEvidence) -> Numbers:
     """Compare the bound of each run with its largest eigenvalue."""
     ratios = {
         f"{run.model} on {run.signal}": run.bound["mu"] * run.largest_eigenvalue
@@ -30,13 +30,13 @@ def bound_and_eigenvalue(evidence: Evidence) -> Numbers:
     return {"ratio": ratios[nearest], "runs": len(ratios), "nearest": nearest}
 
 
-def _edges(evidence: Evidence) -> tuple[Edge, ...]:
+def _edges(evidence: ClaimEvidence) -> tuple[Edge, ...]:
     if not evidence.edges:
         raise NotTestable("not run: a sweep of step sizes")
     return evidence.edges
 
 
-def edges_and_bound(evidence: Evidence) -> Numbers:
+def edges_and_bound(evidence: ClaimEvidence) -> Numbers:
     """Hold the measured edges against the bound, and against 1/max|H|^2."""
     edges = _edges(evidence)
     inside = [edge for edge in edges if edge.inside]
@@ -55,7 +55,7 @@ def edges_and_bound(evidence: Evidence) -> Numbers:
     return {"inside": len(inside), "edges": len(edges), "told": told, "power": power}
 
 
-def speed_below_edge(evidence: Evidence) -> Numbers:
+def speed_below_edge(evidence: ClaimEvidence) -> Numbers:
     """Find an edge for each filter and signal, and a trend of the time below it."""
     edges = _edges(evidence)
     trends = {}
@@ -72,7 +72,7 @@ def speed_below_edge(evidence: Evidence) -> Numbers:
     }
 
 
-def orders(evidence: Evidence) -> Numbers:
+def orders(evidence: ClaimEvidence) -> Numbers:
     """List the orders of all runs of the four filters."""
     runs = lms_runs(evidence)
     found = sorted({run.order for run in runs if run.order is not None})
@@ -83,7 +83,7 @@ def orders(evidence: Evidence) -> Numbers:
     return {"orders": len(found), "told": told, "runs": len(runs)}
 
 
-def volterra_weights(evidence: Evidence) -> Numbers:
+def volterra_weights(evidence: ClaimEvidence) -> Numbers:
     """Count the weights of the Volterra filter."""
     run = lms_runs(evidence, ("volterra",))[0]
     if run.order is None:
@@ -92,7 +92,7 @@ def volterra_weights(evidence: Evidence) -> Numbers:
     return {"weights": run.weight_count, "order": run.order, "wanted": wanted}
 
 
-def other_weights(evidence: Evidence) -> Numbers:
+def other_weights(evidence: ClaimEvidence) -> Numbers:
     """Read order and weights of the other filters off the runs."""
     runs = lms_runs(evidence, ONE_STEP_SIZE)
     sizes = sorted(
@@ -105,25 +105,25 @@ def other_weights(evidence: Evidence) -> Numbers:
     }
 
 
-def volterra_step_sizes(evidence: Evidence) -> Numbers:
+def volterra_step_sizes(evidence: ClaimEvidence) -> Numbers:
     """Compare the two step sizes of the Volterra filter."""
     steps = lms_runs(evidence, ("volterra",))[0].step_size
     told = ", ".join(f"{name} {mu:g}" for name, mu in steps.items())
     return {"sizes": len(set(steps.values())), "told": told}
 
 
-def fall_to_the_knee(evidence: Evidence) -> Numbers:
+def fall_to_the_knee(evidence: ClaimEvidence) -> Numbers:
     """Take the MSE at order 10 over that at the lowest order, the largest."""
     return _under_each_rule(evidence, _fall)
 
 
-def slopes_about_the_knee(evidence: Evidence) -> Numbers:
+def slopes_about_the_knee(evidence: ClaimEvidence) -> Numbers:
     """Take the MSE's change for each order beyond order 10 over that below it."""
     return _under_each_rule(evidence, _change)
 
 
 def _under_each_rule(
-    evidence: Evidence, measure: Callable[[Curves, int], tuple[float, str]]
+    evidence: ClaimEvidence, measure: Callable[[Curves, int], tuple[float, str]]
 ) -> Numbers:
     """Measure the order sweep under each rule for the step size; the worst counts."""
     knee = evidence.text.order_sweep_knee

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from hystbench.compare.claims.claim import Claim, NotTestable
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 
 
-def holds(claim: Claim, evidence: Evidence) -> bool | None:
+def holds(claim: Claim, evidence: ClaimEvidence) -> bool | None:
     """Tell whether a claim holds; None where it cannot be tested."""
     try:
         return claim.ours(evidence).holds
@@ -17,7 +17,7 @@ def holds(claim: Claim, evidence: Evidence) -> bool | None:
         return None
 
 
-def on_signals(evidence: Evidence, signals: Iterable[str]) -> Evidence:
+def on_signals(evidence: ClaimEvidence, signals: Iterable[str]) -> ClaimEvidence:
     """Keep what evidence says on some signals, the published errors among it."""
     kept = set(signals)
     return replace(
@@ -32,7 +32,7 @@ def on_signals(evidence: Evidence, signals: Iterable[str]) -> Evidence:
     )
 
 
-def about_signals(claim: Claim, restricted: Evidence) -> bool:
+def about_signals(claim: Claim, restricted: ClaimEvidence) -> bool:
     """Tell whether a claim can be judged on some signals, and only with them."""
     without = replace(restricted, runs={}, records={}, envelope_errors={}, drawn={})
     return holds(claim, without) is None and holds(claim, restricted) is not None

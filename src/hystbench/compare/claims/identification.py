@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from hystbench.compare.claims.claim import NotTestable, Numbers
-from hystbench.compare.evidence import Evidence, Identification
+from hystbench.compare.evidence import ClaimEvidence, Identification
 from hystbench.published.equations import Envelope, gamma_left, gamma_right
 from hystbench.record import FloatArray
 
 
-def identified(evidence: Evidence) -> Identification:
+def identified(evidence: ClaimEvidence) -> Identification:
     """Give the identification.
 
     Raises
@@ -25,7 +25,7 @@ def identified(evidence: Evidence) -> Identification:
     return evidence.identification
 
 
-def objective(evidence: Evidence) -> Numbers:
+def objective(evidence: ClaimEvidence) -> Numbers:
     """Follow J over the iterations to the end of Algorithm 1."""
     found = identified(evidence)
     first, last = float(found.sums[0]), float(found.sums[-1])
@@ -40,7 +40,7 @@ def objective(evidence: Evidence) -> Numbers:
     }
 
 
-def equal_steps(evidence: Evidence) -> Numbers:
+def equal_steps(evidence: ClaimEvidence) -> Numbers:
     """Take the steps of the identified thresholds."""
     found = identified(evidence)
     r = found.thresholds
@@ -54,7 +54,7 @@ def equal_steps(evidence: Evidence) -> Numbers:
     }
 
 
-def envelope_shape(evidence: Evidence) -> Numbers:
+def envelope_shape(evidence: ClaimEvidence) -> Numbers:
     """Compare curves, for many a_j make the same loop."""
     found = identified(evidence)
     limit = evidence.text.amplitude_a
@@ -77,7 +77,7 @@ def shape_difference(wanted: Envelope, found: Envelope, limit: float) -> float:
     return float(np.sqrt(np.mean(rest**2)) / np.std(target))
 
 
-def two_envelopes(evidence: Evidence) -> Numbers:
+def two_envelopes(evidence: ClaimEvidence) -> Numbers:
     """Count the signals on which the filter is no worse with identified envelopes."""
     errors = evidence.envelope_errors
     both = [

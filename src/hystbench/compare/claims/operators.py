@@ -8,7 +8,7 @@ import numpy as np
 
 from hystbench.compare.claims.claim import Numbers
 from hystbench.compare.claims.identification import identified
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.published.discrepancies import crossings
 from hystbench.published.equations import (
     Envelope,
@@ -30,20 +30,22 @@ def sine(amplitude: float, cycles: int, samples: int = 400) -> FloatArray:
     return amplitude * np.sin(phase)
 
 
-def plays(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
+def plays(evidence: ClaimEvidence) -> tuple[FloatArray, FloatArray]:
     """Give a sine of the paper's amplitude, and thresholds of 31 plays across it."""
     count, limit = evidence.text.filter_length + 1, evidence.text.amplitude_a
     return sine(limit, 3), np.arange(count) / count * limit
 
 
-def generalized_plays(evidence: Evidence) -> tuple[FloatArray, FloatArray, Envelope]:
+def generalized_plays(
+    evidence: ClaimEvidence,
+) -> tuple[FloatArray, FloatArray, Envelope]:
     """Give the sine, the thresholds and the published envelopes."""
     text = evidence.text
     limit, envelope = text.amplitude_a, text.envelope
     return sine(limit, 3), thresholds(text.filter_length, limit, envelope), envelope
 
 
-def play_at_two_speeds(evidence: Evidence) -> Numbers:
+def play_at_two_speeds(evidence: ClaimEvidence) -> Numbers:
     """Run plays along a sine at two speeds."""
     return at_two_speeds(play, *plays(evidence))
 
@@ -57,7 +59,7 @@ def at_two_speeds(operator: Operator, v: FloatArray, r: FloatArray) -> Numbers:
     return {"apart": apart, "excess": max(float(steps.max()), 0.0)}
 
 
-def play_asymmetry(evidence: Evidence) -> Numbers:
+def play_asymmetry(evidence: ClaimEvidence) -> Numbers:
     """Mirror the loop of a Prandtl-Ishlinskii model of equal weights."""
     return {"asymmetry": loop_asymmetry(play, *plays(evidence))}
 
@@ -70,7 +72,7 @@ def loop_asymmetry(operator: Operator, v: FloatArray, r: FloatArray) -> float:
     return float(np.abs(centred + np.roll(centred, period // 2)).max() / np.ptp(loop))
 
 
-def gpo_shape(evidence: Evidence) -> Numbers:
+def gpo_shape(evidence: ClaimEvidence) -> Numbers:
     """Mirror the loop of generalized plays of equal weights; find flat envelopes."""
     v, r, envelope = generalized_plays(evidence)
     found = {
@@ -83,13 +85,13 @@ def gpo_shape(evidence: Evidence) -> Numbers:
     return found
 
 
-def _envelope(evidence: Evidence, of: str) -> Envelope:
+def _envelope(evidence: ClaimEvidence, of: str) -> Envelope:
     if of == "published":
         return evidence.text.envelope
     return identified(evidence).envelope
 
 
-def envelope_slopes(evidence: Evidence, of: str) -> Numbers:
+def envelope_slopes(evidence: ClaimEvidence, of: str) -> Numbers:
     """Find the smallest steps of both envelopes on the working range."""
     envelope, limit = _envelope(evidence, of), evidence.text.amplitude_a
     v = np.linspace(-limit, limit, 2001)
@@ -99,7 +101,7 @@ def envelope_slopes(evidence: Evidence, of: str) -> Numbers:
     return {"limit": limit, "step": v[1] - v[0], "left": left, "right": right}
 
 
-def envelope_order(evidence: Evidence, of: str) -> Numbers:
+def envelope_order(evidence: ClaimEvidence, of: str) -> Numbers:
     """Find where gamma_r >= gamma_l on the working range."""
     limit = evidence.text.amplitude_a
     found = crossings(dict(_envelope(evidence, of)), -limit, limit)
@@ -113,7 +115,7 @@ def envelope_order(evidence: Evidence, of: str) -> Numbers:
     }
 
 
-def extreme(evidence: Evidence, largest: bool) -> Numbers:
+def extreme(evidence: ClaimEvidence, largest: bool) -> Numbers:
     """Hold Eq. 7 or 8 as printed, and with v in place of gamma(v), against a run."""
     v, r, envelope = generalized_plays(evidence)
     run = generalized_play(v, r, envelope)
@@ -132,7 +134,7 @@ def extreme(evidence: Evidence, largest: bool) -> Numbers:
     return {"printed": printed, "with_v": off(float(pick(v)))}
 
 
-def two_forms(evidence: Evidence) -> Numbers:
+def two_forms(evidence: ClaimEvidence) -> Numbers:
     """Run a generalized play and Eq. 12 along a sine."""
     v, r, envelope = generalized_plays(evidence)
     one, other = generalized_play(v, r, envelope), generalized_play_eq12(v, r, envelope)
@@ -140,7 +142,7 @@ def two_forms(evidence: Evidence) -> Numbers:
     return {"apart": apart.max(), "later": apart[len(v) // 3 :].max()}
 
 
-def delay_line(evidence: Evidence) -> Numbers:
+def delay_line(evidence: ClaimEvidence) -> Numbers:
     """Run the filter with its delay line and without, slowly and fast."""
     found = identified(evidence)
     rate, limit = evidence.text.sampling_hz, evidence.text.amplitude_a

@@ -11,14 +11,14 @@ from hystbench.compare.claims.statistics import (
     rank_correlation,
     turning_points,
 )
-from hystbench.compare.evidence import Evidence
+from hystbench.compare.evidence import ClaimEvidence
 from hystbench.published import signals, sine_frequency
 from hystbench.record import FloatArray, Record
 
 RANDOM = "multisine-random-0-100hz"
 
 
-def records(evidence: Evidence, names: list[str]) -> list[Record]:
+def records(evidence: ClaimEvidence, names: list[str]) -> list[Record]:
     """Give the twin's records of these signals.
 
     Raises
@@ -36,18 +36,18 @@ def records(evidence: Evidence, names: list[str]) -> list[Record]:
     return [evidence.records[name] for name in names]
 
 
-def sine_records(evidence: Evidence) -> list[Record]:
+def sine_records(evidence: ClaimEvidence) -> list[Record]:
     """Give the records of the sines of Table 1; raises as :func:`records`."""
     found = [s for s in signals(evidence.published) if sine_frequency(s) is not None]
     return records(evidence, found)
 
 
-def _table(evidence: Evidence, number: int) -> list[str]:
+def _table(evidence: ClaimEvidence, number: int) -> list[str]:
     found = [pair.signal for pair in evidence.published if pair.table == number]
     return list(dict.fromkeys(found))
 
 
-def chirp_record(evidence: Evidence) -> Record:
+def chirp_record(evidence: ClaimEvidence) -> Record:
     """Give the record of the chirp; raises as :func:`records`."""
     return records(evidence, _table(evidence, 2))[0]
 
@@ -57,7 +57,7 @@ def settled(x: FloatArray) -> FloatArray:
     return x[len(x) // 2 :]
 
 
-def chirp_frequencies(evidence: Evidence) -> Numbers:
+def chirp_frequencies(evidence: ClaimEvidence) -> Numbers:
     """Read the frequency of the chirp's input at the two times of the paper."""
     record = chirp_record(evidence)
     time, frequency, _ = cycles(record.u, record.y, record.dt)
@@ -72,7 +72,7 @@ def chirp_frequencies(evidence: Evidence) -> Numbers:
     }
 
 
-def chirp_rates(evidence: Evidence) -> Numbers:
+def chirp_rates(evidence: ClaimEvidence) -> Numbers:
     """Take the sweep rate that each of the two printed moments implies."""
     text = evidence.text
     first, second = (
@@ -87,7 +87,7 @@ def chirp_rates(evidence: Evidence) -> Numbers:
     }
 
 
-def sampling_rates(evidence: Evidence) -> Numbers:
+def sampling_rates(evidence: ClaimEvidence) -> Numbers:
     """Read the sampling rates of the twin's records."""
     twin = [r for r in evidence.records.values() if r.origin == "twin"]
     if not twin:
@@ -100,7 +100,7 @@ def sampling_rates(evidence: Evidence) -> Numbers:
     }
 
 
-def input_amplitudes(evidence: Evidence) -> Numbers:
+def input_amplitudes(evidence: ClaimEvidence) -> Numbers:
     """Read the amplitude of sines and chirp."""
     found = [*sine_records(evidence), chirp_record(evidence)]
     sizes = [float(np.sqrt(2) * record.u.std()) for record in found]
@@ -116,7 +116,7 @@ def input_amplitudes(evidence: Evidence) -> Numbers:
     }
 
 
-def input_lines(evidence: Evidence) -> Numbers:
+def input_lines(evidence: ClaimEvidence) -> Numbers:
     """Project the inputs of both sums on their sines."""
     worst = 0.0
     scales = []
@@ -139,7 +139,7 @@ def line_amplitude(record: Record, frequency: float) -> float:
     return float(2 * np.abs(np.mean(record.u[:whole] * np.exp(-1j * phase))))
 
 
-def power_in_band(evidence: Evidence) -> Numbers:
+def power_in_band(evidence: ClaimEvidence) -> Numbers:
     """Measure the power of the random sum in its band."""
     (record,) = records(evidence, [RANDOM])
     limit = evidence.text.random_band_of_nyquist[1] * evidence.text.sampling_hz / 2
@@ -149,7 +149,7 @@ def power_in_band(evidence: Evidence) -> Numbers:
     return {"inside": inside, "limit": limit}
 
 
-def turns_under_sines(evidence: Evidence) -> Numbers:
+def turns_under_sines(evidence: ClaimEvidence) -> Numbers:
     """Count the turns of input and output inside the major loop."""
     counts = [
         minor_turning_points(settled(r.u)) + minor_turning_points(settled(r.y))
@@ -158,7 +158,7 @@ def turns_under_sines(evidence: Evidence) -> Numbers:
     return {"most": max(counts), "sines": len(counts)}
 
 
-def turns_under_sums(evidence: Evidence) -> Numbers:
+def turns_under_sums(evidence: ClaimEvidence) -> Numbers:
     """Count the turns of input and output of the sums inside their range."""
     counts = {
         r.name: (minor_turning_points(settled(r.u)), minor_turning_points(settled(r.y)))
@@ -168,7 +168,7 @@ def turns_under_sums(evidence: Evidence) -> Numbers:
     return {"fewest": min(map(min, counts.values())), "told": told}
 
 
-def sizes_over_frequency(evidence: Evidence, of: str = "twin") -> Numbers:
+def sizes_over_frequency(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     """Compare displacements under the sines, our own or those implied by Table 1."""
     if of == "published":
         name = "implied RMS displacement"
@@ -198,7 +198,7 @@ def sizes_over_frequency(evidence: Evidence, of: str = "twin") -> Numbers:
 
 
 def _chirp_extremes(
-    evidence: Evidence,
+    evidence: ClaimEvidence,
 ) -> tuple[tuple[FloatArray, FloatArray, FloatArray], int, int]:
     """Give the cycles of the chirp, and its dip and the peak that follows.
 
@@ -213,7 +213,7 @@ def _chirp_extremes(
     return found, dip, dip + int(np.argmax(size[dip:]))
 
 
-def chirp_shape(evidence: Evidence) -> Numbers:
+def chirp_shape(evidence: ClaimEvidence) -> Numbers:
     """Find the dip and the peak of the chirp's displacement, beside the paper's.
 
     The tolerances are half the distances between the paper's dip and peak, so that
@@ -241,7 +241,7 @@ def chirp_shape(evidence: Evidence) -> Numbers:
     }
 
 
-def turns_after_peak(evidence: Evidence) -> Numbers:
+def turns_after_peak(evidence: ClaimEvidence) -> Numbers:
     """Count the turns of the chirp's displacement after the peak, beyond 1 % of it."""
     (_, _, size), _, peak = _chirp_extremes(evidence)
     after = size[peak:]

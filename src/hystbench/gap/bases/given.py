@@ -10,10 +10,10 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.halves import HalvesError
 from hystbench.gap.bases.spectral import Ratio
-from hystbench.gap.bases.split import ENOUGH, parts_of, ways_at_ends, ways_inside
-from hystbench.gap.evidence import Evidence
+from hystbench.gap.bases.split_linear import ENOUGH, parts_of, ways_at_ends, ways_inside
+from hystbench.gap.bases.wiener_hammerstein import HalvesError
+from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
 
 SAME = 1e-3

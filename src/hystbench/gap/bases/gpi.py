@@ -5,7 +5,7 @@ from __future__ import annotations
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
-from hystbench.gap.evidence import Evidence
+from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
 
 ORDER = 20

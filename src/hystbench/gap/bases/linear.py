@@ -12,12 +12,12 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.impedance import INPUTS, Impedance
 from hystbench.blocks.transfer_function import STARTS
 from hystbench.errors import InputError
-from hystbench.gap.bases.halves import HalvesError
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio, with_a_mode
-from hystbench.gap.bases.split import best_split, chain_of, is_bent
-from hystbench.gap.evidence import Evidence
-from hystbench.gap.folds import Fold, make_folds
+from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
+from hystbench.gap.bases.wiener_hammerstein import HalvesError
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.model import Model
 from hystbench.record import FloatArray, Mask
 
@@ -31,7 +31,7 @@ BEGUN_DAMPING = 0.01
 #: Peaks of what is left at which a further mode is begun.
 PEAKS = 3
 #: An order is needed if it lowers the error on the folds by more than this share.
-MATTERS = 0.005
+ORDER_PAYS = 0.005
 #: Orders above are not tried once so many in a row have not mattered.
 IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
@@ -117,11 +117,11 @@ def identified_linear(evidence: Evidence) -> Linear:
     best, in_vain = static.folds, 0
     for order in range(1, HIGHEST + 1):
         found.append(dynamic(order, order))
-        in_vain = 0 if found[-1].folds < (1 - MATTERS) * best else in_vain + 1
+        in_vain = 0 if found[-1].folds < (1 - ORDER_PAYS) * best else in_vain + 1
         best = min(best, found[-1].folds)
         if in_vain > IN_VAIN:
             break
-    enough = best / (1 - MATTERS)
+    enough = best / (1 - ORDER_PAYS)
     likely = next((item for item in found if item.folds <= enough), None)
     if likely is not None and len(likely.ratio.a) >= MANY:
         found += _further_modes(spectra, likely, whole, folds)
@@ -129,7 +129,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     moved = _impedance(evidence, whole, folds)
     if moved is not None:
         best = min(best, moved[0].folds)
-    enough = best / (1 - MATTERS)
+    enough = best / (1 - ORDER_PAYS)
     chosen = next((item for item in found if item.folds <= enough), None)
     chain: tuple[Block, ...]
     if static.folds <= enough:
@@ -153,7 +153,7 @@ def identified_linear(evidence: Evidence) -> Linear:
         zeros = len(chosen.ratio.b) - 1
         what = f"order {order}, {zeros} zero{'s' * (zeros != 1)}, from {ratio.start}"
     unit = evidence.output.unit
-    if fold > (1 - MATTERS) * constant:
+    if fold > (1 - ORDER_PAYS) * constant:
         raise InputError(
             f"{evidence.name}: linear: on folds of the fit records the best linear "
             f"model is {fold:.4g} {unit} off, a constant {constant:.4g}; expected an "
@@ -196,7 +196,7 @@ def _further_modes(
         ]
         best = min(begun, key=lambda ratio: ratio.cost)
         further = _judged(last.task, best, whole, folds)
-        if further.folds >= (1 - MATTERS) * last.folds:
+        if further.folds >= (1 - ORDER_PAYS) * last.folds:
             break
         found.append(further)
         last = further

@@ -13,6 +13,8 @@ from hystbench.errors import InputError
 from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
 from hystbench.record import ComplexArray, FloatArray, Mask, Record
 
+#: Share of the sum that a step must win for another to follow.
+LEAST_GAIN = 1e-4
 #: A step is damped so many times before a descent ends.
 TRIALS = 8
 
@@ -64,9 +66,7 @@ class OutputError:
         error = [x[mask] for x, mask in zip(self.left(ratio), masks, strict=True)]
         return float(sum(part @ part for part in error))
 
-    def refined(
-        self, ratio: Ratio, masks: Sequence[Mask], rounds: int, least_gain: float = 1e-4
-    ) -> Ratio:
+    def refined(self, ratio: Ratio, masks: Sequence[Mask], rounds: int) -> Ratio:
         """Go down the sum of squares of the masked samples.
 
         Steps of Levenberg and Marquardt [1]_. The derivatives are those of a response
@@ -79,8 +79,6 @@ class OutputError:
         masks : sequence of ndarray of bool
         rounds : int
             Most steps.
-        least_gain : float
-            Share of the sum that a step must win for another to follow.
 
         References
         ----------
@@ -99,7 +97,7 @@ class OutputError:
                 damping *= 10.0
             else:
                 break
-            small = after > (1 - least_gain) * cost
+            small = after > (1 - LEAST_GAIN) * cost
             ratio, cost, damping = moved, after, max(damping / 10.0, 1e-9)
             if small:
                 break

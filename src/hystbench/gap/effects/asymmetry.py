@@ -14,7 +14,7 @@ from hystbench.gap.effects.base import (
     logarithmic,
     places_inside,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class Asymmetry(Effect):
@@ -26,29 +26,29 @@ class Asymmetry(Effect):
     offsets: ClassVar = {"bias": (("bias", "U"), ("zero", "Y"))}
     laws: ClassVar = ("butterfly",)
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the square behind the hysteresis, and three laws of the field.
 
         The field has a square of its own (a magnetic circuit about its working point),
         a constant bias, or the square of it that lags (a butterfly).
         """
-        for place in (scene.behind_hysteresis, *places_inside(scene)):
-            yield self._square(scene, place, "square")
-        if scene.hysteresis is not None:
-            yield self._bias(scene, scene.hysteresis)
-            yield self._square(scene, scene.hysteresis, "square of the field")
-            yield self._butterfly(scene, scene.hysteresis)
+        for place in (simulation.behind_hysteresis, *places_inside(simulation)):
+            yield self._square(simulation, place, "square")
+        if simulation.hysteresis is not None:
+            yield self._bias(simulation, simulation.hysteresis)
+            yield self._square(simulation, simulation.hysteresis, "square of the field")
+            yield self._butterfly(simulation, simulation.hysteresis)
 
-    def _square(self, scene: Scene, place: int, form: str) -> Variant:
-        unit = {"coefficient": 1e-3 / scene.largest(place)}
-        return self.inserted(scene, place, form=form, unit=unit)
+    def _square(self, simulation: Simulation, place: int, form: str) -> Variant:
+        unit = {"coefficient": 1e-3 / simulation.largest(place)}
+        return self.inserted(simulation, place, form=form, unit=unit)
 
-    def _butterfly(self, scene: Scene, start: int) -> Variant:
+    def _butterfly(self, simulation: Simulation, start: int) -> Variant:
         """The square of a play operator of the field."""
-        amplitude = scene.largest(start)
-        size = scene.largest(scene.behind_hysteresis) / amplitude**2
+        amplitude = simulation.largest(start)
+        size = simulation.largest(simulation.behind_hysteresis) / amplitude**2
         return self.inserted(
-            scene,
+            simulation,
             start + 1,
             law="butterfly",
             form="butterfly",
@@ -56,11 +56,11 @@ class Asymmetry(Effect):
             unit={"coefficient": 1e-3 * size},
         )
 
-    def _bias(self, scene: Scene, start: int) -> Variant:
+    def _bias(self, simulation: Simulation, start: int) -> Variant:
         """A constant added to the field; the sensor is set to zero with it on."""
         gain = registry()["gain"]
-        behind = scene.behind_hysteresis
-        loop, rest = scene.chain[start:behind], scene.chain[behind:]
+        behind = simulation.behind_hysteresis
+        loop, rest = simulation.chain[start:behind], simulation.chain[behind:]
 
         def build(given: Values) -> tuple[Block, ...]:
             bias, zero = (
@@ -77,8 +77,8 @@ class Asymmetry(Effect):
             build,
             (0, len(loop) + 1),
             unit={
-                "bias": 1e-3 * scene.largest(start),
-                "zero": 1e-3 * scene.largest(behind),
+                "bias": 1e-3 * simulation.largest(start),
+                "zero": 1e-3 * simulation.largest(behind),
             },
             free=("offset",),
         )

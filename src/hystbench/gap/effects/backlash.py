@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class Backlash(Effect):
@@ -15,12 +16,12 @@ class Backlash(Effect):
     shows = "branch"
     place = "mechanics"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer half-widths up to a third of the largest output."""
-        end = scene.behind_mechanics
-        largest = scene.largest(end)
+        end = simulation.behind_mechanics
+        largest = simulation.largest(end)
         yield self.inserted(
-            scene,
+            simulation,
             end,
             grids={"half_width": logarithmic(3e-4 * largest, largest / 3, 4)},
         )

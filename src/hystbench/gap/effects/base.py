@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,16 +20,16 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.linear import LinearBlock
-from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import WrappingBlock
-from hystbench.gap.locate.view import Kind
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.law import Changed, Filled, Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
 Values = Mapping[str, float]
-Samples = slice | NDArray[np.intp]
+SomeSamples = slice | NDArray[np.intp]
 """Some samples of a record."""
-EVERY: Samples = slice(None)
+EVERY: SomeSamples = slice(None)
 
 
 class Declined(Exception):  # noqa: N818  (an answer, not an error)
@@ -130,91 +130,12 @@ class Variant:
         return f"{self.effect} ({self.form})" if self.form else self.effect
 
 
-@dataclass(frozen=True)
-class Moved:
-    """How a mechanism moves, the largest magnitudes over all records.
-
-    Parameters
-    ----------
-    reach : float
-        Of its position about the middle.
-    speed : float
-        Of its velocity.
-    force : float
-        Of the force that drives it, or that its motion takes.
-    step : float
-        Shortest sampling interval, in seconds.
-    turns : bool
-        Whether it turns: its position is an angle in rad.
-    anywhere : bool
-        Whether where it is does not matter, as of a mass without a spring: a force
-        that depends on the place has no meaning then.
-    stiffness : float
-        Of its linear spring; zero without one.
-    given, shown : float
-        The model's input, and its output.
-    """
-
-    reach: float
-    speed: float
-    force: float
-    step: float
-    turns: bool = False
-    anywhere: bool = False
-    stiffness: float = 0.0
-    given: float = 1.0
-    shown: float = 1.0
-
-
-@dataclass(frozen=True)
-class Law:
-    """A force inside a mechanism, or a filter beside it, where its fit starts.
-
-    Parameters
-    ----------
-    form : str
-        What tells it from other laws of the effect.
-    block : Block
-    free : tuple of str
-        Parameters that are fitted.
-    place : {"inside", "before", "behind"}
-    stands_for : float
-        Share of the linear spring that the force stands for: it goes out of the spring.
-    least : float
-        Of its numbers, where that is more than their blocks' own bound.
-    """
-
-    form: str
-    block: Block
-    free: tuple[str, ...]
-    place: Literal["inside", "before", "behind"] = "inside"
-    stands_for: float = 0.0
-    least: float = -np.inf
-
-
-class Filled(NamedTuple):
-    """How high stores are filled: place, block and highest level of each."""
-
-    tops: tuple[tuple[int, Store, float], ...]
-
-
-class Changed(NamedTuple):
-    """Other numbers of stores, where their fit starts.
-
-    Of them those that are free, by place and parameter.
-    """
-
-    form: str
-    values: dict[int, dict[str, float]]
-    free: tuple[tuple[int, str], ...]
-
-
 class Effect(ABC):
     """One physical effect of the vocabulary."""
 
     name: ClassVar[str]
     place: ClassVar[str]
-    shows: ClassVar[Kind]
+    shows: ClassVar[ViewKind]
     """View in which an engineer looks for it first."""
     offsets: ClassVar[Mapping[str, tuple[tuple[str, str], ...]]] = {}
     """By form, where its blocks are plain gains: the name and the unit that the offset
@@ -227,7 +148,7 @@ class Effect(ABC):
     """Of its block inside the dynamics: without this number it is another effect."""
 
     @abstractmethod
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Give the variants that make sense in a chain on its records.
 
         Raises
@@ -238,7 +159,7 @@ class Effect(ABC):
 
     def inserted(
         self,
-        scene: Scene,
+        simulation: Simulation,
         place: int,
         values: Callable[[Values], dict[str, Any]] = dict,
         *,
@@ -260,11 +181,11 @@ class Effect(ABC):
         """
         block = registry()[law or self.name]
         start = place
-        if issubclass(block, WrappingBlock) and scene.hysteresis is not None:
-            start = scene.hysteresis
-        between, rest = scene.chain[start:place], scene.chain[place:]
+        if issubclass(block, WrappingBlock) and simulation.hysteresis is not None:
+            start = simulation.hysteresis
+        between, rest = simulation.chain[start:place], simulation.chain[place:]
 
-        hold = scene.hold_at(place) if issubclass(block, HeldBlock) else None
+        hold = simulation.hold_at(place) if issubclass(block, HeldBlock) else None
 
         def build(given: Values) -> tuple[Block, ...]:
             own = values(given)
@@ -274,7 +195,7 @@ class Effect(ABC):
 
         return Variant(
             self.name,
-            INSIDE if place in places_inside(scene) else self.place,
+            INSIDE if place in places_inside(simulation) else self.place,
             form,
             start,
             build,
@@ -291,7 +212,7 @@ class Effect(ABC):
 
     def added(
         self,
-        scene: Scene,
+        simulation: Simulation,
         beside: Beside,
         *,
         form: str,
@@ -299,7 +220,7 @@ class Effect(ABC):
         grids: dict[str, FloatArray] | None = None,
     ) -> Variant:
         """Give the variant that adds a signal to the output of the chain."""
-        end = len(scene.chain)
+        end = len(simulation.chain)
         return Variant(
             self.name,
             self.place,
@@ -377,17 +298,17 @@ class Effect(ABC):
         raise NotImplementedError
 
 
-def places_inside(scene: Scene) -> list[int]:
+def places_inside(simulation: Simulation) -> list[int]:
     """Give the places between the transfer functions of a chain: before all but one.
 
     A linear base that is written as two in series may hide a static nonlinearity
     between its halves.
     """
-    linear = [k for k, item in enumerate(scene.chain) if item.name == LINEAR]
+    linear = [k for k, item in enumerate(simulation.chain) if item.name == LINEAR]
     return linear[1:]
 
 
-def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
+def places_in_drive(simulation: Simulation, linear: bool = False) -> list[int]:
     """Give the places among the drive's effects where another one does another thing.
 
     Before the first block, and behind each of them that does not commute with what is
@@ -396,12 +317,12 @@ def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
 
     Parameters
     ----------
-    scene : Scene
+    simulation : Simulation
     linear : bool
         Whether what is put there is linear.
     """
     places = [0]
-    for k, block in enumerate(scene.chain):
+    for k, block in enumerate(simulation.chain):
         if block.place != "drive":
             break
         is_limit = not isinstance(block, HeldBlock)
@@ -410,7 +331,7 @@ def places_in_drive(scene: Scene, linear: bool = False) -> list[int]:
     return places
 
 
-def places_in_sensor(scene: Scene, linear: bool = False) -> list[int]:
+def places_in_sensor(simulation: Simulation, linear: bool = False) -> list[int]:
     """Give the places among the sensor's effects where another one does another thing.
 
     Behind the last block, and before each of the sensor's that does not commute with
@@ -418,13 +339,15 @@ def places_in_sensor(scene: Scene, linear: bool = False) -> list[int]:
 
     Parameters
     ----------
-    scene : Scene
+    simulation : Simulation
     linear : bool
         Whether what is put there is linear.
     """
-    end = len(scene.chain)
-    own = range(scene.behind_mechanics, end)
-    before = (k for k in own if isinstance(scene.chain[k], LinearBlock) is not linear)
+    end = len(simulation.chain)
+    own = range(simulation.behind_mechanics, end)
+    before = (
+        k for k in own if isinstance(simulation.chain[k], LinearBlock) is not linear
+    )
     return [end, *before]
 
 
@@ -444,7 +367,7 @@ class InsideEffect(Effect):
 
     place = "inside"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Decline: no chain in series has a place for it.
 
         Raises

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.base import Declined, Effect, Variant
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import SHAPE
 
 
@@ -16,7 +16,7 @@ class CalibrationError(Effect):
     shows = "amplitude"
     place = "sensor"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the gain, the offset and both.
 
         Beside another shape of the hysteresis there is nothing to offer: what the shape
@@ -27,13 +27,13 @@ class CalibrationError(Effect):
         Declined
             If the chain has such a shape.
         """
-        if any(block.name == SHAPE for block in scene.chain):
+        if any(block.name == SHAPE for block in simulation.chain):
             raise Declined("the other shape of the hysteresis has a gain of its own")
-        end = len(scene.chain)
-        step = {"gain": 1e-3, "offset": 1e-3 * scene.largest(end)}
+        end = len(simulation.chain)
+        step = {"gain": 1e-3, "offset": 1e-3 * simulation.largest(end)}
         for used in (("gain",), ("offset",), ("gain", "offset")):
             yield self.inserted(
-                scene,
+                simulation,
                 end,
                 # The gain is solved for as what it adds to one.
                 lambda given: {

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hystbench.gap.effects.base import Declined, Effect, Values, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class Creep(Effect):
@@ -20,15 +20,15 @@ class Creep(Effect):
     place = "mechanics"
     laws: ClassVar = ("logarithmic-creep",)
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer creep behind the hysteresis.
 
         Time constants go from a two-hundredth to the whole of the longest record; a
         slower element is a ramp that one record cannot tell from drift.
         """
-        if scene.span < 500 * scene.step:
+        if simulation.span < 500 * simulation.step:
             raise Declined("records are too short for anything slow")
-        low, high = scene.span / 200, scene.span
+        low, high = simulation.span / 200, simulation.span
         for count in (1, 3):
             unit = {f"magnitude {k + 1}": 1e-3 for k in range(count)}
             spread = SPREAD ** np.arange(count)
@@ -44,8 +44,8 @@ class Creep(Effect):
                 }
 
             found = self.inserted(
-                scene,
-                scene.behind_material,
+                simulation,
+                simulation.behind_material,
                 values,
                 form="one element" if count == 1 else "three elements",
                 grids={
@@ -57,27 +57,29 @@ class Creep(Effect):
             )
             yield replace(found, charge=2.0 * count)
         for form, power in POWERS.items():
-            yield self._over_decades(scene, form, power)
+            yield self._over_decades(simulation, form, power)
 
-    def _over_decades(self, scene: Scene, form: str, power: float) -> Variant:
+    def _over_decades(self, simulation: Simulation, form: str, power: float) -> Variant:
         """All time constants between two, as of a material without a time of its own.
 
         They begin anywhere between the sampling interval and the slowest that one
         record shows, and may go on beyond it.
         """
         found = self.inserted(
-            scene,
-            scene.behind_material,
+            simulation,
+            simulation.behind_material,
             lambda given: {"power": power, **given},
             law="logarithmic-creep",
             form=form,
             grids={
-                "first_time_s": logarithmic(scene.step, scene.span / 20, 1),
-                "last_time_s": logarithmic(scene.span / 2, 10 * scene.span, 1),
+                "first_time_s": logarithmic(simulation.step, simulation.span / 20, 1),
+                "last_time_s": logarithmic(
+                    simulation.span / 2, 10 * simulation.span, 1
+                ),
             },
             limits={
-                "first_time_s": (scene.step / 5, scene.span / 5),
-                "last_time_s": (scene.span / 4, 100 * scene.span),
+                "first_time_s": (simulation.step / 5, simulation.span / 5),
+                "last_time_s": (simulation.span / 4, 100 * simulation.span),
             },
             unit={"magnitude": 1e-3},
             positive=("magnitude",),

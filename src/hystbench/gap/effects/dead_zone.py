@@ -6,14 +6,13 @@ from collections.abc import Iterator
 
 from hystbench.gap.effects.base import (
     Effect,
-    Law,
-    Moved,
     Variant,
     logarithmic,
     places_in_drive,
     places_inside,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class DeadZone(Effect):
@@ -23,12 +22,12 @@ class DeadZone(Effect):
     shows = "amplitude"
     place = "drive"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the dead zone in the drive, and inside a linear base."""
-        for place in (*places_in_drive(scene), *places_inside(scene)):
-            largest = scene.largest(place)
+        for place in (*places_in_drive(simulation), *places_inside(simulation)):
+            largest = simulation.largest(place)
             widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
-            yield self.inserted(scene, place, grids={"half_width": widths})
+            yield self.inserted(simulation, place, grids={"half_width": widths})
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer narrow and wide ones before the mechanism."""

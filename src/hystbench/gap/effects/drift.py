@@ -6,9 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import EVERY, Beside, Effect, Samples, Values, Variant
-from hystbench.gap.once import periods, shows_a_path
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import (
+    EVERY,
+    Beside,
+    Effect,
+    SomeSamples,
+    Values,
+    Variant,
+)
+from hystbench.gap.records.nuisance import periods_of_input, shows_a_path
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray, Record
 
 
@@ -19,22 +26,22 @@ class Drift(Effect):
     shows = "unexplained"
     place = "sensor"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer one slope for all records, a ramp in each, and a path in each."""
-        end = len(scene.chain)
-        small = 1e-3 * scene.largest(end) / scene.span
-        yield self.inserted(scene, end, form="one slope", unit={"slope": small})
-        if not any(shows_a_path(record) for record in scene.records):
+        end = len(simulation.chain)
+        small = 1e-3 * simulation.largest(end) / simulation.span
+        yield self.inserted(simulation, end, form="one slope", unit={"slope": small})
+        if not any(shows_a_path(record) for record in simulation.records):
             return
         charges = {
-            form: 0.5 * sum(degree(record, order) for record in scene.records)
+            form: 0.5 * sum(degree(record, order) for record in simulation.records)
             for form, order in FORMS.items()
         }
         if charges[WINDING] == charges[PATH]:
             del charges[WINDING]  # no record has periods enough to wind
         for form, charge in charges.items():
             beside = Beside(self.name, FORMS[form], path)
-            yield self.added(scene, beside, form=form, charge=charge)
+            yield self.added(simulation, beside, form=form, charge=charge)
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, float]:
         """Give the block's slope: the mean one, of a path that of its ramp."""
@@ -52,10 +59,12 @@ def degree(record: Record, order: int) -> int:
     What goes to and fro as fast as the input could be anything that follows it; a path
     of that degree has half its frequency.
     """
-    return min(order, max(1, int(periods(record))))
+    return min(order, max(1, int(periods_of_input(record))))
 
 
-def path(record: Record, given: Values, order: int, at: Samples = EVERY) -> FloatArray:
+def path(
+    record: Record, given: Values, order: int, at: SomeSamples = EVERY
+) -> FloatArray:
     """Give a ramp, and for a path Legendre polynomials beside it, shape (n, k)."""
     ramp = record.time[at, None]
     if order == 1:

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_drive
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import Effect, Variant, places_in_drive
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class DriveSaturation(Effect):
@@ -17,12 +18,12 @@ class DriveSaturation(Effect):
     shows = "amplitude"
     place = "drive"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer limits from 30 to 99.5 % of the largest signal there."""
         share = 1.0 - np.geomspace(0.7, 0.005, 12)
-        for place in places_in_drive(scene):
-            limits = scene.largest(place) * share
-            yield self.inserted(scene, place, grids={"limit": limits})
+        for place in places_in_drive(simulation):
+            limits = simulation.largest(place) * share
+            yield self.inserted(simulation, place, grids={"limit": limits})
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer limits before the mechanism, met seldom and often."""

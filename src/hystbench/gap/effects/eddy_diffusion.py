@@ -14,7 +14,7 @@ from hystbench.gap.effects.base import (
     logarithmic,
     places_in_drive,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class EddyDiffusion(Effect):
@@ -24,17 +24,17 @@ class EddyDiffusion(Effect):
     shows = "frequency"
     place = "drive"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer each shape of the core, behind the drive's limits as well.
 
         A half-space goes by the root of its time, and shows at a far shorter one.
         """
-        times = logarithmic(scene.step / 5, scene.span / 5, 1.5)
-        quick = logarithmic(1e-4 * scene.step, scene.span / 100, 1)
-        for place in places_in_drive(scene, linear=True):
+        times = logarithmic(simulation.step / 5, simulation.span / 5, 1.5)
+        quick = logarithmic(1e-4 * simulation.step, simulation.span / 100, 1)
+        for place in places_in_drive(simulation, linear=True):
             for geometry in GEOMETRIES:
                 yield self.inserted(
-                    scene,
+                    simulation,
                     place,
                     partial(_values, geometry),
                     form=geometry,

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.smooth_friction import SmoothFriction
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 HOLDS = 1e-7
 """Share of the reach by which dry friction gives way where it holds: no record shows
@@ -22,19 +23,19 @@ class Friction(Effect):
     place = "mechanics"
     laws = ("friction-force", "smooth-friction")
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer it behind the mechanics, by the velocity at which it saturates."""
-        end = scene.behind_mechanics
+        end = simulation.behind_mechanics
         yield self.inserted(
-            scene,
+            simulation,
             end,
             grids={
                 "velocity_scale": logarithmic(
-                    1e-4 * scene.fastest(), scene.fastest() / 5, 2
+                    1e-4 * simulation.fastest(), simulation.fastest() / 5, 2
                 )
             },
             inside=("velocity_scale",),
-            unit={"coulomb": 1e-3 * scene.largest(end)},
+            unit={"coulomb": 1e-3 * simulation.largest(end)},
         )
 
     def inside(self, moved: Moved) -> Iterator[Law]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench.envelope import Envelope
 from hystbench.gap.effects.base import Declined, Effect, Values, Variant
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 OPERATORS = 8
 BEND = 0.5
@@ -33,21 +33,21 @@ class Hysteresis(Effect):
     place = "material"
     laws: ClassVar = (PLAYS,)
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer operators over the range of the input."""
-        if scene.hysteresis is not None:
+        if simulation.hysteresis is not None:
             raise Declined("the chain has a hysteresis already")
-        if scene.loop is not None and scene.chain[scene.loop].reruns:
+        if simulation.loop is not None and simulation.chain[simulation.loop].reruns:
             raise Declined("the simulator has a hysteresis already")
-        yield self._generalized(scene)
-        yield self._plays(scene)
+        yield self._generalized(simulation)
+        yield self._plays(simulation)
 
-    def _plays(self, scene: Scene) -> Variant:
+    def _plays(self, simulation: Simulation) -> Variant:
         """Plays beside a linear path.
 
         The law's cubes stay zero: with them a search takes five times as long.
         """
-        amplitude = scene.largest(0)
+        amplitude = simulation.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
         names = [f"weight {k}" for k in range(OPERATORS)]
 
@@ -56,7 +56,7 @@ class Hysteresis(Effect):
             return {"thresholds": thresholds, "weights": weights}
 
         return self.inserted(
-            scene,
+            simulation,
             0,
             values,
             law=PLAYS,
@@ -65,8 +65,8 @@ class Hysteresis(Effect):
             free=("weights",),
         )
 
-    def _generalized(self, scene: Scene) -> Variant:
-        amplitude = scene.largest(0)
+    def _generalized(self, simulation: Simulation) -> Variant:
+        amplitude = simulation.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
         slope = BEND / amplitude
         envelope = dict.fromkeys(Envelope.__dataclass_fields__, 0.0)
@@ -83,7 +83,7 @@ class Hysteresis(Effect):
             }
 
         found = self.inserted(
-            scene,
+            simulation,
             0,
             values,
             form="generalized plays",

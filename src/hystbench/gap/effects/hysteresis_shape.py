@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.effects.hysteresis import PLAYS
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class HysteresisShape(Effect):
@@ -19,26 +19,26 @@ class HysteresisShape(Effect):
     shows = "branch"
     place = "material"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the correction of the chain's hysteresis."""
-        if scene.hysteresis is None:
+        if simulation.hysteresis is None:
             raise Declined("the chain has no hysteresis whose shape could be wrong")
-        if scene.chain[scene.hysteresis].name in ("hysteresis", PLAYS):
+        if simulation.chain[simulation.hysteresis].name in ("hysteresis", PLAYS):
             raise Declined("the shape of an added hysteresis is fitted with it")
-        amplitude = scene.largest(scene.hysteresis)
+        amplitude = simulation.largest(simulation.hysteresis)
         thresholds = [amplitude * k / OPERATORS for k in range(1, OPERATORS)]
         weights = [f"weight {k}" for k in range(1, OPERATORS)]
         squares = [f"square {k}" for k in range(1, OPERATORS)]
         powers = [f"power {k}" for k in range(1, POWERS + 1)]
-        size = 1e-3 * scene.largest(scene.behind_hysteresis)
+        size = 1e-3 * simulation.largest(simulation.behind_hysteresis)
         unit = (
             dict.fromkeys(weights, size / amplitude)
             | dict.fromkeys(squares, size / amplitude**2)
             | {name: size / amplitude**k for k, name in enumerate(powers, start=1)}
         )
         yield self.inserted(
-            scene,
-            scene.hysteresis + 1,
+            simulation,
+            simulation.hysteresis + 1,
             lambda given: {
                 "thresholds": thresholds,
                 "weights": [given[name] for name in weights],

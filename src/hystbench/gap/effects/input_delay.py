@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import Effect, Variant, logarithmic
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class InputDelay(Effect):
@@ -15,12 +16,14 @@ class InputDelay(Effect):
     shows = "delay"
     place = "drive"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the delay before the first block."""
         yield self.inserted(
-            scene,
+            simulation,
             0,
-            grids={"delay_s": logarithmic(scene.step / 20, scene.span / 20, 2)},
+            grids={
+                "delay_s": logarithmic(simulation.step / 20, simulation.span / 20, 2)
+            },
         )
 
     def inside(self, moved: Moved) -> Iterator[Law]:

@@ -12,11 +12,11 @@ from hystbench.gap.effects.base import (
     Beside,
     Declined,
     Effect,
-    Samples,
+    SomeSamples,
     Values,
     Variant,
 )
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray, Record
 
 MAINS_HZ = (50.0, 60.0)
@@ -31,14 +31,18 @@ class MainsPickup(Effect):
     shows = "unexplained"
     place = "sensor"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the fundamental alone and with harmonics, near the mains."""
-        usable = [f for f in MAINS_HZ if f < SHOWN / scene.step and f * scene.span > 3]
+        usable = [
+            f
+            for f in MAINS_HZ
+            if f < SHOWN / simulation.step and f * simulation.span > 3
+        ]
         if not usable:
             raise Declined("records too short, or sampled too slowly, for the mains")
         for harmonics in (1, HARMONICS):
             yield self.added(
-                scene,
+                simulation,
                 Beside(self.name, harmonics, tone),
                 form="fundamental" if harmonics == 1 else f"{harmonics} harmonics",
                 grids={
@@ -46,7 +50,7 @@ class MainsPickup(Effect):
                         [f * np.array([0.995, 1.0, 1.005]) for f in usable]
                     )
                 },
-                charge=1 + harmonics * (1 + 0.25 * len(scene.records)),
+                charge=1 + harmonics * (1 + 0.25 * len(simulation.records)),
             )
 
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
@@ -61,7 +65,7 @@ class MainsPickup(Effect):
 
 
 def tone(
-    record: Record, given: Values, harmonics: int, at: Samples = EVERY
+    record: Record, given: Values, harmonics: int, at: SomeSamples = EVERY
 ) -> FloatArray:
     """Give sine and cosine of each harmonic over a record, shape (n, 2 harmonics)."""
     angle = 2 * np.pi * given["frequency_hz"] * record.time[at]

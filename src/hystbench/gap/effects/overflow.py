@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import Changed, Filled, StoreEffect
+from hystbench.gap.effects.base import StoreEffect
+from hystbench.gap.effects.law import Changed, Filled
 
 SHARES = (0.95, 0.75)
 """Of the highest level without it: where overflow begins."""

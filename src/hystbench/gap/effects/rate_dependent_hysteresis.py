@@ -11,7 +11,7 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Effect, Values, Variant
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class RateDependentHysteresis(Effect):
@@ -21,31 +21,33 @@ class RateDependentHysteresis(Effect):
     shows = "rate"
     place = "material"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer three laws around the hysteresis.
 
         The coefficient is searched by what it does at the fastest rate of the records,
         from one exponent or another, which the refit moves.
         """
-        if scene.hysteresis is None:
+        if simulation.hysteresis is None:
             raise Declined("the chain has no hysteresis that could widen")
-        amplitude = scene.largest(scene.hysteresis)
+        amplitude = simulation.largest(simulation.hysteresis)
         field = np.geomspace(2e-3, 0.5, 5) * amplitude
         sizes = {
             "growing-thresholds": np.geomspace(0.03, 20, 5),
             "excess-field": field,
             "acting-field": field,
         }
-        if not can_grow(scene):
+        if not can_grow(simulation):
             del sizes["growing-thresholds"]
         for form, at_fastest in sizes.items():
             for exponent in EXPONENTS[form]:
                 found = self.inserted(
-                    scene,
-                    scene.hysteresis + 1,
+                    simulation,
+                    simulation.hysteresis + 1,
                     partial(_values, form, exponent),
                     form=f"{form}, {exponent:g}",
-                    grids={"coefficient": at_fastest / scene.fastest() ** exponent},
+                    grids={
+                        "coefficient": at_fastest / simulation.fastest() ** exponent
+                    },
                     free=("coefficient", "exponent"),
                     zero={"coefficient": 0.0},
                 )
@@ -65,11 +67,11 @@ def _values(form: str, exponent: float, given: Values) -> dict[str, Any]:
     return {"exponent": exponent, **given, "form": form}
 
 
-def can_grow(scene: Scene) -> bool:
+def can_grow(simulation: Simulation) -> bool:
     """Tell whether the hysteresis has thresholds that can grow."""
-    assert scene.hysteresis is not None  # noqa: S101  (the caller has looked)
+    assert simulation.hysteresis is not None  # noqa: S101  (the caller has looked)
     try:
-        scene.chain[scene.hysteresis].check_growth()  # type: ignore[attr-defined]
+        simulation.chain[simulation.hysteresis].check_growth()  # type: ignore[attr-defined]
     except InputError:
         return False
     return True

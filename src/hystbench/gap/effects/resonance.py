@@ -8,7 +8,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.effects.base import Effect, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
 PEAKS = 3
@@ -30,19 +30,19 @@ class Resonance(Effect):
     shows = "frequency"
     place = "mechanics"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer modes from two periods in the shortest record to 0.45 of the rate.
 
         A lightly damped mode falls between the points of a grid, so that frequencies at
         which the residual has its peaks are points too.
         """
-        low, high = 2 / scene.shortest, 0.45 / scene.step
+        low, high = 2 / simulation.shortest, 0.45 / simulation.step
         grid = logarithmic(low, high, 6)
         yield self.inserted(
-            scene,
-            scene.behind_material,
+            simulation,
+            simulation.behind_material,
             grids={
-                "frequency_hz": np.union1d(grid, peaks(scene, low, high)),
+                "frequency_hz": np.union1d(grid, peaks(simulation, low, high)),
                 "damping_ratio": np.array([0.01, 0.15]),
             },
             unit={"participation": 0.01},
@@ -51,7 +51,7 @@ class Resonance(Effect):
         )
 
 
-def peaks(scene: Scene, low: float, high: float) -> FloatArray:
+def peaks(simulation: Simulation, low: float, high: float) -> FloatArray:
     """Give the frequencies at which one light mode would lower the residual most.
 
     Only what lies within ``NEAR`` of a mode's frequency counts, where it stands out
@@ -59,7 +59,7 @@ def peaks(scene: Scene, low: float, high: float) -> FloatArray:
 
     Parameters
     ----------
-    scene : Scene
+    simulation : Simulation
     low, high : float
         In Hz.
 
@@ -71,8 +71,10 @@ def peaks(scene: Scene, low: float, high: float) -> FloatArray:
     count = int(np.log(high / low) / LIGHT) + 2
     modes = np.geomspace(low, high, count)
     along, square = np.zeros(count), np.zeros(count)
-    inputs = scene.before[scene.behind_material]
-    for record, v, simulated in zip(scene.records, inputs, scene.output, strict=True):
+    inputs = simulation.before[simulation.behind_material]
+    for record, v, simulated in zip(
+        simulation.records, inputs, simulation.output, strict=True
+    ):
         length = fft.next_fast_len(2 * len(record), real=True)
         left = fft.rfft(record.y - simulated, length)
         driven = fft.rfft(v, length)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 SOFTEST, SHARPEST = 1.0, 50.0
 """Froelich's law of magnetisation; beyond the other one, a corner is a corner."""
@@ -22,22 +22,24 @@ class Saturation(Effect):
     shows = "amplitude"
     place = "material"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer levels from half to thirty times the largest signal there.
 
         Of the output, or of the field that drives the hysteresis.
         """
-        for place in (scene.behind_hysteresis, *places_inside(scene)):
-            yield from self._at(scene, place)
-        if scene.hysteresis is not None:
-            yield from self._at(scene, scene.hysteresis, "field")
+        for place in (simulation.behind_hysteresis, *places_inside(simulation)):
+            yield from self._at(simulation, place)
+        if simulation.hysteresis is not None:
+            yield from self._at(simulation, simulation.hysteresis, "field")
 
-    def _at(self, scene: Scene, place: int, of: str = "") -> Iterator[Variant]:
-        largest = scene.largest(place)
+    def _at(
+        self, simulation: Simulation, place: int, of: str = ""
+    ) -> Iterator[Variant]:
+        largest = simulation.largest(place)
         levels = logarithmic(0.5 * largest, 30 * largest, 5)
-        yield self.inserted(scene, place, form=of, grids={"level": levels})
+        yield self.inserted(simulation, place, form=of, grids={"level": levels})
         yield self.inserted(
-            scene,
+            simulation,
             place,
             form=f"{of}, algebraic" if of else "algebraic",
             grids={

@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hystbench.gap.effects.base import (
-    Effect,
-    Law,
-    Moved,
-    Variant,
-    logarithmic,
-    places_in_sensor,
-)
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_in_sensor
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class SensorLag(Effect):
@@ -22,11 +16,11 @@ class SensorLag(Effect):
     shows = "frequency"
     place = "sensor"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the lag behind the last block, and before the sensor's curves."""
-        times = logarithmic(scene.step / 20, scene.span / 20)
-        for place in places_in_sensor(scene, linear=True):
-            yield self.inserted(scene, place, grids={"time_constant_s": times})
+        times = logarithmic(simulation.step / 20, simulation.span / 20)
+        for place in places_in_sensor(simulation, linear=True):
+            yield self.inserted(simulation, place, grids={"time_constant_s": times})
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer it behind the mechanism."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from hystbench.gap.effects.base import Effect, Law, Moved, Variant, places_in_sensor
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import Effect, Variant, places_in_sensor
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class SensorNonlinearity(Effect):
@@ -16,14 +17,14 @@ class SensorNonlinearity(Effect):
     shows = "amplitude"
     place = "sensor"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the square, the cube and both, before the sensor's lag as well."""
-        for place in places_in_sensor(scene):
-            largest = scene.largest(place)
+        for place in places_in_sensor(simulation):
+            largest = simulation.largest(place)
             unit = {"quadratic": 1e-3 / largest, "cubic": 1e-3 / largest**2}
             for form, used in FORMS.items():
                 found = self.inserted(
-                    scene,
+                    simulation,
                     place,
                     lambda given: {"quadratic": 0.0, "cubic": 0.0, **given},
                     form=form,

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import expit, logit
 
 from hystbench.gap.effects.base import Effect, Variant, places_in_drive
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class SlewLimit(Effect):
@@ -18,13 +18,13 @@ class SlewLimit(Effect):
     shows = "rate"
     place = "drive"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer rates from 2 to 98 % of the fastest there.
 
         They are close together at both ends: just below the fastest rate the effect
         sets in, and far below it the output grows with the limit.
         """
         share = expit(np.linspace(logit(0.02), logit(0.98), 16))
-        for place in places_in_drive(scene):
-            rates = scene.fastest(place) * share
-            yield self.inserted(scene, place, grids={"rate": rates})
+        for place in places_in_drive(simulation):
+            rates = simulation.fastest(place) * share
+            yield self.inserted(simulation, place, grids={"rate": rates})

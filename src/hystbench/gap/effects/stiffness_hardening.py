@@ -14,16 +14,9 @@ from hystbench.blocks.exponential_stiffness import ExponentialStiffness
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import (
-    LINEAR,
-    Declined,
-    Effect,
-    Law,
-    Moved,
-    Values,
-    Variant,
-)
-from hystbench.gap.scene import Scene
+from hystbench.gap.effects.base import LINEAR, Declined, Effect, Values, Variant
+from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.simulation.simulation import Simulation
 
 Before = tuple[Block, ...]
 """What is left of a block when a mode is taken out of its end."""
@@ -37,7 +30,7 @@ class StiffnessHardening(Effect):
     place = "mechanics"
     laws = ("stiffness", "exponential-stiffness")
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the spring for each mode, those inside transfer functions included.
 
         Raises
@@ -46,10 +39,10 @@ class StiffnessHardening(Effect):
             If there is no mode, or none that can be taken out.
         """
         found = False
-        for k, block in enumerate(scene.chain):
+        for k, block in enumerate(simulation.chain):
             for before, mode in _modes(block):
                 found = True
-                yield from self._hardened(scene, k, before, mode)
+                yield from self._hardened(simulation, k, before, mode)
         if not found:
             raise Declined("the chain has no mode whose spring could harden")
 
@@ -67,21 +60,21 @@ class StiffnessHardening(Effect):
         yield Law("steep", steep, ("coefficient", "reach"))
 
     def _hardened(
-        self, scene: Scene, k: int, before: Before, mode: Mapping[str, Any]
+        self, simulation: Simulation, k: int, before: Before, mode: Mapping[str, Any]
     ) -> Iterator[Variant]:
         """Offer a spring that is hardly another, one that stiffens, one that softens.
 
         The first is solved for. Where the mode moves by more than its own width, what
         the first does tells nothing: the others are searched.
         """
-        rest = scene.chain[k + 1 :]
+        rest = simulation.chain[k + 1 :]
 
         def build(given: Values) -> tuple[Block, ...]:
             own = registry()[self.name].from_mapping({**mode, **given})
             return (*before, own, *rest)
 
         # What moves the spring: the mode's own input, or what it gives.
-        unit = 1.0 / scene.largest(k + 1 if before else k) ** 2
+        unit = 1.0 / simulation.largest(k + 1 if before else k) ** 2
         solved = Variant(
             self.name,
             self.place,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.gap.effects.base import Effect, Variant, logarithmic
-from hystbench.gap.scene import Scene
+from hystbench.gap.simulation.simulation import Simulation
 
 
 class ThermalDrift(Effect):
@@ -15,24 +15,24 @@ class ThermalDrift(Effect):
     shows = "slow-time"
     place = "mechanics"
 
-    def variants(self, scene: Scene) -> Iterator[Variant]:
+    def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer it behind the mechanics, of one body that warms and of two.
 
         Two bodies in a row may change places: the second one is the quicker.
         """
-        end = scene.behind_mechanics
-        small = 1e-3 * scene.largest(end) / scene.largest(0) ** 2
-        low, high = scene.span / 200, 3 * scene.span
+        end = simulation.behind_mechanics
+        small = 1e-3 * simulation.largest(end) / simulation.largest(0) ** 2
+        low, high = simulation.span / 200, 3 * simulation.span
         yield self.inserted(
-            scene,
+            simulation,
             end,
             form="one body",
             grids={"time_constant_s": logarithmic(low, high, 2.5)},
             unit={"coefficient": small},
         )
-        slower = logarithmic(scene.span / 20, high, 2.5)
+        slower = logarithmic(simulation.span / 20, high, 2.5)
         yield self.inserted(
-            scene,
+            simulation,
             end,
             form="two bodies",
             grids={

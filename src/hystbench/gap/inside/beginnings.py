@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.least_squares import at_values
-from hystbench.gap.sample import Sample
-from hystbench.gap.score import Score
-from hystbench.gap.state import State
+from hystbench.gap.records.sample import Sample
 from hystbench.record import Record
 
 PART = 0.25
@@ -42,12 +42,12 @@ class Beginnings:
     score: Score
 
     @classmethod
-    def of(cls, state: State, score: Score) -> Beginnings:
+    def of(cls, state: ModelState, score: Score) -> Beginnings:
         """Cut the records where a quarter of a model's residual power has passed.
 
         Parameters
         ----------
-        state : State
+        state : ModelState
         score : Score
             Of the whole records.
         """
@@ -72,7 +72,7 @@ class Beginnings:
         own = Score(sample, score.directions[mask], score.floor)
         return cls(tuple(records), sample, mask, own)
 
-    def cut(self, state: State) -> State:
+    def cut(self, state: ModelState) -> ModelState:
         """Give a model on the beginnings."""
         lacks = state.correction
         return replace(
@@ -83,7 +83,7 @@ class Beginnings:
         )
 
 
-def with_numbers_of(state: State, other: State) -> State:
+def with_numbers_of(state: ModelState, other: ModelState) -> ModelState:
     """Give a model with the free numbers of another one of the same blocks."""
     return at_values(state, np.array([other.value(free) for free in other.free]))
 

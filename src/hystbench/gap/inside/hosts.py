@@ -19,15 +19,15 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.gap.compared import rms
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.inside.modes import modes
 from hystbench.gap.inside.stores import stores
-from hystbench.gap.sample import Sample
-from hystbench.gap.scene import Scene
-from hystbench.gap.score import Score
-from hystbench.gap.state import Free, State
-from hystbench.gap.unnamed import SHARE
+from hystbench.gap.records.residual import rms
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
 
@@ -50,7 +50,7 @@ class Host:
 
     Parameters
     ----------
-    alone : State
+    alone : ModelState
         What the gap is counted from.
     fitted : Fitted
         The same, its numbers fitted to the records: what forces are put in.
@@ -58,19 +58,19 @@ class Host:
         How it stands in place of the base.
     """
 
-    alone: State
+    alone: ModelState
     fitted: Fitted
     words: str
 
 
 def hosts(
-    start: State, quantities: Quantities, identified: bool, score: Score
+    start: ModelState, quantities: Quantities, identified: bool, score: Score
 ) -> Iterator[Host]:
     """Give the linear models that forces are tried in.
 
     Parameters
     ----------
-    start : State
+    start : ModelState
         The base on the fit records.
     quantities : Quantities
         What the device takes and gives.
@@ -110,18 +110,18 @@ def hosts(
         yield Host(best.state if identified else mode, best, words)
 
 
-def same_as(start: State, quantities: Quantities) -> State | None:
+def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     """Give a model of one coordinate that simulates what a given base does.
 
     It may differ by as much of the gap as may stay unnamed. Of a base that a gain and
     an offset do as well there is none: nothing moves in it.
     """
-    outputs = Scene(start.chain, start.records, start.hold, fine=True).output
+    outputs = Simulation(start.chain, start.records, start.hold, fine=True).output
     simulated = tuple(
         replace(record, y=y, simulated=None, interpolated=None)
         for record, y in zip(start.records, outputs, strict=True)
     )
-    most = SHARE * float(np.mean(start.residual**2))
+    most = UNNAMED_SHARE * float(np.mean(start.residual**2))
     u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], outputs))
     static = np.column_stack([u, np.ones(len(u))])
     if np.mean((wanted - static @ _solved(static, wanted)) ** 2) < most:
@@ -136,7 +136,7 @@ def same_as(start: State, quantities: Quantities) -> State | None:
 
 def one_coordinate(
     records: tuple[Record, ...], quantities: Quantities, hold: Hold
-) -> Iterator[State]:
+) -> Iterator[ModelState]:
     """Give linear models of one coordinate, with all their numbers free, begun.
 
     Parameters
@@ -159,7 +159,7 @@ def one_coordinate(
         yield from masses(records, output, hold)
 
 
-def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> State:
+def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState:
     """Give the impedance that fits best: its force is linear in its numbers."""
     sample, parts = Sample.of(records), Impedance.parts(moved, hold)
     columns = [
@@ -173,7 +173,9 @@ def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> State:
     return _state((block,), records, hold, {0: tuple(parts)})
 
 
-def masses(records: tuple[Record, ...], output: str, hold: Hold) -> Iterator[State]:
+def masses(
+    records: tuple[Record, ...], output: str, hold: Hold
+) -> Iterator[ModelState]:
     """Give masses on springs, begun where a grid says, and a free mass.
 
     At each natural frequency and damping ratio the gain and an offset of the output are
@@ -211,7 +213,7 @@ def masses(records: tuple[Record, ...], output: str, hold: Hold) -> Iterator[Sta
 
 def free_masses(
     records: tuple[Record, ...], output: str, hold: Hold
-) -> Iterator[State]:
+) -> Iterator[ModelState]:
     """Give a mass without a spring, begun at the rate of decay that fits best."""
     sample = Sample.of(records)
     wanted = sample.take([record.y for record in records])
@@ -255,7 +257,7 @@ def _times(unit: Mechanism, gain: float) -> Mechanism:
     )
 
 
-def best_host(states: Sequence[State], score: Score) -> Fitted | None:
+def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
     """Fit linear hosts, the likely ones to the end; give the one that scores least.
 
     What it gives as its output may also have a share of the next derivative (a zero).
@@ -271,7 +273,7 @@ def best_host(states: Sequence[State], score: Score) -> Fitted | None:
     return best
 
 
-def with_zero(state: State) -> Iterator[State]:
+def with_zero(state: ModelState) -> Iterator[ModelState]:
     """Give a mechanism with a zero in its numerator."""
     block = state.chain[0]
     if isinstance(block, Mechanism) and block.output != "force":
@@ -292,9 +294,9 @@ def _state(
     records: tuple[Record, ...],
     hold: Hold,
     own: dict[int, tuple[str, ...]],
-) -> State:
+) -> ModelState:
     free = tuple(Free(k, name) for k, names in own.items() for name in names)
-    return State(chain, records, Sample.of(records), free=free, hold=hold)
+    return ModelState(chain, records, Sample.of(records), free=free, hold=hold)
 
 
 def _solved(columns: FloatArray, wanted: FloatArray) -> FloatArray:

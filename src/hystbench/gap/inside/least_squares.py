@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.score import Score
-from hystbench.gap.state import Free, State
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.record import FloatArray
 
 EVALUATIONS = 100
@@ -35,16 +35,16 @@ class Fitted:
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     score : float
     """
 
-    state: State
+    state: ModelState
     score: float
 
 
 def fitted(
-    state: State,
+    state: ModelState,
     score: Score,
     evaluations: int = EVALUATIONS,
 ) -> Fitted:
@@ -55,7 +55,7 @@ def fitted(
 
     Parameters
     ----------
-    state : State
+    state : ModelState
     score : Score
         Judges the result.
     evaluations : int
@@ -70,7 +70,7 @@ def fitted(
     weights = by_record(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
-    def moved(point: FloatArray) -> State:
+    def moved(point: FloatArray) -> ModelState:
         times = np.exp(np.clip(point, -100, 100))
         found = np.where(logs, values * times, values + point * sizes)
         return at_values(state, found)
@@ -110,7 +110,7 @@ def fitted(
     return Fitted(best, judged(best, score))
 
 
-def judged(state: State, score: Score) -> float:
+def judged(state: ModelState, score: Score) -> float:
     """Score a model; one that runs away has an infinite score."""
     residual = state.residual
     if not np.all(np.isfinite(residual)):
@@ -118,7 +118,7 @@ def judged(state: State, score: Score) -> float:
     return score.of(residual, state.freedom)
 
 
-def at_values(state: State, values: FloatArray) -> State:
+def at_values(state: ModelState, values: FloatArray) -> ModelState:
     """Give a model with other values of its free numbers, within their bounds.
 
     Raises
@@ -137,12 +137,12 @@ def at_values(state: State, values: FloatArray) -> State:
     return state.with_chain(tuple(chain))
 
 
-def _positive(state: State, free: Free) -> bool:
+def _positive(state: ModelState, free: Free) -> bool:
     about = state.chain[free.block].parameters()[free.parameter]
     return about.low >= 0.0 and state.value(free) > 0.0
 
 
-def by_record(state: State) -> FloatArray:
+def by_record(state: ModelState) -> FloatArray:
     """Give one over the rms of the residual of each record, for all its samples."""
     weights = np.empty(len(state.measured))
     residual = np.where(np.isfinite(state.residual), state.residual, state.measured)
@@ -151,7 +151,7 @@ def by_record(state: State) -> FloatArray:
     return weights
 
 
-def _sizes(state: State) -> FloatArray:
+def _sizes(state: ModelState) -> FloatArray:
     """What is a large change of each number that may have either sign.
 
     Its own value; of a zero, what moves the output by its own rms.

@@ -13,7 +13,7 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.state import Free, State
+from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.record import ComplexArray, FloatArray
 
 NUMBERS = ("mass", "damping", "stiffness", "blend")
@@ -24,7 +24,7 @@ APART = 1e-6
 """Share of its size by which a pole must be away from all others."""
 
 
-def modes(start: State, output: str) -> Iterator[State]:
+def modes(start: ModelState, output: str) -> Iterator[ModelState]:
     """Give a linear model with one of its modes as a mechanism.
 
     The model does what it did. The modes come in the order in which they deserve a
@@ -34,14 +34,14 @@ def modes(start: State, output: str) -> Iterator[State]:
 
     Parameters
     ----------
-    start : State
+    start : ModelState
         Its chain is a transfer function of two oscillating modes or more, and gains;
         of any other nothing is given.
     output : {"position", "velocity", "acceleration"}
 
     Yields
     ------
-    State
+    ModelState
         The numbers of the mode are free, those of the others are not.
     """
     block, *behind = start.chain
@@ -49,7 +49,7 @@ def modes(start: State, output: str) -> Iterator[State]:
         return
     if not all(isinstance(item, Gain) for item in behind):
         return
-    found: list[tuple[float, int, State]] = []
+    found: list[tuple[float, int, ModelState]] = []
     for split in split_modes(block, output):
         state = replace(
             start,
@@ -161,7 +161,7 @@ def _sum_of(
     )
 
 
-def _explained_by_levels(state: State) -> float:
+def _explained_by_levels(state: ModelState) -> float:
     """Mean share of a record that other numbers of the mode in it would explain."""
     shares = []
     for part in state.sample.slices:

@@ -9,7 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from hystbench.gap.held_back import gain_held_back
+from hystbench.blocks.attached import AttachedBlock
+from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -18,11 +21,11 @@ from hystbench.gap.inside.search import (
     singles,
     together,
 )
-from hystbench.gap.name import Named
-from hystbench.gap.rounds import Candidate, Round
-from hystbench.gap.say import Say, silent
-from hystbench.gap.score import Score
-from hystbench.gap.state import State
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rounds import Candidate, Round
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.simulation.simulation import may_hold
 from hystbench.gap.thresholds import CERTAIN, FURTHER, MATTERS, PAYS, TIE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
@@ -35,7 +38,7 @@ class Inside:
     Parameters
     ----------
     base : Model
-    start : State
+    start : ModelState
         The same on the fit records.
     named : Named
     sentence : str
@@ -43,14 +46,14 @@ class Inside:
     """
 
     base: Model
-    start: State
+    start: ModelState
     named: Named
     sentence: str
 
 
 def named_inside(
     base: Model,
-    start: State,
+    start: ModelState,
     floor_rms: float,
     quantities: Quantities,
     identified: bool,
@@ -64,7 +67,7 @@ def named_inside(
     Parameters
     ----------
     base : Model
-    start : State
+    start : ModelState
         The same on the fit records.
     floor_rms : float
     quantities : Quantities
@@ -178,7 +181,9 @@ def chosen(found: Sequence[Hypothesis], floor: float) -> Hypothesis:
     return min(tied, key=lambda item: (item.fitted.state.freedom, item.score))
 
 
-def _rounds(start: State, best: Hypothesis, found: Sequence[Hypothesis]) -> list[Round]:
+def _rounds(
+    start: ModelState, best: Hypothesis, found: Sequence[Hypothesis]
+) -> list[Round]:
     """Write how the effects were found as rounds: each beside those before it.
 
     They come in the order of :func:`way_to`.
@@ -206,3 +211,17 @@ def _candidate(item: Hypothesis, already: frozenset[str], now: float) -> Candida
     return Candidate(
         last.effect, last.place, last.form, item.score, now - item.score, state
     )
+
+
+def inside_of(base: Model, evidence: Evidence) -> Quantities | None:
+    """Give what the device takes and gives, where forces may be tried inside the base.
+
+    That is where the base may be linear: nothing in it remembers a way, nor holds a
+    force already. None elsewhere.
+    """
+    for block in base.chain:
+        if isinstance(block, AttachedBlock) or block.hysteretic:
+            return None
+        if may_hold(block, evidence.fit):
+            return None
+    return evidence.quantities

@@ -14,13 +14,13 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among, effects
-from hystbench.gap.effects.base import Changed, Law, Moved
+from hystbench.gap.effects.law import Changed, Law, Moved
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
 from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged
 from hystbench.gap.inside.stores import how_it_fills, with_changed
-from hystbench.gap.say import Say, silent
-from hystbench.gap.score import Score
-from hystbench.gap.state import Added, Free, State
+from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, TIE
 
 SINGLES, PAIRS = 4, 2
@@ -274,7 +274,7 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
     return False
 
 
-def with_law(state: State, effect: str, law: Law) -> State:
+def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     """Put a law into a chain, with its numbers free.
 
     A force goes behind the host, a filter before all or behind all. What a force stands
@@ -315,7 +315,7 @@ def is_host(block: Block) -> bool:
     return isinstance(block, Mechanism | Impedance)
 
 
-def how_it_moves(state: State, turns: bool) -> Moved:
+def how_it_moves(state: ModelState, turns: bool) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
     host: Any = next(block for block in state.chain if is_host(block))
     reach = speed = force = 0.0
@@ -329,7 +329,7 @@ def how_it_moves(state: State, turns: bool) -> Moved:
     tiny = 1.0 / HUGE
     step = min(record.dt for record in state.records)
     given = [record.u for record in state.records]
-    shown = state.scene.output
+    shown = state.simulation.output
     anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
     return Moved(
         max(reach, tiny),

@@ -11,9 +11,9 @@ import numpy as np
 from hystbench.blocks.held import Hold
 from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.effects.base import Changed, Filled
-from hystbench.gap.sample import Sample
-from hystbench.gap.state import Added, Free, State
+from hystbench.gap.effects.law import Changed, Filled
+from hystbench.gap.fitting.state import Added, Free, ModelState
+from hystbench.gap.records.sample import Sample
 from hystbench.record import Record
 
 RATES = 6
@@ -26,7 +26,7 @@ BEGUN = 3
 
 def stores(
     records: tuple[Record, ...], hold: Hold, noise_rms: float, count: int
-) -> Iterator[State]:
+) -> Iterator[ModelState]:
     """Give stores in series, with all their numbers free, begun.
 
     At each set of rates the gain and a constant inflow are solved for. Nothing is
@@ -70,7 +70,7 @@ def stores(
         for k in range(len(chain)):
             free += [Free(k, "rate"), Free(k, "start_level")]
         free.append(Free(len(chain) - 1, "gain"))
-        yield State(chain, records, sample, free=tuple(free), hold=hold)
+        yield ModelState(chain, records, sample, free=tuple(free), hold=hold)
 
 
 def _chain(
@@ -98,18 +98,18 @@ def _chain(
     return (upper, Store(gain=size, rate=rates[1], exponent=1.0, hold=between))
 
 
-def how_it_fills(state: State) -> Filled:
+def how_it_fills(state: ModelState) -> Filled:
     """Look how high the stores of a chain are filled on its records."""
     tops = []
     for k, block in enumerate(state.chain):
         if isinstance(block, Store):
             level = replace(block, output="level")
-            signals = state.scene.tail(k, [level])
+            signals = state.simulation.tail(k, [level])
             tops.append((k, block, max(float(z.max()) for z in signals)))
     return Filled(tuple(tops))
 
 
-def with_changed(state: State, effect: str, changed: Changed) -> State:
+def with_changed(state: ModelState, effect: str, changed: Changed) -> ModelState:
     """Give stores with other numbers, some of them free as well."""
     chain = list(state.chain)
     old = {

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.floor import Floor
 from hystbench.gap.locate.amplitude import amplitude
 from hystbench.gap.locate.branch import branch
 from hystbench.gap.locate.contribution import Contribution
@@ -20,6 +18,8 @@ from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.locate.slow_time import slow_time
 from hystbench.gap.locate.unexplained import unexplained
 from hystbench.gap.locate.view import View
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.residual import Compared
 
 __all__ = ["LEVEL", "Contribution", "View", "Where", "locate", "ranked"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hystbench.gap.locate.forms import fit_form, hats, named_or, narrowest, p_value_of
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
 
 KNOTS = 9
@@ -14,7 +14,7 @@ ONE_SIDED = 0.8
 """Share of what is explained on one side of zero, for the side to be told."""
 
 
-def amplitude(samples: Samples) -> View:
+def amplitude(samples: ViewSamples) -> View:
     """Fit a gain with an offset, and maps over input and simulated output.
 
     The p-value is the smaller of those of the two maps, doubled for the choice.

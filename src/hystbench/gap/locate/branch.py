@@ -6,7 +6,7 @@ import numpy as np
 
 from hystbench.gap.locate.forms import fit_form, named_or, p_value_of
 from hystbench.gap.locate.picture import Axis, Panel, Picture, mean_in, series
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.operators import play
 from hystbench.record import FloatArray
@@ -19,7 +19,7 @@ CELLS = 40
 """Of the picture."""
 
 
-def branch(samples: Samples) -> View:
+def branch(samples: ViewSamples) -> View:
     """Fit steps where the input turns and play operators, none of which knows a rate.
 
     The p-value is that of a step beside the play operators.
@@ -62,14 +62,14 @@ def branch(samples: Samples) -> View:
     )
 
 
-def _plays(samples: Samples) -> list[FloatArray]:
+def _plays(samples: ViewSamples) -> list[FloatArray]:
     """Give play operators of the input: no loop of Preisach's is out of their reach."""
     thresholds = THRESHOLDS * samples.reach
     signals = [play(item.record.u, thresholds)[0] for item in samples.compared]
     return list((samples.thinned(signals) / samples.reach).T)
 
 
-def _picture(samples: Samples) -> Picture:
+def _picture(samples: ViewSamples) -> Picture:
     """Draw the residual over the input, branch by branch."""
     u, residual = samples.input, samples.residual
     edges = np.linspace(

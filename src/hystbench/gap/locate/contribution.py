@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from hystbench.gap.locate.view import Kind
+from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
 
@@ -24,6 +24,6 @@ class Contribution:
     """
 
     effect: str
-    view: Kind | None
+    view: ViewKind | None
     added: tuple[FloatArray, ...]
     freedom: float = 1.0

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from hystbench.gap.locate.forms import FACTS, fit_form, named_or, p_value_of
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
 
@@ -17,7 +17,7 @@ PERIODS = 1.5
 """Of the fastest input: further a shift is not told from those by whole periods."""
 
 
-def delay(samples: Samples) -> View:
+def delay(samples: ViewSamples) -> View:
     """Shift the simulated output in time until it fits best.
 
     A delay of the input of a simulator that does not change with time is a delay of its
@@ -53,7 +53,7 @@ def delay(samples: Samples) -> View:
     )
 
 
-def fit_delay(samples: Samples) -> tuple[float, FloatArray]:
+def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     """Find the delay in seconds, and what it changes: on a grid, then refined."""
     from scipy.interpolate import CubicSpline  # late: both take long to load
     from scipy.optimize import minimize_scalar

@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft, special
 
-from hystbench.gap.compared import Compared
 from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, series
-from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.view import MATTERS, SIGNIFICANT, chance, percent
-from hystbench.gap.periods import settled
+from hystbench.gap.locate.samples import ViewSamples
+from hystbench.gap.locate.view import LEAST_SHARE, SIGNIFICANT, chance, percent
+from hystbench.gap.records.residual import Compared, whole_periods
 from hystbench.record import FloatArray
 
 IntArray = NDArray[np.int64]
@@ -102,7 +101,7 @@ class Distortion:
             f"{percent(self.shares[kind])} on {name} lines beside them "
             f"({chance(self.p_values[kind])}), that is, distortion that {means}"
             for kind, (name, means) in MEANS.items()
-            if self.p_values[kind] < SIGNIFICANT and self.shares[kind] >= MATTERS
+            if self.p_values[kind] < SIGNIFICANT and self.shares[kind] >= LEAST_SHARE
         ]
         if len(parts) == 1:
             parts.append("little or nothing beside them")
@@ -112,7 +111,7 @@ class Distortion:
     def told_repeating(self) -> str:
         """What does not repeat with the input, and so is none of its doing."""
         other = self.shares[BETWEEN]
-        if other < MATTERS:
+        if other < LEAST_SHARE:
             return " Next to all of the gap of periodic records repeats with the input."
         return (
             f" Of the gap of periodic records {percent(other)} does not repeat with "
@@ -143,7 +142,7 @@ class Distortion:
         return Picture("distortion", words, (panel,))
 
 
-def take_distortion(samples: Samples) -> Distortion | None:
+def take_distortion(samples: ViewSamples) -> Distortion | None:
     """Sort the residual's power by harmonics, over records with at least two periods.
 
     The first period of three or more holds the way from rest and is left out. An input
@@ -181,7 +180,7 @@ def _lines(item: Compared) -> Lines | None:
     excited = _excited(item.record.u[-count * period :].reshape(count, period))
     if not len(excited):
         return None
-    runs = fft.rfft(settled(item.residual, period), axis=1)
+    runs = fft.rfft(whole_periods(item.residual, period), axis=1)
     used, mean = len(runs), runs.mean(axis=0)
     scale = np.full(len(mean), 2.0 / period)
     if period % 2 == 0:

@@ -19,10 +19,8 @@ LEAST_SHARE = 0.1
 """Of the output's power, that a mode worth a picture holds."""
 
 
-def find_modes(
-    level: Sequence[Lines], integrals: int, most: int = 2
-) -> tuple[Mode, ...]:
-    """Find the modes that hold most of the output of a level.
+def find_modes(level: Sequence[Lines], integrals: int) -> tuple[Mode, ...]:
+    """Find the one or two modes that hold most of the output of a level.
 
     Parameters
     ----------
@@ -30,7 +28,6 @@ def find_modes(
         Records of one level.
     integrals : int
         How often the output has to be integrated for a position.
-    most : int
 
     Returns
     -------
@@ -46,7 +43,7 @@ def find_modes(
         width = 2 * mode.damping * mode.frequency
         if share >= LEAST_SHARE * whole and all(each > width for each in apart):
             found.append(mode)
-    return tuple(found[:most])
+    return tuple(found[:2])
 
 
 def _peaks(lines: Lines) -> list[float]:

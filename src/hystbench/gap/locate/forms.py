@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import fft, special
 
-from hystbench.gap.locate.samples import Samples
-from hystbench.gap.locate.view import Kind
+from hystbench.gap.locate.samples import ViewSamples
+from hystbench.gap.view_kinds import ViewKind
 from hystbench.record import FloatArray
 
 FACTS = 300
@@ -18,6 +18,8 @@ FACTS = 300
 a model is not white (docs/gap-method.md, "The score")."""
 HOLD = 0.8
 """Of what a view explains, that its range holds."""
+BINS = 50
+"""Of as many samples each, in which the narrowest range is looked for."""
 SMOOTH = 17
 """Bins over which the spectrum of what is left is smoothed."""
 DEPENDENT = 1e-5
@@ -25,7 +27,7 @@ DEPENDENT = 1e-5
 
 
 @dataclass(frozen=True)
-class Form:
+class FittedForm:
     """A fitted form: some function of an axis, with its number of free parameters.
 
     Parameters
@@ -59,7 +61,7 @@ class Form:
         return bool(self.added)
 
 
-def saved(samples: Samples, explained: float, freedom: float) -> float:
+def saved(samples: ViewSamples, explained: float, freedom: float) -> float:
     """Give the description length that a form saves, in nats.
 
     ``facts / 2 * log(power before / power after) - freedom / 2 * log(facts)``: the
@@ -76,17 +78,17 @@ def saved(samples: Samples, explained: float, freedom: float) -> float:
 
 
 def fit_form(
-    samples: Samples,
+    samples: ViewSamples,
     words: str,
     columns: Sequence[FloatArray],
     searched: float = 0,
     by_record: bool = False,
-) -> Form:
+) -> FittedForm:
     """Fit columns to the residual by least squares.
 
     Parameters
     ----------
-    samples : Samples
+    samples : ViewSamples
     words : str
     columns : sequence of ndarray, shape (n,)
     searched : float
@@ -107,15 +109,17 @@ def fit_form(
         freedom += int(rank)
     explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
     gained = saved(samples, explained, freedom)
-    return Form(words, fitted, explained, freedom, gained, found / scale)
+    return FittedForm(words, fitted, explained, freedom, gained, found / scale)
 
 
-def best(forms: Sequence[Form]) -> Form:
+def best(forms: Sequence[FittedForm]) -> FittedForm:
     """Give the form that saves most."""
     return max(forms, key=lambda form: form.saved)
 
 
-def named_or(samples: Samples, view: Kind, forms: Sequence[Form]) -> Form:
+def named_or(
+    samples: ViewSamples, view: ViewKind, forms: Sequence[FittedForm]
+) -> FittedForm:
     """Give what named effects add in a view; without any the best form of its own."""
     named = [
         replace(
@@ -129,7 +133,9 @@ def named_or(samples: Samples, view: Kind, forms: Sequence[Form]) -> Form:
     return best(named or forms)
 
 
-def p_value_of(samples: Samples, form: Form, tests: Sequence[Form] = ()) -> float:
+def p_value_of(
+    samples: ViewSamples, form: FittedForm, tests: Sequence[FittedForm] = ()
+) -> float:
     """Give the F test's p-value: of what is named, or the least of some forms.
 
     The tests have no searched parameters; the least of several is multiplied by their
@@ -139,7 +145,7 @@ def p_value_of(samples: Samples, form: Form, tests: Sequence[Form] = ()) -> floa
     return min(1.0, len(used) * min(_fitted_p_value(samples, one) for one in used))
 
 
-def _fitted_p_value(samples: Samples, form: Form) -> float:
+def _fitted_p_value(samples: ViewSamples, form: FittedForm) -> float:
     rest = samples.residual - form.fitted
     count = effective_count(samples, rest, form.fitted)
     share = form.explained / max(samples.power, 1e-300)
@@ -160,7 +166,9 @@ def f_test(share: float, freedom: float, count: float) -> float:
     return float(special.betainc(left / 2, freedom / 2, np.clip(1.0 - share, 0.0, 1.0)))
 
 
-def effective_count(samples: Samples, rest: FloatArray, fitted: FloatArray) -> float:
+def effective_count(
+    samples: ViewSamples, rest: FloatArray, fitted: FloatArray
+) -> float:
     """Count the independent samples among autocorrelated ones.
 
     A fit picks up the rest where both have power. With the spectra S of the rest,
@@ -187,19 +195,15 @@ def hats(values: FloatArray, knots: int) -> list[FloatArray]:
     return [np.interp(values, places, row) for row in np.eye(knots)]
 
 
-def narrowest(
-    axis: FloatArray, weights: FloatArray, bins: int = 50
-) -> tuple[float, float]:
+def narrowest(axis: FloatArray, weights: FloatArray) -> tuple[float, float]:
     """Give the range of fewest samples that holds most of the weight.
 
     Parameters
     ----------
     axis, weights : ndarray, shape (n,)
-    bins : int
-        Bins of as many samples each.
     """
     order = np.argsort(axis)
-    starts = np.unique(np.linspace(0, len(axis), bins + 1)[:-1].astype(np.int64))
+    starts = np.unique(np.linspace(0, len(axis), BINS + 1)[:-1].astype(np.int64))
     first, last = narrowest_bins(np.add.reduceat(weights[order], starts))
     end = starts[last + 1] if last + 1 < len(starts) else len(axis) - 1
     return float(axis[order[starts[first]]]), float(axis[order[end]])

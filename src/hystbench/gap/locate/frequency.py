@@ -9,15 +9,8 @@ from itertools import pairwise
 import numpy as np
 from scipy import fft
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.floor import periodogram
 from hystbench.gap.locate.distortion import take_distortion
-from hystbench.gap.locate.forms import (
-    fit_form,
-    named_or,
-    narrowest_bins,
-    p_value_of,
-)
+from hystbench.gap.locate.forms import fit_form, named_or, narrowest_bins, p_value_of
 from hystbench.gap.locate.picture import (
     FREQUENCY,
     Axis,
@@ -26,9 +19,11 @@ from hystbench.gap.locate.picture import (
     series,
     thinned,
 )
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.spectra import R, S, Spectra, U, take_spectra
 from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.records.floor import periodogram
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 BANDS = 12
@@ -37,7 +32,7 @@ BINS = 401
 """Edges of bins over which a range is sought."""
 
 
-def frequency(samples: Samples) -> View:
+def frequency(samples: ViewSamples) -> View:
     """Fit a linear filter of the simulated output: a gain and a phase of each band.
 
     The range is the narrowest band that holds four fifths of what is explained. The
@@ -114,7 +109,7 @@ def _passed(item: Compared, band: tuple[float, float], turn: complex) -> FloatAr
 
 
 def _power(
-    samples: Samples, signals: Sequence[FloatArray]
+    samples: ViewSamples, signals: Sequence[FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
     """Give the power of signals in bins of frequency, and the edges of these."""
     pairs = zip(signals, samples.compared, strict=True)
@@ -125,7 +120,7 @@ def _power(
     return np.histogram(at, edges, weights=power)
 
 
-def _spectrum(samples: Samples, spectra: Spectra) -> Picture:
+def _spectrum(samples: ViewSamples, spectra: Spectra) -> Picture:
     """Draw amplitude densities of simulation, residual, its linear part and floor."""
     # White noise of variance s^2 at a sampling interval dt has the density 2 s^2 dt.
     lengths = [len(item.record) for item in samples.compared]

@@ -7,15 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import special
 
-from hystbench.gap.compared import Compared
 from hystbench.gap.locate.dominant import find_modes
 from hystbench.gap.locate.forms import saved
 from hystbench.gap.locate.lines import Lines, lines_of
 from hystbench.gap.locate.mode import LINES, Mode, fit_mode
 from hystbench.gap.locate.moving import Moving
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.records.residual import Compared
 from hystbench.quantities import quantity_of
 
 APART = 1.2
@@ -35,7 +35,7 @@ ROLES = (
 )
 
 
-def take_levels(samples: Samples) -> tuple[Moving, ...]:
+def take_levels(samples: ViewSamples) -> tuple[Moving, ...]:
     """Fit the dominant modes at each level of the input.
 
     Returns
@@ -67,7 +67,7 @@ def take_levels(samples: Samples) -> tuple[Moving, ...]:
     return tuple(moving[:MODES])
 
 
-def level(samples: Samples) -> View | None:
+def level(samples: ViewSamples) -> View | None:
     """Tell how modes move with the level.
 
     The share is what a mode of each level's own takes away of the gap within its band.

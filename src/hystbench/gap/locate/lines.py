@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.periods import settled
+from hystbench.gap.records.residual import Compared, whole_periods
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -64,7 +63,7 @@ def lines_of(compared: Compared) -> Lines:
     signals = np.stack([record.u, record.y, compared.residual])
     repeats = period is not None and len(record) >= 2 * period
     if period is not None and repeats:
-        runs = settled(signals, period)
+        runs = whole_periods(signals, period)
         # Of two periods the first still holds the way from rest.
         signals = runs[:, -1] if runs.shape[1] == 2 else runs.mean(axis=1)
     else:

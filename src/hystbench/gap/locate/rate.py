@@ -6,7 +6,7 @@ import numpy as np
 
 from hystbench.gap.locate.forms import fit_form, named_or, narrowest, p_value_of
 from hystbench.gap.locate.picture import Axis, Cells, Panel, Picture, listed
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
 from hystbench.record import FloatArray
 
@@ -21,7 +21,7 @@ FEWEST = 5
 """Samples of a cell that is shown: the mean of fewer is mostly noise."""
 
 
-def rate(samples: Samples) -> View:
+def rate(samples: ViewSamples) -> View:
     """Fit odd powers of the rate, alone and by the input's magnitude.
 
     The p-value is that of the odd powers.
@@ -61,7 +61,7 @@ def rate(samples: Samples) -> View:
     )
 
 
-def over_plane(samples: Samples) -> Picture | None:
+def over_plane(samples: ViewSamples) -> Picture | None:
     """Average the residual over cells of the input and of its rate together.
 
     What depends on both, as a loop that widens with rate and amplitude, shows neither

@@ -8,7 +8,7 @@ import numpy as np
 
 from hystbench.gap.locate.forms import fit_form, narrowest_bins, p_value_of
 from hystbench.gap.locate.picture import Axis, Bars, Panel, Picture, listed
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, percent
 from hystbench.record import FloatArray
 
@@ -18,7 +18,7 @@ NAMED = 3
 """Records that are told by name; of more, how many they are."""
 
 
-def record(samples: Samples) -> View:
+def record(samples: ViewSamples) -> View:
     """Share the gap's power out among the records.
 
     The range is the fewest neighbouring records that hold four fifths of it. For the
@@ -57,7 +57,7 @@ def record(samples: Samples) -> View:
     )
 
 
-def record_shares(samples: Samples) -> FloatArray:
+def record_shares(samples: ViewSamples) -> FloatArray:
     """Give each record's share of the power above the floor; they add to one."""
     above = np.array(
         [
@@ -69,7 +69,7 @@ def record_shares(samples: Samples) -> FloatArray:
     return above / total if total > 0 else np.full(len(above), 1 / len(above))
 
 
-def _left_alone(samples: Samples, names: Sequence[str]) -> str:
+def _left_alone(samples: ViewSamples, names: Sequence[str]) -> str:
     """Name the records whose residual is the noise: what the model does right."""
     quiet = [
         name

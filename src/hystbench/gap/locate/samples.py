@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.errors import InputError
-from hystbench.gap.compared import Compared
-from hystbench.gap.floor import Floor
 from hystbench.gap.locate.contribution import Contribution
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.residual import Compared
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
@@ -27,7 +27,7 @@ TURNS = 0.01
 
 
 @dataclass(frozen=True)
-class Samples:
+class ViewSamples:
     """Records beside their simulations, read at every ``stride``-th sample.
 
     The stride is a prime: a periodic record is then seen at many phases, not at the
@@ -163,7 +163,7 @@ def take_samples(
     compared: Sequence[Compared],
     floor: Floor,
     contributions: Sequence[Contribution] = (),
-) -> Samples:
+) -> ViewSamples:
     """Choose the stride and gather the records.
 
     Raises
@@ -186,7 +186,7 @@ def take_samples(
     shortest = min(len(item.record) for item in compared)
     if shortest // stride < 100:
         stride = max(1, shortest // 100)
-    return Samples(tuple(compared), floor, stride, tuple(contributions))
+    return ViewSamples(tuple(compared), floor, stride, tuple(contributions))
 
 
 def _direction(u: FloatArray, half_width: float) -> FloatArray:

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 
 from hystbench.blocks.linear import low_pass
-from hystbench.gap.compared import Compared
 from hystbench.gap.locate.forms import fit_form, named_or, narrowest, p_value_of
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
 
 TIMES = 7
@@ -20,7 +20,7 @@ BLOCKS = 25
 """Means of a record in the picture, at most."""
 
 
-def slow_time(samples: Samples) -> View:
+def slow_time(samples: ViewSamples) -> View:
     """Fit low-passed output (creep) and low-passed square of the input (heat).
 
     The p-value is that of both together.
@@ -61,7 +61,7 @@ def slow_time(samples: Samples) -> View:
 
 
 def _passed(
-    samples: Samples, of: Callable[[Compared], FloatArray], times: FloatArray
+    samples: ViewSamples, of: Callable[[Compared], FloatArray], times: FloatArray
 ) -> list[FloatArray]:
     """Send a signal, averaged between samples, through lags."""
     means = [block_means(of(item), samples.stride) for item in samples.compared]
@@ -84,7 +84,7 @@ def block_means(values: FloatArray, size: int) -> FloatArray:
     return np.add.reduceat(values, starts) / counts
 
 
-def _picture(samples: Samples) -> Picture:
+def _picture(samples: ViewSamples) -> Picture:
     """Draw the mean residual over blocks of whole periods, record behind record."""
     lines, start = [], 0.0
     frequencies = samples.main_frequencies.tolist()

@@ -8,9 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.gap.compared import Compared
-from hystbench.gap.locate.samples import Samples
-from hystbench.gap.periods import settled
+from hystbench.gap.locate.samples import ViewSamples
+from hystbench.gap.records.residual import Compared, whole_periods
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -66,7 +65,7 @@ class Spectra:
         return np.asarray(np.clip(np.abs(self.matrix[a, b]) ** 2 / both, 0.0, 1.0))
 
 
-def take_spectra(samples: Samples) -> Spectra:
+def take_spectra(samples: ViewSamples) -> Spectra:
     """Average the spectra of each record by Welch's method, and add the records."""
     lines = [_lines(item) for item in samples.compared]
     frequencies = np.concatenate([frequency for frequency, _ in lines])
@@ -102,7 +101,7 @@ def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
     n, period = len(record), record.period_samples
     size, window, overlap = n // SEGMENTS, "hann", n // SEGMENTS // 2
     if period and n >= SEGMENTS * period:
-        signals = settled(signals, period).reshape(3, -1)
+        signals = whole_periods(signals, period).reshape(3, -1)
         size, window, overlap = period, "boxcar", 0
     centred = signals - signals.mean(axis=1, keepdims=True)
     frequency, matrix = csd(

@@ -7,17 +7,11 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.gap.floor import periodogram
-from hystbench.gap.locate.forms import (
-    best,
-    fit_form,
-    named_or,
-    narrowest,
-    p_value_of,
-)
-from hystbench.gap.locate.samples import Samples
+from hystbench.gap.locate.forms import best, fit_form, named_or, narrowest, p_value_of
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
-from hystbench.gap.once import shows_a_path
+from hystbench.gap.records.floor import periodogram
+from hystbench.gap.records.nuisance import shows_a_path
 from hystbench.record import FloatArray
 
 BoolArray = NDArray[np.bool_]
@@ -38,7 +32,7 @@ STANDS_OUT = 10.0
 """Times the level around it, that a line holds."""
 
 
-def unexplained(samples: Samples) -> View:
+def unexplained(samples: ViewSamples) -> View:
     """Fit a lone line and drift, each record's own.
 
     A line must stand out in the residual, at one frequency in at least half of the
@@ -94,7 +88,7 @@ def unexplained(samples: Samples) -> View:
     )
 
 
-def _drift_columns(samples: Samples) -> list[FloatArray]:
+def _drift_columns(samples: ViewSamples) -> list[FloatArray]:
     """Give cosines of half-periods, zero where the input is as slow.
 
     Each begins at zero: an offset from the first sample on is no drift. A record of one
@@ -116,14 +110,14 @@ def _drift_columns(samples: Samples) -> list[FloatArray]:
     ]
 
 
-def _shown(samples: Samples) -> BoolArray:
+def _shown(samples: ViewSamples) -> BoolArray:
     """Mark the samples of records that show a path beside what the input does."""
     counts = [len(places) for places in samples.places]
     shown = [shows_a_path(item.record) for item in samples.compared]
     return np.repeat(np.array(shown), counts)
 
 
-def find_line(samples: Samples) -> tuple[float | None, float]:
+def find_line(samples: ViewSamples) -> tuple[float | None, float]:
     """Find the lone line that stands out most, over the records together.
 
     Returns

@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 from hystbench.gap.locate.picture import Picture
-
-Kind = Literal[
-    "frequency",
-    "amplitude",
-    "rate",
-    "branch",
-    "slow-time",
-    "delay",
-    "unexplained",
-    "record",
-    "level",
-]
+from hystbench.gap.view_kinds import ViewKind
 
 SIGNIFICANT = 0.01
 """Of a p-value, for a part of a view to be told as there."""
-MATTERS = 0.01
+LEAST_SHARE = 0.01
 """Of the gap's power, for a part of a view to be told at all."""
 
 
@@ -55,7 +44,7 @@ class View:
         Pictures that these records do not give, and why.
     """
 
-    view: Kind
+    view: ViewKind
     axis: str
     start: float | str
     end: float | str

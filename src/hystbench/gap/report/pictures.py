@@ -24,8 +24,8 @@ from hystbench.figures.style import (
     plain_ticks,
     unit_text,
 )
+from hystbench.gap.holdout.shrink import spectra
 from hystbench.gap.report.read import HoldOut
-from hystbench.gap.shrink import spectra
 from hystbench.record import FloatArray
 
 #: Bars of a picture: more of them are not read.

@@ -1,0 +1,305 @@
+"""Bases: the simulator that disagrees with the measurements, given or identified."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from hystbench.blocks.command import Command
+from hystbench.blocks.external import External
+from hystbench.blocks.fmu import Fmu
+from hystbench.blocks.onnx import Onnx
+from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.blocks.simulator import Simulator
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.errors import InputError
+from hystbench.gap.bases.given import split_given
+from hystbench.gap.bases.gpi import identified_gpi
+from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
+from hystbench.gap.bases.linear import HIGHEST, Linear, identified_linear
+from hystbench.gap.cache import records_digest, remembered
+from hystbench.gap.records.evidence import Evidence, check_units
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.model import Model, load_model
+
+__all__ = [
+    "Linear",
+    "given_base",
+    "identified_gpi",
+    "identified_linear",
+    "load_base",
+    "simulated_column",
+    "simulator_base",
+    "written_base",
+]
+
+
+def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
+    """Give the base that ``--model`` asks for.
+
+    Parameters
+    ----------
+    text : str or Model
+        A model file; ``gpi`` or ``linear`` to identify one from the fit records;
+        ``column`` for the simulated output beside them; a simulator by its name, as
+        for :func:`simulator_base`; or a model itself.
+    evidence : Evidence
+
+    Returns
+    -------
+    Model
+    str
+        One sentence: where it comes from.
+
+    Raises
+    ------
+    InputError
+        If the text is none of these, units differ, or the base cannot be had.
+    """
+    if isinstance(text, Model):
+        model, note = checked_base(text, text.name, evidence), f"base {text.name}"
+    elif text in IDENTIFIED:
+        return _kept(["base", text], evidence, lambda: _identified(text, evidence))
+    else:
+        model, note = given_base(text, evidence)
+    if not isinstance(model.chain[0], TransferFunction):
+        return model, note
+    about = ["split", json.dumps(model.to_mapping(), sort_keys=True)]
+    model, more = _kept(about, evidence, lambda: split_given(model, evidence))
+    return model, note + more
+
+
+def _kept(
+    about: list[str], evidence: Evidence, compute: Callable[[], tuple[Model, str]]
+) -> tuple[Model, str]:
+    """Compute a base from the fit records, or look up what an earlier run computed."""
+    return remembered(
+        lambda: [
+            *about,
+            records_digest(evidence.fit),
+            evidence.hold,
+            evidence.identification,
+        ],
+        compute,
+        lambda found: [found[0].to_mapping(), found[1]],
+        lambda kept: (Model.from_mapping(kept[0], "a base that was kept"), kept[1]),
+    )
+
+
+def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
+    """Identify a base from the fit records."""
+    if word == "gpi":
+        return identified_gpi(evidence)
+    found = identified_linear(evidence)
+    # It was fitted with the gap in it: what is added may take its part back. Of many
+    # poles, a small step of one coefficient alone may make the model unstable.
+    numbers = [
+        name
+        for name in found.model.parameter_names()
+        if not isinstance(value := found.model.value(name), str)
+        and not (
+            name.endswith(".denominator") and len(np.atleast_1d(value)) > HIGHEST + 1
+        )
+    ]
+    return replace(found.model, free=tuple(numbers)), found.note
+
+
+def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
+    """Give a base that is not identified, as it is given.
+
+    Parameters
+    ----------
+    text : str
+        As for :func:`load_base`, but none of ``IDENTIFIED``.
+    evidence : Evidence
+
+    Returns
+    -------
+    Model
+    str
+        One sentence: where it comes from.
+
+    Raises
+    ------
+    InputError
+        If the text is no base, units differ, or the base cannot be had.
+    """
+    if text == "column":
+        return simulated_column(evidence)
+    if kind_of_base(text) == "file":
+        model = written_base(Path(text), evidence)
+        return model, f"base {model.name} from {text}"
+    return simulator_base(text, evidence)
+
+
+def written_base(path: Path, evidence: Evidence) -> Model:
+    """Give the base of a model file just as it is written.
+
+    Parameters
+    ----------
+    path : Path
+    evidence : Evidence
+
+    Raises
+    ------
+    InputError
+        If it is no model of these records, or does not stay bounded on them.
+    """
+    return checked_base(load_model(path), str(path), evidence)
+
+
+def checked_base(model: Model, place: str, evidence: Evidence) -> Model:
+    """Give a model as a base, once it has been held against the records.
+
+    Parameters
+    ----------
+    model : Model
+    place : str
+        Where it comes from, for messages.
+    evidence : Evidence
+
+    Raises
+    ------
+    InputError
+        If it is no model of these records, or does not stay bounded on them.
+    """
+    check_units(evidence, model, place)
+    try:
+        model = model.with_records(
+            (*evidence.fit, *evidence.hold_out), evidence.simulated_column
+        )
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
+    held = model.with_hold(evidence.hold)
+    _check_bounded(held, evidence, place)
+    check_repeats(held, evidence)
+    return model
+
+
+def _check_bounded(model: Model, evidence: Evidence, place: str) -> None:
+    """Refuse a model whose output on a fit record is not finite."""
+    for record in evidence.fit:
+        with np.errstate(over="ignore", invalid="ignore"):  # said in our own words
+            y = model.simulate(record.u, record.dt)
+        lost = np.flatnonzero(~np.isfinite(y))
+        if len(lost):
+            raise InputError(
+                f"{place}: the output is not finite from {lost[0] * record.dt:g} s of "
+                f"record {record.name} on; expected a model that stays bounded"
+            )
+
+
+def simulator_base(text: str, evidence: Evidence) -> tuple[Model, str]:
+    """Take a simulator as the base, and try it on the fit records.
+
+    Parameters
+    ----------
+    text : str
+        ``package.module:function``, ``command: ...``, or a file .fmu or .onnx.
+    evidence : Evidence
+        Its units are taken to be the simulator's.
+
+    Returns
+    -------
+    Model
+        One block that is the simulator.
+    str
+        One sentence.
+
+    Raises
+    ------
+    InputError
+        If it cannot be run, gives anything but finite numbers, one a sample, or
+        something else when it is called again.
+    """
+    kind = kind_of_base(text)
+    block: Simulator
+    if kind == "command":
+        text = text.removeprefix(COMMAND).strip()
+        block = Command(command=text)
+    elif kind == "fmu":
+        block = Fmu(file=text)
+    elif kind == "onnx":
+        block = Onnx(file=text)
+    else:
+        block = External(function=text)
+    model = Model(text, evidence.input, evidence.output, (block,))
+    check_repeats(model, evidence)
+    units = f"from {evidence.input.unit} to {evidence.output.unit}"
+    return model, f"base {text}, taken to be {units}"
+
+
+def check_repeats(model: Model, evidence: Evidence) -> None:
+    """Refuse a model with a function that gives another output when called again.
+
+    The function runs on all fit records, and on the first of them once more: so one
+    that draws at random is found, and one that goes on from where it was left.
+
+    Parameters
+    ----------
+    model : Model
+    evidence : Evidence
+        Only its fit records are used.
+
+    Raises
+    ------
+    InputError
+        With the name of the function.
+    """
+    first = evidence.fit[0]
+    for k, block in enumerate(model.chain):
+        if not isinstance(block, Simulator):
+            continue
+        inputs = [
+            Simulation(model.chain[:k], (item,), evidence.hold).output[0]
+            if k
+            else item.u
+            for item in evidence.fit
+        ]
+        pairs = zip(inputs, evidence.fit, strict=True)
+        outputs = [block.simulate(z, item.u, item.dt) for z, item in pairs]
+        again = block.again(inputs[0], first.dt)
+        if not np.array_equal(again, outputs[0]):
+            raise InputError(
+                f"{block.label}: called again with record {first.name} it gave "
+                "another output; expected the same one every time, with no state kept "
+                "from call to call and nothing drawn at random"
+            )
+
+
+def simulated_column(evidence: Evidence) -> tuple[Model, str]:
+    """Take the simulated output beside the records as the base.
+
+    Parameters
+    ----------
+    evidence : Evidence
+
+    Returns
+    -------
+    Model
+        One ``simulated-column`` block, which holds the records.
+    str
+        One sentence.
+
+    Raises
+    ------
+    InputError
+        If the dataset names no such column.
+    """
+    column = evidence.simulated_column
+    if column is None:
+        raise InputError(
+            f"--model: column: {evidence.name} has no simulated output; expected "
+            "'simulated: {column: .., unit: ..}' in its dataset.yaml"
+        )
+    block = SimulatedColumn(column=column, records=(*evidence.fit, *evidence.hold_out))
+    model = Model(column, evidence.input, evidence.output, (block,))
+    note = (
+        f"base from the column {column!r}; what acts before it declines, since it "
+        "needs a simulator that can be run again"
+    )
+    return model, note

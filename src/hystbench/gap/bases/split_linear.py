@@ -1,0 +1,255 @@
+"""A linear base as two in series, where a static curve between them explains much.
+
+Behind a static nonlinearity between two filters the best linear model is, for a
+Gaussian input, the product of both filters [1]_: nothing of the curve shows in it, and
+no effect before or behind it makes up for the curve. Its poles and zeros are dealt to
+two halves in every way, and each way is judged by how well it does with a polynomial
+between the halves [2]_. The polynomial is then dropped: the base stays linear, and has
+a place where an effect can be tried.
+
+References
+----------
+.. [1] J. J. Bussgang, "Crosscorrelation functions of amplitude-distorted Gaussian
+   signals", MIT Research Laboratory of Electronics, Technical Report 216, 1952.
+.. [2] J. Sjoberg, J. Schoukens, "Initializing Wiener-Hammerstein models based on
+   partitioning of the best linear approximation", Automatica 48 (2012) 353-359.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.spectral import Ratio
+from hystbench.gap.bases.wiener_hammerstein import DEGREE, Halves, HalvesError
+from hystbench.gap.records.folds import Fold
+from hystbench.record import FloatArray
+
+#: A curve inside must lower the error by this share, beside one at either end.
+CLEARLY = 0.15
+ENOUGH = (1 - CLEARLY) ** 2
+#: With more ways to deal poles and zeros, all zeros stay together.
+MOST_WAYS = 512
+#: Ways that are refined a little, and steps of it; steps to the end, and on a fold.
+LIKELY = 3
+ROUNDS = 5
+TO_THE_END = 40
+FOLD_ROUNDS = 4
+#: A further pole or zero must lower the error by this share.
+POLE_PAYS = 0.02
+#: Poles of both halves together, at most.
+MOST = 8
+#: A new pole or zero starts beyond the others, at so many times the scale.
+BEYOND = 5.0
+
+
+def is_bent(task: HalvesError, ratios: Sequence[Ratio]) -> bool:
+    """Tell whether a static curve somewhere pays at all; a quick look."""
+    ways = (
+        way for ratio in ratios for way in (*ways_at_ends(ratio), *ways_inside(ratio))
+    )
+    linear = min(ratio.cost for ratio in ratios)
+    return any(task.bent(way).cost < ENOUGH * linear for way in ways)
+
+
+def best_split(
+    task: HalvesError, ratios: Sequence[Ratio], folds: Sequence[Fold]
+) -> Halves | None:
+    """Find the two halves between which a static curve explains most.
+
+    Parameters
+    ----------
+    task : HalvesError
+    ratios : sequence of Ratio
+        Linear models of the records, of several orders.
+    folds : sequence of Fold
+        Of the same records.
+
+    Returns
+    -------
+    Halves or None
+        None where a curve at one end does nearly as well on samples that did not fit
+        it.
+    """
+    ends = [task.bent(way) for ratio in ratios for way in ways_at_ends(ratio)]
+    ways = [[task.bent(way) for way in ways_inside(ratio)] for ratio in ratios]
+    end = task.refined(min(ends, key=_cost), TO_THE_END)
+    likely = [way for own in ways for way in sorted(own, key=_cost)[:LIKELY]]
+    tried = [task.refined(way, ROUNDS) for way in likely]
+    best = min(tried, key=_cost, default=None)
+    if best is None or best.cost > ENOUGH * end.cost:
+        return None
+    enough = [way for way in tried if way.cost <= best.cost / (1 - POLE_PAYS) ** 2]
+    fewest = min(enough, key=lambda way: (way.count, way.cost))
+    best = _grown(task, task.refined(fewest, TO_THE_END))
+    inside, outside = (_on_folds(task, each, folds) for each in (best, end))
+    return best if inside < ENOUGH * outside else None
+
+
+def chain_of(task: HalvesError, halves: Halves) -> tuple[tuple[Block, ...], float]:
+    """Write halves as blocks, the curve left out.
+
+    The gain between them has an offset: the signal is counted from the point about
+    which the curve is odd. To a linear base that is nothing, as the constant at the
+    end takes it off again.
+
+    Returns
+    -------
+    tuple of Block
+    float
+        Sum of squares of what the chain leaves, over the samples that count.
+    """
+    front, back, middle = parts_of(task, halves)
+    chain: tuple[Block, ...] = (front, Gain(value=1.0, offset=-middle), back)
+    value, offset, error = _line(task, chain)
+    scaled = replace(back, numerator=tuple(value * x for x in back.numerator))
+    return (*chain[:-1], scaled, Gain(value=1.0, offset=offset)), error
+
+
+def parts_of(
+    task: HalvesError, halves: Halves
+) -> tuple[TransferFunction, TransferFunction, float]:
+    """Give the blocks of both halves, and the point about which the curve is odd.
+
+    The front has a gain of one where it has any.
+    """
+    fb, bb = halves.front_b, halves.back_b
+    unit = fb[0] / halves.front_a[0] if fb[0] else 1.0
+    front = _block(task, fb / unit, halves.front_a, task.start)
+    after = "moving" if task.start == "moving" else "settled"
+    back = _block(task, bb, halves.back_a, after)
+    if back.hold == "zero-order":  # a staircase is smooth behind the front
+        back = replace(back, hold="linear")
+    return front, back, task.middle(halves) / unit
+
+
+def _block(
+    task: HalvesError, b: FloatArray, a: FloatArray, start: str
+) -> TransferFunction:
+    numerator, denominator = Ratio(a, b, 0.0, 0.0).coefficients(task.scale)
+    return TransferFunction(
+        numerator=tuple(numerator.tolist()),
+        denominator=tuple(denominator.tolist()),
+        hold=task.hold,
+        start=start,
+    )
+
+
+def _line(task: HalvesError, chain: tuple[Block, ...]) -> tuple[float, float, float]:
+    """Fit a gain and a constant behind a chain, and give the sum of squares left."""
+    tables, wanted = [], []
+    for record, mask in zip(task.records, task.masks, strict=True):
+        z = record.u
+        for block in chain:
+            z = block.simulate(z, record.u, record.dt)
+        tables.append(np.column_stack([z, np.ones(len(z))])[mask])
+        wanted.append(record.y[mask])
+    table, y = np.vstack(tables), np.concatenate(wanted)
+    value, offset = np.linalg.lstsq(table, y, rcond=None)[0]
+    error = y - value * table[:, 0] - offset
+    return float(value), float(offset), float(error @ error)
+
+
+def _grown(task: HalvesError, halves: Halves) -> Halves:
+    """Give either half a further pole, or zero, as long as one matters.
+
+    The order of a linear model is hidden in what the curve distorts.
+    """
+    while True:
+        tried = [
+            task.refined(way, ROUNDS)
+            for way in _more(halves)
+            if len(way.front_a) + len(way.back_a) <= MOST
+        ]
+        if not tried:
+            return halves
+        best = task.refined(min(tried, key=_cost), TO_THE_END)
+        if best.cost > (1 - POLE_PAYS) ** 2 * halves.cost:
+            return halves
+        halves = best
+
+
+def _more(halves: Halves) -> Iterator[Halves]:
+    """Give halves with one more pole, one more zero, or both, far out."""
+    for a, b in _longer(halves.front_a, halves.front_b):
+        yield replace(halves, front_a=a, front_b=b)
+    for a, b in _longer(halves.back_a, halves.back_b):
+        yield replace(halves, back_a=a, back_b=b)
+
+
+def _longer(a: FloatArray, b: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+    far = np.array([BEYOND, 1.0])
+    pole, zero = np.convolve(np.append(a, 1.0), far)[:-1], np.convolve(b, far / BEYOND)
+    yield pole, BEYOND * b
+    yield pole, BEYOND * zero
+    if len(b) <= len(a):
+        yield a, zero
+
+
+def _on_folds(task: HalvesError, halves: Halves, folds: Sequence[Fold]) -> float:
+    """Sum of squares over samples that did not fit."""
+    return sum(
+        replace(task, masks=fold.validation).squares(
+            replace(task, masks=fold.train).refined(halves, FOLD_ROUNDS)
+        )
+        for fold in folds
+    )
+
+
+def ways_at_ends(ratio: Ratio) -> Iterator[Halves]:
+    """Give the curve before a linear model and behind it."""
+    none, one, curve = np.zeros(0), np.ones(1), np.zeros(DEGREE)
+    yield Halves(none, one, ratio.a, ratio.b, curve)
+    yield Halves(ratio.a, ratio.b, none, one, curve)
+
+
+def ways_inside(ratio: Ratio) -> Iterator[Halves]:
+    """Deal poles and zeros to two halves, both proper and both with a pole."""
+    poles, zeros = _pairs(np.append(ratio.a, 1.0)), _pairs(ratio.b)
+    sides = [(False, True)] * len(zeros)
+    choices = list(itertools.product(*sides))
+    if 2 ** (len(poles) + len(zeros)) > MOST_WAYS:
+        choices = [choices[0], choices[-1]]
+    for of_poles in itertools.product((False, True), repeat=len(poles)):
+        front_a, back_a = _dealt(poles, of_poles)
+        for of_zeros in choices:
+            front_b, back_b = _dealt(zeros, of_zeros)
+            proper = len(front_b) <= len(front_a) and len(back_b) <= len(back_a)
+            if proper and len(front_a) > 1 and len(back_a) > 1:
+                yield Halves(
+                    front_a[:-1],
+                    front_b * (front_a[0] / front_b[0]),
+                    back_a[:-1],
+                    back_b,
+                    np.zeros(DEGREE),
+                )
+
+
+def _pairs(ascending: FloatArray) -> list[list[complex]]:
+    """Give real roots, and pairs of conjugate ones."""
+    roots = np.roots(ascending[::-1])
+    real = [[complex(x.real)] for x in roots if x.imag == 0]
+    return real + [[complex(x), complex(x.conjugate())] for x in roots if x.imag > 0]
+
+
+def _dealt(
+    pairs: Sequence[Sequence[complex]], front: Sequence[bool]
+) -> tuple[FloatArray, FloatArray]:
+    """Give the polynomials of the roots of either side, ascending, the last one."""
+    found = []
+    for side in (True, False):
+        own = [
+            x for pair, to in zip(pairs, front, strict=True) if to is side for x in pair
+        ]
+        found.append(np.atleast_1d(np.real(np.poly(np.array(own))))[::-1].copy())
+    return found[0], found[1]
+
+
+def _cost(halves: Halves) -> float:
+    return halves.cost

@@ -1,0 +1,90 @@
+"""How an effect acts inside the dynamics: what it is told of them, what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.store import Store
+
+
+@dataclass(frozen=True)
+class Moved:
+    """How a mechanism moves, the largest magnitudes over all records.
+
+    Parameters
+    ----------
+    reach : float
+        Of its position about the middle.
+    speed : float
+        Of its velocity.
+    force : float
+        Of the force that drives it, or that its motion takes.
+    step : float
+        Shortest sampling interval, in seconds.
+    turns : bool
+        Whether it turns: its position is an angle in rad.
+    anywhere : bool
+        Whether where it is does not matter, as of a mass without a spring: a force
+        that depends on the place has no meaning then.
+    stiffness : float
+        Of its linear spring; zero without one.
+    given, shown : float
+        The model's input, and its output.
+    """
+
+    reach: float
+    speed: float
+    force: float
+    step: float
+    turns: bool = False
+    anywhere: bool = False
+    stiffness: float = 0.0
+    given: float = 1.0
+    shown: float = 1.0
+
+
+@dataclass(frozen=True)
+class Law:
+    """A force inside a mechanism, or a filter beside it, where its fit starts.
+
+    Parameters
+    ----------
+    form : str
+        What tells it from other laws of the effect.
+    block : Block
+    free : tuple of str
+        Parameters that are fitted.
+    place : {"inside", "before", "behind"}
+    stands_for : float
+        Share of the linear spring that the force stands for: it goes out of the spring.
+    least : float
+        Of its numbers, where that is more than their blocks' own bound.
+    """
+
+    form: str
+    block: Block
+    free: tuple[str, ...]
+    place: Literal["inside", "before", "behind"] = "inside"
+    stands_for: float = 0.0
+    least: float = -np.inf
+
+
+class Filled(NamedTuple):
+    """How high stores are filled: place, block and highest level of each."""
+
+    tops: tuple[tuple[int, Store, float], ...]
+
+
+class Changed(NamedTuple):
+    """Other numbers of stores, where their fit starts.
+
+    Of them those that are free, by place and parameter.
+    """
+
+    form: str
+    values: dict[int, dict[str, float]]
+    free: tuple[tuple[int, str], ...]

@@ -1,0 +1,1 @@
+"""The next experiment: an input that tells likely effects apart."""

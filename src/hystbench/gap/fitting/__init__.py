@@ -1,0 +1,1 @@
+"""A model on the fit records: its numbers, its score and its fit."""

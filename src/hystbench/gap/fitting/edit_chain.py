@@ -1,0 +1,148 @@
+"""Effects put into a model and taken out again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.wrapping import WrappingBlock
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Values, Variant
+from hystbench.gap.fitting.state import Added, Free, ModelState
+
+
+def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
+    """Give the numbers that a variant leaves free, inside the range searched."""
+    for name in variant.free:
+        if name not in block.parameters():
+            continue  # another block of the effect has it
+        value = getattr(block, name)
+        if isinstance(value, tuple):
+            for element in range(len(value)):
+                yield Free(position, name, element)
+        elif name in variant.grids:
+            yield Free(position, name, None, None, *variant.ends(name))
+        else:
+            yield Free(position, name)
+
+
+def with_effect(state: ModelState, variant: Variant, values: Values) -> ModelState:
+    """Add an effect to the chain, or beside it."""
+    note = dict(values)
+    own = (variant.effect, variant.place, variant.form)
+    if variant.beside is not None:
+        added = Added(*own, (), note, variant.freedom)
+        return replace(
+            state,
+            added=(*state.added, added),
+            beside=(*state.beside, (variant.beside, note)),
+        )
+    chain = (*state.chain[: variant.start], *variant.build(values))
+    places = tuple(variant.start + k for k in variant.positions)
+    old = state.chain[variant.start] if variant.replaces else None
+    # The chain's own blocks stay in their order around those of the effect.
+    stays = [k for k in range(len(chain)) if k not in places]
+    came = [k for k in range(len(state.chain)) if old is None or k != variant.start]
+    moved = dict(zip(came, stays, strict=True))
+    return replace(
+        state,
+        chain=chain,
+        free=(
+            *_moved(state.free, moved),
+            *(f for k in places for f in numbers_of(chain[k], k, variant)),
+        ),
+        added=(
+            *(_placed(item, moved) for item in state.added),
+            Added(*own, places, note, variant.freedom, old),
+        ),
+    )
+
+
+def _moved(free: Iterable[Free], moved: dict[int, int]) -> Iterator[Free]:
+    """Follow free numbers to where their blocks are now; drop those that went."""
+    for item in free:
+        if item.block in moved:
+            yield item._replace(block=moved[item.block])
+
+
+def _placed(item: Added, moved: dict[int, int]) -> Added:
+    places = tuple(moved[k] for k in item.blocks if k in moved)
+    return item._replace(blocks=places)
+
+
+def without_effect(state: ModelState, number: int) -> ModelState:
+    """Take an added effect out again."""
+    gone = state.added[number]
+    rest = tuple(item for k, item in enumerate(state.added) if k != number)
+    if effects()[gone.effect].numbers:
+        return _with_old_numbers(state, gone, rest)
+    if not gone.blocks:  # beside the chain, or its block was replaced by another's
+        beside = tuple(item for item in state.beside if item[0].effect != gone.effect)
+        return replace(state, added=rest, beside=beside)
+    chain: list[Block] = []
+    moved = {}
+    for k, block in enumerate(state.chain):
+        if k not in gone.blocks:
+            moved[k] = len(chain)
+            chain.append(block)
+        elif gone.replaced is not None and k == gone.blocks[0]:
+            chain.append(gone.replaced)
+    return replace(
+        state,
+        chain=tuple(chain),
+        free=tuple(_moved(state.free, moved)),
+        added=tuple(_placed(item, moved) for item in rest),
+    )
+
+
+def _with_old_numbers(
+    state: ModelState, gone: Added, rest: tuple[Added, ...]
+) -> ModelState:
+    """Give blocks the numbers back that an effect changed; they are fixed then."""
+    chain, free = list(state.chain), state.free
+    for key, value in gone.values.items():
+        place, _, parameter = key.partition(".")
+        k, own = int(place), {parameter: value}
+        chain[k] = replace(chain[k], **own)
+        if parameter in effects()[gone.effect].numbers:
+            free = tuple(
+                item for item in free if (item.block, item.parameter) != (k, parameter)
+            )
+    return replace(state, chain=tuple(chain), free=free, added=rest)
+
+
+def last_to(state: ModelState, number: int) -> ModelState:
+    """Give the effect added last the number of the one whose place it takes."""
+    *others, last = state.added
+    return replace(state, added=(*others[:number], last, *others[number:]))
+
+
+def removable(state: ModelState, number: int) -> bool:
+    """Tell whether an added effect can be taken out with the others left in.
+
+    Not a hysteresis that another effect wraps, nor a block that another replaced.
+    """
+    gone = state.added[number]
+    if not gone.blocks:
+        return any(item.effect == gone.effect for item, _ in state.beside)
+    chain = without_effect(state, number).chain
+    before = [None, *chain[:-1]]
+    return all(
+        first is not None and (first.hysteretic or isinstance(first, WrappingBlock))
+        for first, block in zip(before, chain, strict=True)
+        if isinstance(block, WrappingBlock)
+    )
+
+
+def at_end(state: ModelState, variant: Variant) -> str:
+    """Name a parameter of the effect added last that lies at an end of its range."""
+    own = state.added[-1].blocks
+    for free in state.free:
+        if free.block in own and free.parameter in variant.inside:
+            value, width = state.value(free), np.log(free.high / free.low)
+            if not 0.02 < np.log(value / free.low) / width < 0.98:
+                return f"{free.parameter} = {value:.3g}"
+    return ""

@@ -1,0 +1,364 @@
+"""A delay, a gain and an offset that a record has of its own.
+
+A trigger that fires late or an amplifier switched to another range is no law of the
+device: it says nothing of the next record. So records may differ from each other by
+
+    y(t) = gain * x(t - delay) + offset
+
+with ``x`` what the simulator gives. Records share one such triple, the simulator's or
+another; a record has its own where that lowers the score by more than its numbers are
+charged. What the records share is left to the effects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.blocks.held import Hold
+from hystbench.blocks.input_delay import InputDelay
+from hystbench.gap.fitting.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
+from hystbench.gap.records.nuisance import FIRST
+from hystbench.gap.thresholds import PAYS, TIE
+from hystbench.record import FloatArray, Record
+
+KEYS = {"delay": "delay_s", "gain": "gain", "offset": "offset"}
+KINDS = tuple(KEYS)
+LONGEST = 1 / 20
+"""Of a record, that it may be late or early by, as for a delay that all share."""
+FINER = 1e-3
+"""Of a sampling interval, to which a delay is found."""
+NEWTON = 8
+"""Steps of Gauss and Newton to it, at most."""
+
+
+class Own(NamedTuple):
+    """By how much a record is late, and what its output is scaled and moved by."""
+
+    delay_s: float = 0.0
+    gain: float = 1.0
+    offset: float = 0.0
+
+    def of(self, signal: FloatArray, dt: float) -> FloatArray:
+        """Give a simulated output as the record has it, shape (n,)."""
+        return self.gain * late(signal, self.delay_s / dt) + self.offset
+
+    def beside(self, other: Own) -> Own:
+        """Give what comes after another triple to make this one."""
+        ratio = self.gain / other.gain
+        moved = self.offset - ratio * other.offset
+        return Own(self.delay_s - other.delay_s, ratio, moved)
+
+
+@dataclass(frozen=True)
+class OwnValues:
+    """What some records have of their own.
+
+    Parameters
+    ----------
+    kinds : tuple of str
+        Of ``delay``, ``gain``, ``offset``: those in which they differ.
+    records : tuple of (str, Own)
+        By name, those that differ from the others.
+    share : float
+        Share of the gap's power above the noise floor that it takes away.
+    """
+
+    kinds: tuple[str, ...] = ()
+    records: tuple[tuple[str, Own], ...] = ()
+    share: float = 0.0
+
+    @property
+    def charge(self) -> float:
+        """Charge in the score for all their numbers."""
+        return PARAMETER * len(self.kinds) * len(self.records)
+
+    def taken_off(self, records: Sequence[Record], hold: Hold) -> tuple[Record, ...]:
+        """Give records as they would be without: the input late, the output scaled.
+
+        So a simulator answers them as if it had been late itself.
+        """
+        known = dict(self.records)
+        return tuple(
+            _without(item, known[item.name], hold) if item.name in known else item
+            for item in records
+        )
+
+    def mapping(self, unit: str) -> dict[str, Any] | None:
+        """Give what gap.json holds under ``record_values``."""
+        if not self.records:
+            return None
+        return {
+            "kinds": list(self.kinds),
+            "records": [
+                {"name": name}
+                | {KEYS[kind]: getattr(own, KEYS[kind]) for kind in KINDS}
+                for name, own in self.records
+            ],
+            "share_of_gap_power": self.share,
+            "sentence": self._sentence(unit),
+        }
+
+    @classmethod
+    def of_mapping(cls, content: Mapping[str, Any] | None) -> OwnValues:
+        """Give back what :meth:`mapping` gave."""
+        if content is None:
+            return NONE
+        told = [
+            (item["name"], Own(*(item[KEYS[kind]] for kind in KINDS)))
+            for item in content["records"]
+        ]
+        kinds, share = tuple(content["kinds"]), content["share_of_gap_power"]
+        return cls(kinds, tuple(told), share)
+
+    def plain(self) -> list[Any]:
+        """Give the same as JSON holds it, all digits of it."""
+        return [list(self.kinds), [[name, *own] for name, own in self.records]]
+
+    @classmethod
+    def of_plain(cls, content: Sequence[Any]) -> OwnValues:
+        """Give back what :meth:`plain` gave of what :func:`own_values` found."""
+        kinds, records = content
+        return cls(tuple(kinds), tuple((name, Own(*own)) for name, *own in records))
+
+    @property
+    def words(self) -> str:
+        """Name what it is, as ``a delay and a gain``."""
+        articles = {"delay": "a delay", "gain": "a gain", "offset": "an offset"}
+        return " and ".join(articles[kind] for kind in self.kinds)
+
+    def fitted_first(self, record: Record, simulated: FloatArray, floor: float) -> Own:
+        """Fit the same to a hold-out record, to the part that is not scored.
+
+        Nothing where it lowers the score by less than its numbers are charged.
+        """
+        until = round(FIRST * len(record))
+        own = fitted(record, simulated, self.kinds, until)
+        squares = [
+            np.mean((record.y - one.of(simulated, record.dt))[:until] ** 2)
+            for one in (Own(), own)
+        ]
+        gain = RECORD_WEIGHT * np.diff(-np.log(np.maximum(squares, floor)))[0]
+        return own if gain > PARAMETER * len(self.kinds) else Own()
+
+    def _sentence(self, unit: str) -> str:
+        each = "; ".join(
+            f"{name} " + ", ".join(_said(kind, own, unit) for kind in self.kinds)
+            for name, own in self.records
+        )
+        differ, whose = (
+            ("differs", "its") if len(self.records) == 1 else ("differ", "their")
+        )
+        return (
+            f"{len(self.records)} of the fit records {differ} from the others by "
+            f"{self.words} of {whose} own, which is no effect of the device and takes "
+            f"{100 * self.share:.0f} % of the gap's power above the noise floor on the "
+            f"fit records: {each}. On each hold-out record the same is fitted to the "
+            f"first {100 * FIRST:.0f} %, with the base and with the model alike, and "
+            "the rest is scored."
+        )
+
+
+def _said(kind: str, own: Own, unit: str) -> str:
+    if kind == "delay":
+        return (
+            f"{1e3 * abs(own.delay_s):.3g} ms {'late' if own.delay_s > 0 else 'early'}"
+        )
+    if kind == "gain":
+        return f"gain {own.gain:.4g}"
+    return f"offset {own.offset:.3g} {unit}"
+
+
+NONE = OwnValues()
+
+
+def own_values(
+    records: Sequence[Record],
+    simulated: Sequence[FloatArray],
+    floor: float,
+    kinds: Sequence[str] = KINDS,
+) -> OwnValues:
+    """Find what records have of their own: those kinds and records that score least.
+
+    Each record counts by ``W log(max(s, f))``, with ``s`` the mean square of its
+    residual and ``f`` the floor, as in the score that ranks effects, and each number by
+    its charge.
+
+    Parameters
+    ----------
+    records : sequence of Record
+    simulated : sequence of ndarray, shape (n,) each
+    floor : float
+        Mean square of the noise.
+    kinds : sequence of str
+        Those that may differ.
+    """
+    pairs = list(zip(records, simulated, strict=True))
+    weight = max(RECORD_WEIGHT, LEAST_WEIGHT / len(pairs))
+
+    def costs(owns: Sequence[Own]) -> FloatArray:
+        rests = (
+            record.y - own.of(signal, record.dt)
+            for (record, signal), own in zip(pairs, owns, strict=True)
+        )
+        squares = [float(np.mean(rest**2)) for rest in rests]
+        return weight * np.log(np.maximum(squares, floor))
+
+    as_simulated = costs([Own()] * len(pairs))
+    best, chosen = float(as_simulated.sum()), None
+    # With the most freedom first: what that does not gain, less cannot.
+    for count in range(len(kinds), 0, -1):
+        for some in combinations(kinds, count):
+            each = [fitted(*pair, some) for pair in pairs]
+            own = costs(each)
+            if count == len(kinds) and best - own.sum() < PAYS:
+                return NONE
+            own += PARAMETER * count
+            value = float(np.minimum(as_simulated, own).sum())
+            if value < best:
+                best, chosen = value, (some, each, own)
+    if chosen is None:
+        return NONE
+    some, each, own = chosen
+    charge = PARAMETER * len(some)
+    shared, alike = Own(), as_simulated
+    for one in each:
+        like = costs([one] * len(pairs))
+        value = float(np.minimum(like, own).sum()) + charge
+        # A tie is the simulator's own, unless it is then no record's.
+        none_differs = bool((like <= own).all())
+        if value < best + (STILL if none_differs else -STILL):
+            best, shared, alike = value, one, like
+    told = [
+        (record.name, one.beside(shared))
+        for record, one, mine, theirs in zip(records, each, own, alike, strict=True)
+        if mine < theirs
+    ]
+    return OwnValues(some, tuple(told)) if told else NONE
+
+
+STILL = 1e-6
+"""Of the score, below which two are the same."""
+
+
+def fitted(
+    record: Record,
+    simulated: FloatArray,
+    kinds: Sequence[str],
+    until: int | None = None,
+) -> Own:
+    """Fit a delay, a gain and an offset to a record, by least squares.
+
+    Of delays that fit alike, as whole periods do, the shortest is taken.
+
+    Parameters
+    ----------
+    record : Record
+    simulated : ndarray, shape (n,)
+    kinds : sequence of str
+        The other ones stay as the simulator has them.
+    until : int, optional
+        Samples from the first on that count; by default all.
+    """
+    y = record.y[:until]
+
+    def at(shift: float) -> tuple[float, Own]:
+        x = late(simulated, shift)[:until]
+        gain, offset = _scaled(x, y, kinds)
+        rest = y - gain * x - offset
+        return float(np.mean(rest**2)), Own(shift * record.dt, gain, offset)
+
+    if "delay" not in kinds:
+        return at(0.0)[1]
+    longest = max(1, int(LONGEST * len(y)))
+    shifts = np.arange(-longest, longest + 1)
+    if len(shifts) > COARSE:
+        shifts = np.unique(np.linspace(-longest, longest, COARSE).round().astype(int))
+        shifts = np.unique([*shifts, *range(-NEAREST, NEAREST + 1)])
+    squares = _squares(simulated, y, shifts, kinds)
+    alike = squares <= squares.min() * np.exp(TIE / RECORD_WEIGHT)
+    alike |= squares <= ROUNDING * np.mean(y**2)
+    place = int(np.flatnonzero(alike)[np.argmin(np.abs(shifts[alike]))])
+    low, high = shifts[max(place - 1, 0)], shifts[min(place + 1, len(shifts) - 1)]
+    shift = float(shifts[place])
+    best = at(shift)
+    for _ in range(NEWTON):
+        own = best[1]
+        x = own.of(simulated, record.dt)
+        # Later by a sample, the signal is less by its slope.
+        columns = [-np.gradient(x)[:until]]
+        columns += [x[:until]] if "gain" in kinds else []
+        columns += [np.ones(len(y))] if "offset" in kinds else []
+        found = np.linalg.lstsq(np.column_stack(columns), y - x[:until], rcond=None)[0]
+        moved = float(np.clip(shift + found[0], low, high))
+        there = at(moved)
+        if there[0] >= best[0] or abs(moved - shift) < FINER:
+            break
+        shift, best = moved, there
+    return min(best, there, key=lambda item: item[0])[1]
+
+
+COARSE, NEAREST = 401, 40
+"""Delays that are tried first, and samples within which every one is."""
+ROUNDING = 1e-12
+"""Of the output's power: what is below comes from the sums of :func:`_squares`."""
+
+
+def late(signal: FloatArray, samples: float) -> FloatArray:
+    """Move a signal to later samples; it rests at its ends. Cubic splines between."""
+    whole = round(samples)
+    if whole == samples:
+        places = np.clip(np.arange(len(signal)) - whole, 0, len(signal) - 1)
+        return signal[places] if whole else signal
+    from scipy.ndimage import shift  # late: it takes long to load
+
+    return np.asarray(shift(signal, samples, order=3, mode="nearest"))
+
+
+def _squares(
+    signal: FloatArray, y: FloatArray, shifts: NDArray[np.intp], kinds: Sequence[str]
+) -> FloatArray:
+    """Mean squares that whole delays leave, each with its best gain and offset.
+
+    By sums over what each delay lays beside ``y``, for all delays at once.
+    """
+    count, reach = len(y), int(np.abs(shifts).max())
+    if "offset" in kinds:
+        signal, y = signal - signal.mean(), y - y.mean()
+    rested = np.pad(signal, reach, mode="edge")
+    at = reach - shifts
+    products = np.correlate(rested, y, "valid")[at]
+    powers = np.correlate(rested**2, np.ones(count), "valid")[at]
+    if "offset" in kinds:
+        powers = powers - np.correlate(rested, np.ones(count), "valid")[at] ** 2 / count
+    gain = np.ones(len(shifts))
+    if "gain" in kinds:
+        np.divide(products, powers, out=gain, where=(powers > 0) & (products > 0))
+    squares = y @ y - 2 * gain * products + gain**2 * powers
+    return np.asarray(np.maximum(squares, 0) / count)
+
+
+def _scaled(x: FloatArray, y: FloatArray, kinds: Sequence[str]) -> tuple[float, float]:
+    """Give the gain and the offset that fit best; the gain keeps its sign."""
+    middle = (x.mean(), y.mean()) if "offset" in kinds else (0.0, 0.0)
+    gain = 1.0
+    if "gain" in kinds:
+        power = float(np.sum((x - middle[0]) ** 2))
+        product = float(np.sum((x - middle[0]) * (y - middle[1])))
+        gain = product / power if power > 0 and product > 0 else 1.0
+    return gain, float(middle[1] - gain * middle[0])
+
+
+def _without(record: Record, own: Own, hold: Hold) -> Record:
+    u = record.u
+    if own.delay_s:
+        # What comes early is late with time turned round.
+        turn = 1 if own.delay_s > 0 else -1
+        block = InputDelay(hold=hold, delay_s=abs(own.delay_s))
+        u = block.simulate(u[::turn].copy(), u, record.dt)[::turn].copy()
+    return replace(record, u=u, y=(record.y - own.offset) / own.gain)

@@ -1,0 +1,149 @@
+"""Fitting a model as a whole."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.search import Trial
+from hystbench.gap.fitting.state import ModelState, beside_count, beside_slope
+from hystbench.record import FloatArray
+
+ROUNDS = 5
+"""Of least squares in a refit."""
+
+DAMPING = (0.0, 1e2, 1e4, 1e6)
+"""Charge for a change of the whole of a number, tried until a step pays."""
+
+FAR, NOWHERE = 1e6, 1e100
+"""Times its own list's largest that a number may become; where all of it is zero."""
+
+ENOUGH = 0.05
+"""A round that lowers the score by less is the last."""
+
+
+def score_of(state: ModelState, score: Score) -> float:
+    """Score a model as it is; amplitudes of what lies beside are solved for."""
+    return score.amplitudes(state.residual, state.beside_columns, state.freedom).score
+
+
+def refit(
+    state: ModelState, score: Score, rounds: int = ROUNDS
+) -> tuple[ModelState, float]:
+    """Refit all free numbers together (Levenberg and Marquardt on the score).
+
+    Returns
+    -------
+    state : ModelState
+        Never worse than the one given.
+    score : float
+    """
+    best = score_of(state, score)
+    for _ in range(rounds if state.free else 0):
+        columns = np.hstack([state.tangents, state.beside_columns])
+        count = len(state.free)
+        size = sizes(state)
+        before = best
+        for damping in DAMPING:
+            stiffness = np.zeros(columns.shape[1])
+            stiffness[:count] = state.stiffness + damping / size**2
+            found = score.amplitudes(
+                state.residual, columns, state.freedom, stiffness
+            ).values
+            change = dict(enumerate(found[:count].tolist()))
+            try:
+                moved = state.with_chain(state.moved(change))
+                value = score_of(moved, score)
+            except InputError:
+                continue  # out of what the blocks accept together: go less far
+            if value <= best:  # at the floor the score is flat, the step still right
+                state, best = moved, value
+                break
+        if before - best < ENOUGH:
+            break
+    return state, best
+
+
+def sizes(state: ModelState) -> FloatArray:
+    """Give the size of each free number: its value, or what moves the output a tenth.
+
+    The second is for those that are zero, or nearly; but none is far more than the
+    numbers of its own list: what hardly moves the output would else run away.
+    """
+    output = state.measured - state.residual
+    moved = np.sqrt(np.mean(state.tangents**2, axis=0))
+    tenth = 0.1 * np.sqrt(np.mean(output**2)) / np.maximum(moved, 1e-300)
+    values = np.array([abs(state.value(free)) for free in state.free])
+    lists = [
+        np.abs(getattr(state.chain[free.block], free.parameter)) for free in state.free
+    ]
+    largest = np.array([float(np.max(each)) for each in lists])
+    most = np.where(largest > 0, FAR * largest, NOWHERE)
+    return np.where(values > 1e-3 * tenth, values, np.minimum(tenth, most))
+
+
+def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
+    """Add an effect as a trial found it and refit everything together."""
+    after = with_effect(state, trial.variant, trial.values)
+    if trial.variant.zero is not None:
+        after = after.settled()
+    return refit(after, score)
+
+
+def tuned(state: ModelState, score: Score) -> ModelState:
+    """Refine what was searched of the signals beside (a frequency): Gauss and Newton.
+
+    Returns
+    -------
+    ModelState
+        Never worse than the one given.
+    """
+    for number, key in _searched(state):
+        for _ in range(ROUNDS):
+            before = score_of(state, score)
+            beside, values = state.beside[number]
+            slope = beside_slope(state, beside, values, key, _own(state, number))
+            columns = np.column_stack([state.tangents, state.beside_columns, slope])
+            stiffness = state.stiffness_of(columns.shape[1])
+            step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]
+            items = list(state.beside)
+            items[number] = (beside, {**values, key: values[key] + float(step)})
+            moved = replace(state, beside=tuple(items))
+            after = score_of(moved, score)
+            if after <= before:
+                state = moved
+            if before - after < ENOUGH:
+                break
+    return state
+
+
+def _searched(state: ModelState) -> list[tuple[int, str]]:
+    return [(k, key) for k, (_, values) in enumerate(state.beside) for key in values]
+
+
+def _own(state: ModelState, number: int) -> FloatArray:
+    """Give the amplitudes of one of the signals beside."""
+    counts = [beside_count(state, *item) for item in state.beside[: number + 1]]
+    return state.beside_amplitudes[sum(counts[:-1]) : sum(counts)]
+
+
+def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
+    """Simulate a model exactly and refit it to the end."""
+    state = state.settled()
+    state, _ = refit(state, score)
+    state = tuned(state, score)
+    state = state.settled()
+    return state, score_of(state, score)
+
+
+def ready(state: ModelState, score: Score) -> ModelState:
+    """Refit a model under the score that its further effects are to lower.
+
+    The score allows for other forms of the effects that the model has, which it was
+    fitted without: what a refit gains no further effect may count as its own.
+    """
+    return finished(state, score)[0] if state.added else state

@@ -1,0 +1,302 @@
+"""Searching one variant of an effect beside a model: a grid, then Gauss and Newton."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.blocks.calls import CallsUsedUp
+from hystbench.errors import InputError
+from hystbench.gap.effects.base import Declined, Values, Variant
+from hystbench.gap.fitting.score import Amplitudes, Score
+from hystbench.gap.fitting.state import ModelState, beside_columns
+from hystbench.gap.simulation.reshape import orthonormal
+from hystbench.record import FloatArray
+
+HALVINGS = 4
+"""Of a grid's step, where several numbers are searched; of one number a single one."""
+NEWTON = 3
+"""Steps of Gauss and Newton from a grid's best value, at most."""
+
+NUDGE = 1e-3
+"""Relative change by which they are found."""
+
+SLIGHT = 3.0
+"""Of a step of the search: what lowers the score by less is the last."""
+
+MANY = 15
+"""Points of a grid for each of which one more is looked at on all records."""
+GLANCE = 4
+"""Records of which half is enough to choose a point of a grid."""
+
+Point = tuple[float, ...]
+"""Values of the searched parameters."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A variant with the values that score least.
+
+    Parameters
+    ----------
+    variant : Variant
+    values : dict of str to float
+    score : float
+        Of the model with the effect, what the model may re-tune re-tuned to first
+        order.
+    """
+
+    variant: Variant
+    values: dict[str, float]
+    score: float
+
+
+class Signals(NamedTuple):
+    """What was simulated at the point that scores least: a step begins there."""
+
+    point: Point
+    score: float
+    own: FloatArray
+    residual: FloatArray
+    amplitudes: FloatArray
+
+
+class Attempt:
+    """One variant on one model, evaluated at values of its searched parameters.
+
+    Its number is its place among all that the effect offers.
+    """
+
+    def __init__(
+        self, state: ModelState, variant: Variant, score: Score, number: int = 0
+    ) -> None:
+        self.state, self.variant, self.score = state, variant, score
+        self.number = number
+        self.freedom = state.freedom + variant.freedom
+        self.known: dict[Point, Trial] = {}
+        self.zero: FloatArray | None = None
+        self.least: Signals | None = None
+
+    @cached_property
+    def more(self) -> FloatArray:
+        """Columns of what the model may re-tune beside the variant."""
+        return np.hstack([self.state.tangents, self.state.beside_columns])
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Charge for the square of a change of each of them."""
+        return self.state.stiffness_of(self.more.shape[1])
+
+    def at(self, point: Point) -> Trial:
+        """Score the variant at a point of the grid."""
+        if point not in self.known:
+            self.known[point] = self._at(point)
+        return self.known[point]
+
+    def _at(self, point: Point) -> Trial:
+        own, residual = self._signals(point)
+        found = self._solve(residual, own)
+        if self.least is None or found.score < self.least.score:
+            amplitudes = found.values[: own.shape[1]]
+            self.least = Signals(point, found.score, own, residual, amplitudes)
+        variant = self.variant
+        values = dict(zip(variant.grids, point, strict=True))
+        scaled = found.values[: len(variant.unit)]
+        values |= {name: float(x) for name, x in zip(variant.unit, scaled, strict=True)}
+        return Trial(variant, values, found.score)
+
+    def step(self, trial: Trial) -> FloatArray:
+        """Give the step of Gauss and Newton from a trial, in logarithms.
+
+        Returns
+        -------
+        ndarray, shape (searched parameters,)
+
+        Raises
+        ------
+        InputError
+            If the block refuses values beside those of the trial.
+        """
+        point = tuple(trial.values[name] for name in self.variant.grids)
+        if self.least is not None and self.least.point == point:
+            own, residual, amplitudes = self.least[2:]
+        else:
+            own, residual = self._signals(point)
+            amplitudes = self._solve(residual, own).values[: own.shape[1]]
+        now = residual - own @ amplitudes
+        moved = []
+        for k in range(len(point)):
+            beside = list(point)
+            beside[k] *= float(np.exp(NUDGE))
+            own_there, there = self._signals(tuple(beside))
+            moved.append((now - (there - own_there @ amplitudes)) / NUDGE)
+        columns = np.column_stack([*moved, own])
+        return self._solve(residual, columns, len(moved)).values[: len(moved)]
+
+    def _solve(
+        self, residual: FloatArray, columns: FloatArray, first: int = 0
+    ) -> Amplitudes:
+        """Solve for the amplitudes of columns and what the model may re-tune."""
+        variant = self.variant
+        positive = [
+            first + k for k, name in enumerate(variant.unit) if name in variant.positive
+        ]
+        return self.score.amplitudes(
+            residual,
+            np.hstack([columns, self.more]),
+            self.freedom,
+            np.concatenate([np.zeros(columns.shape[1]), self.stiffness]),
+            positive,
+        )
+
+    def _signals(self, point: Point) -> tuple[FloatArray, FloatArray]:
+        """Simulate the variant at a point of its grid.
+
+        Returns
+        -------
+        own : ndarray, shape (scored samples, k)
+            What is solved for: how the output changes with each amplitude.
+        residual : ndarray, shape (scored samples,)
+            With all amplitudes zero.
+        """
+        variant, state = self.variant, self.state
+        values = dict(zip(variant.grids, point, strict=True))
+        if variant.beside is not None:
+            return beside_columns(state, variant.beside, values), state.residual
+        if variant.unit:
+            return self._scaled(values)
+        after = state.sample.take(
+            state.simulation.tail(variant.start, variant.build(values))
+        )
+        if variant.zero is None:
+            residual = state.reference - after
+        else:
+            residual = state.residual - (after - self._at_zero(values))
+        return np.zeros((len(residual), 0)), residual
+
+    def _at_zero(self, values: Values) -> FloatArray:
+        """Simulate the chain as before in the effect's own way; it is kept."""
+        variant, state = self.variant, self.state
+        if self.zero is None:
+            at = {**values, **(variant.zero or {})}
+            signals = state.simulation.tail(variant.start, variant.build(at))
+            self.zero = state.sample.take(signals)
+        return self.zero
+
+    def _scaled(self, values: Values) -> tuple[FloatArray, FloatArray]:
+        """How the output changes with each parameter that is solved for."""
+        variant, state = self.variant, self.state
+        take, tail = state.sample.take, state.simulation.tail
+        zero = dict.fromkeys(variant.unit, 0.0)
+        if variant.neutral:
+            now = take(state.simulation.output)
+        else:
+            now = take(tail(variant.start, variant.build({**values, **zero})))
+        columns = []
+        for name, step in variant.unit.items():
+            given = {**values, **zero, name: step}
+            after = take(tail(variant.start, variant.build(given)))
+            columns.append((after - now) / step)
+        own = np.column_stack(columns)
+        anchored = variant.zero is not None
+        return own, state.residual if anchored else state.reference - now
+
+
+def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
+    """Score a variant where it is best on its grid.
+
+    Parameters
+    ----------
+    attempt : Attempt
+    glance : Attempt, optional
+        The same on fewer records, which then choose the point of the grid.
+
+    Raises
+    ------
+    Declined
+        If the blocks refuse every point of the grid: with what the last one said.
+    """
+    axes = attempt.variant.grids.values()
+    look = attempt if glance is None or not axes else glance
+    trials: list[tuple[float, Point]] = []
+    refused: InputError | None = None
+    for point in itertools.product(*(axis.tolist() for axis in axes)):
+        try:
+            trials.append((look.at(tuple(point)).score, point))
+        except CallsUsedUp as error:  # half a grid may miss what is best
+            raise Declined(str(error)) from error
+        except InputError as error:
+            refused = error  # values that the block itself refuses are no candidates
+    found = []
+    for _, point in sorted(trials)[: 1 + len(trials) // MANY]:
+        try:
+            found.append(attempt.at(point))
+        except InputError as error:
+            refused = error
+    if not found:
+        raise Declined(str(refused)) from refused
+    return min(found, key=lambda trial: trial.score)
+
+
+@lru_cache(maxsize=1)
+def at_a_glance(state: ModelState, score: Score) -> tuple[ModelState, Score]:
+    """Give a model and its score on the half of the records with most of the gap."""
+    slices = state.sample.slices
+    if len(slices) < GLANCE:
+        return state, score
+    squares = [float(np.mean(state.residual[part] ** 2)) for part in slices]
+    kept = sorted(np.argsort(squares, kind="stable")[len(squares) // 2 :].tolist())
+    few = state.on(kept)
+    directions = np.concatenate([score.directions[slices[k]] for k in kept])
+    return few, Score(few.sample, orthonormal(directions), score.floor)
+
+
+def fine(attempt: Attempt, start: Trial) -> Trial:
+    """Search around the best point of a grid: halve its step, then Gauss and Newton.
+
+    The halved steps are tried one parameter at a time.
+    """
+    grids = attempt.variant.grids
+    best = start
+    steps = {
+        name: np.log(axis[1] / axis[0]) if len(axis) > 1 else 0.0
+        for name, axis in grids.items()
+    }
+    for halved in range(HALVINGS if len(grids) > 1 else 1):
+        for name, step in steps.items():
+            for sign in (1, -1):
+                trial = _beside(attempt, best, {name: sign * step / 2 ** (halved + 1)})
+                if trial is not None and trial.score < best.score:
+                    best = trial
+                    break
+    most = np.abs(list(steps.values())) / 2  # of a grid of negative values too
+    for _ in range(NEWTON if grids else 0):
+        try:
+            step = np.clip(attempt.step(best), -most, most)
+        except InputError:
+            break  # at an end of what the block accepts
+        before = best.score
+        for share in (1.0, 0.3):
+            trial = _beside(attempt, best, dict(zip(grids, share * step, strict=True)))
+            if trial is not None and trial.score < best.score:
+                best = trial
+                break
+        if before - best.score < SLIGHT:
+            break
+    return best
+
+
+def _beside(attempt: Attempt, trial: Trial, steps: dict[str, float]) -> Trial | None:
+    """Score a variant some steps away, in logarithms, inside its ranges."""
+    here = {name: trial.values[name] for name in attempt.variant.grids}
+    for name, step in steps.items():
+        low, high = attempt.variant.ends(name)
+        here[name] = float(np.clip(here[name] * np.exp(step), low, high))
+    try:
+        return attempt.at(tuple(here.values()))
+    except InputError:
+        return None  # values that the block itself refuses are no candidates

@@ -1,0 +1,130 @@
+"""What a search starts from: the base on the fit records, and the noise floor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hystbench.blocks.held import Hold
+from hystbench.errors import InputError
+from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.records.floor import Floor, noise_floor
+from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+
+
+def start_state(
+    records: tuple[Record, ...],
+    base: Model,
+    hold: Hold = "band-limited",
+    declared: float | None = None,
+    offered: tuple[str, ...] | None = None,
+) -> tuple[ModelState, Floor]:
+    """Simulate the base on the fit records and measure the noise floor.
+
+    Parameters
+    ----------
+    records : tuple of Record
+    base : Model
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
+    declared : float, optional
+        RMS noise, where it is known.
+    offered : tuple of str, optional
+        Effects that a search may add; all by default.
+
+    Raises
+    ------
+    InputError
+        If the base's output is not finite.
+    """
+    base = base.with_hold(hold)
+    chain = base.chain
+    exact = Simulation(chain, records, hold, fine=True).output
+    check_finite(base.name, records, exact)
+    state = ModelState(
+        chain,
+        records,
+        Sample.of(records),
+        free=free_numbers(base),
+        hold=hold,
+        offered=offered,
+    ).settled()
+    compared = [
+        Compared(record, simulated)
+        for record, simulated in zip(records, exact, strict=True)
+    ]
+    return state, noise_floor(compared, declared)
+
+
+def run_base(
+    base: Model, records: tuple[Record, ...], hold: Hold
+) -> tuple[FloatArray, ...]:
+    """Simulate the base as it is shown, with plain steps.
+
+    Parameters
+    ----------
+    base : Model
+    records : tuple of Record
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n,) each
+
+    Raises
+    ------
+    InputError
+        If an output is not finite.
+    """
+    outputs = Simulation(base.with_hold(hold).chain, records, hold).output
+    check_finite(base.name, records, outputs)
+    return outputs
+
+
+def check_finite(
+    name: str, records: Sequence[Record], outputs: Sequence[FloatArray]
+) -> None:
+    """Refuse a model whose output is not finite on a record.
+
+    Raises
+    ------
+    InputError
+        With the model's name, the time and the record.
+    """
+    for record, simulated in zip(records, outputs, strict=True):
+        lost = np.flatnonzero(~np.isfinite(simulated))
+        if len(lost):
+            raise InputError(
+                f"{name}: the output is not finite from {lost[0] * record.dt:g} s "
+                f"of {record.name} on; expected a model that stays bounded"
+            )
+
+
+def free_numbers(base: Model) -> tuple[Free, ...]:
+    """Give the numbers that a model leaves free, with the size of a likely change.
+
+    A tolerance is a share of the value; of a zero it says nothing. It is the most that
+    a number may change by; a step of a refit is damped by its size.
+    """
+    places = {label: k for k, (label, _) in enumerate(base.labelled())}
+    found = []
+    for name in base.free:
+        label, _, parameter = name.rpartition(".")
+        share, value = base.tolerances.get(name), base.value(name)
+        numbers = value if isinstance(value, tuple) else (value,)
+        for element, number in enumerate(numbers):
+            if isinstance(number, str):
+                continue
+            size = None if not share or not number else share * abs(number)
+            place = element if isinstance(value, tuple) else None
+            own = Free(places[label], parameter, place, size)
+            if size is not None:
+                own = own._replace(low=number - size, high=number + size)
+            found.append(own)
+    return tuple(found)

@@ -1,0 +1,316 @@
+"""A model as far as it has come: its chain, what may be re-tuned, what lies beside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.base import Block
+from hystbench.blocks.held import Hold
+from hystbench.errors import InputError
+from hystbench.gap.effects.base import Beside, Values
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.reshape import reshapings
+from hystbench.gap.simulation.simulation import Signals, Simulation
+from hystbench.record import FloatArray, Record
+
+
+class Free(NamedTuple):
+    """A number that a refit may change."""
+
+    block: int
+    parameter: str
+    element: int | None = None
+    tolerance: float | None = None
+    """Expected size of the change; None where nothing is known."""
+    low: float = -np.inf
+    high: float = np.inf
+
+
+class Added(NamedTuple):
+    """An effect that was added."""
+
+    effect: str
+    place: str
+    form: str
+    blocks: tuple[int, ...]
+    """Places of its blocks in the chain; none for a signal beside it."""
+    values: dict[str, float]
+    charge: float
+    replaced: Block | None = None
+    """The chain's own block that it stands for."""
+
+
+FORMS = (0.3, 0.6, 1.6, 3.0)
+"""Factors on a number of an added effect: what other forms of it could do."""
+
+SMALL = 1e-6
+"""Change of a number of the shapes beside, as a share, by which a slope is taken."""
+
+MANY = 4
+"""An effect of more numbers has no other forms."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModelState:
+    """A chain, the effects added to it, and what a refit may change.
+
+    Parameters
+    ----------
+    chain : tuple of Block
+    records : tuple of Record
+    sample : Sample
+    free : tuple of Free
+    added : tuple of Added
+    beside : tuple of (Beside, values)
+        Signals that the input does not explain.
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
+    correction : ndarray, shape (scored samples,), optional
+        By how much the exact simulation is above the quick one. It changes little
+        from candidate to candidate; :meth:`settled` measures it anew.
+    corrected_at : tuple of Block, optional
+        The chain at which the correction was measured.
+    offered : tuple of str, optional
+        Effects that may be added; all by default.
+    """
+
+    chain: tuple[Block, ...]
+    records: tuple[Record, ...]
+    sample: Sample
+    free: tuple[Free, ...] = ()
+    added: tuple[Added, ...] = ()
+    beside: tuple[tuple[Beside, Values], ...] = ()
+    hold: Hold = "band-limited"
+    correction: FloatArray | None = None
+    corrected_at: tuple[Block, ...] | None = None
+    offered: tuple[str, ...] | None = None
+
+    @cached_property
+    def simulation(self) -> Simulation:
+        """The chain on the records, simulated quickly."""
+        return Simulation(self.chain, self.records, self.hold, quick=True)
+
+    def on(self, kept: Sequence[int]) -> ModelState:
+        """Give the state on some of its records, by number."""
+        rows = [self.sample.slices[k] for k in kept]
+        correction = self.correction
+        if correction is not None:
+            correction = np.concatenate([correction[part] for part in rows])
+        return replace(
+            self,
+            records=tuple(self.records[k] for k in kept),
+            sample=self.sample.on(kept),
+            correction=correction,
+        )
+
+    def settled(self) -> ModelState:
+        """Give the state with what the quick simulation lacks made up for."""
+        exact = Simulation(self.chain, self.records, self.hold, fine=True).output
+        lacks = self.sample.take(exact) - self.sample.take(self.simulation.output)
+        return replace(self, correction=lacks, corrected_at=self.chain)
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """Scored samples of measured minus simulated, without what lies beside."""
+        return self.reference - self.sample.take(self.simulation.output)
+
+    @cached_property
+    def reference(self) -> FloatArray:
+        """Scored samples that a quick simulation is taken off, to give a residual."""
+        return (
+            self.measured
+            if self.correction is None
+            else (self.measured - self.correction)
+        )
+
+    @cached_property
+    def measured(self) -> FloatArray:
+        """Scored samples of the measured output."""
+        return self.sample.take([record.y for record in self.records])
+
+    @property
+    def freedom(self) -> float:
+        """Parameters that are charged."""
+        return sum(item.charge for item in self.added)
+
+    @cached_property
+    def tangents(self) -> FloatArray:
+        """How the output changes with each free number, shape (scored samples, k)."""
+        columns = [self._tangent(k, step) for k, step in enumerate(self.steps)]
+        return _stack(columns, len(self.sample))
+
+    def _tangent(self, k: int, step: float) -> FloatArray:
+        try:
+            moved = simulated_with(self, {k: step})
+        except InputError:  # beyond what the block accepts, so the other way
+            step = -step
+            moved = simulated_with(self, {k: step})
+        return (self.sample.take(moved) - self._simulated) / step
+
+    @cached_property
+    def other_forms(self) -> FloatArray:
+        """What other forms of the added effects could do, roughly.
+
+        The output with a number of an effect far from its value, less the output as it
+        is: how a law of another sharpness or of another order differs.
+        """
+        columns = []
+        for item in self.added:
+            own = [k for k, free in enumerate(self.free) if free.block in item.blocks]
+            for k in own if len(own) <= MANY else ():
+                value = self.value(self.free[k])
+                for factor in FORMS:
+                    change = (factor - 1) * value
+                    try:
+                        after = simulated_with(self, {k: change})
+                    except InputError:
+                        continue  # outside what the block accepts: no form of it
+                    column = self.sample.take(after) - self._simulated
+                    if np.all(np.isfinite(column)):  # else it runs away: no form of it
+                        columns.append(column)
+        return _stack(columns, len(self.sample))
+
+    @cached_property
+    def reshapings(self) -> FloatArray:
+        """What reshaping the hysteresis could do, shape (scored samples, k)."""
+        return reshapings(self.simulation, self.sample)
+
+    @cached_property
+    def stiffness(self) -> FloatArray:
+        """Charge for the square of a change of each free number."""
+        return np.array(
+            [0.0 if f.tolerance is None else f.tolerance**-2.0 for f in self.free]
+        )
+
+    def stiffness_of(self, columns: int) -> FloatArray:
+        """Give the charge of so many columns: the free numbers', then none."""
+        return np.pad(self.stiffness, (0, columns - len(self.free)))
+
+    @cached_property
+    def beside_columns(self) -> FloatArray:
+        """Scored samples of the shapes beside, of every record on its own."""
+        return _stack(
+            [beside_columns(self, *item) for item in self.beside], len(self.sample)
+        )
+
+    @cached_property
+    def beside_amplitudes(self) -> FloatArray:
+        """Amplitudes of the shapes beside that fit the residual best."""
+        found = np.linalg.lstsq(self.beside_columns, self.residual, rcond=1e-10)[0]
+        return np.asarray(found, dtype=np.float64)
+
+    def share(self, other: ModelState, floor: float, gap: float) -> float:
+        """Tell which share of a gap is gone here and is there in another state.
+
+        Parameters
+        ----------
+        other : ModelState
+        floor : float
+            Mean square of the noise.
+        gap : float
+            Mean square of the gap above the floor.
+        """
+        return (other.power(floor) - self.power(floor)) / gap
+
+    def power(self, floor: float) -> float:
+        """Mean square of the residual above the floor, of the records alike."""
+        rest = self.residual
+        if self.beside:
+            rest = rest - self.beside_columns @ self.beside_amplitudes
+        squares = [float(np.mean(rest[part] ** 2)) for part in self.sample.slices]
+        return float(np.mean(squares)) - floor
+
+    @cached_property
+    def steps(self) -> tuple[float, ...]:
+        """A small change of each free number, inside its bounds."""
+        return tuple(self._step(free) for free in self.free)
+
+    def value(self, free: Free) -> float:
+        """Give a free number."""
+        value = getattr(self.chain[free.block], free.parameter)
+        return float(value if free.element is None else value[free.element])
+
+    def moved(self, changes: dict[int, float]) -> tuple[Block, ...]:
+        """Give the chain with some free numbers changed by so much, inside bounds."""
+        chain = list(self.chain)
+        for k, change in changes.items():
+            free = self.free[k]
+            block = chain[free.block]
+            about = block.parameters()[free.parameter]
+            low, high = max(about.low, free.low), min(about.high, free.high)
+            value = float(np.clip(self.value(free) + change, low, high))
+            new: float | tuple[float, ...] = value
+            if free.element is not None:
+                own = list(getattr(block, free.parameter))
+                own[free.element] = value
+                new = tuple(own)
+            chain[free.block] = replace(block, **{free.parameter: new})
+        return tuple(chain)
+
+    def with_chain(self, chain: tuple[Block, ...]) -> ModelState:
+        """Give the state with other values in its chain."""
+        return replace(self, chain=chain)
+
+    @cached_property
+    def _simulated(self) -> FloatArray:
+        return self.reference - self.residual
+
+    def _step(self, free: Free) -> float:
+        value = self.value(free)
+        about = self.chain[free.block].parameters()[free.parameter]
+        size = 1e-3 * abs(value)
+        if size == 0:
+            size = 1e-6
+        # A tolerance may leave less room than that.
+        size = min(size, (free.high - free.low) / 4)
+        return -size if value + size > min(about.high, free.high) else size
+
+
+def simulated_with(state: ModelState, changes: dict[int, float]) -> Signals:
+    """Simulate the chain with some free numbers changed."""
+    start = min(state.free[k].block for k in changes)
+    while isinstance(state.chain[start], AttachedBlock):
+        start -= 1
+    return state.simulation.tail(start, state.moved(changes)[start:])
+
+
+def beside_columns(state: ModelState, beside: Beside, values: Values) -> FloatArray:
+    """Scored samples of the shapes beside, one block of columns a record."""
+    sample = state.sample
+    parts = []
+    for record, where, positions in zip(
+        state.records, sample.slices, sample.positions, strict=True
+    ):
+        own = beside.columns(record, values, beside.order, positions)
+        full = np.zeros((len(sample), own.shape[1]))
+        full[where] = own
+        parts.append(full)
+    return np.hstack(parts)
+
+
+def beside_count(state: ModelState, beside: Beside, values: Values) -> int:
+    """Give the number of amplitudes of a signal beside, in all records together."""
+    each: int = beside.columns(state.records[0], values, beside.order).shape[1]
+    return each * len(state.records)
+
+
+def beside_slope(
+    state: ModelState, beside: Beside, values: Values, key: str, amplitudes: FloatArray
+) -> FloatArray:
+    """How the output changes with a number of the shapes beside."""
+    step = SMALL * max(abs(values[key]), SMALL)
+    ends = [
+        beside_columns(state, beside, {**values, key: values[key] + sign * step})
+        for sign in (1, -1)
+    ]
+    return np.asarray((ends[0] - ends[1]) @ amplitudes / (2 * step))
+
+
+def _stack(columns: Sequence[FloatArray], rows: int) -> FloatArray:
+    return np.column_stack(columns) if columns else np.zeros((rows, 0))

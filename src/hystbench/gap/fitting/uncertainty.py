@@ -1,0 +1,221 @@
+"""How well the numbers of a named effect are known."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri, stdtrit
+
+from hystbench.gap.fitting.edit_chain import removable, without_effect
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.sample import Sample
+from hystbench.record import FloatArray
+
+SAMPLES = 2000
+"""Scored samples of a record: more than naming needs, as errors shrink with them."""
+RANK = 1e-9
+"""Directions that weigh less than this share are not told apart: they are left out."""
+SHOWN = 1e-6
+"""Of the noise: what a change of a whole number must do to be known at all."""
+ROUNDING = 1e-12
+"""Of the output: what moves it by less is lost among its last digits."""
+STRETCHES = 20
+"""Of a record, within which residuals may be correlated in any way."""
+
+
+FEW = 4
+"""Records that are needed to tell how much they differ."""
+
+
+def standard_errors(state: ModelState, score: Score) -> FloatArray:
+    """Estimate the standard error of each free number of a model.
+
+    Weighted least squares with a covariance that is robust to correlation inside
+    stretches of a record [1]_, or to what differs from record to record [2]_, where
+    that is more; directions in which the hysteresis may be of the wrong shape count as
+    fitted as far as the residual fills them.
+
+    Parameters
+    ----------
+    state : ModelState
+    score : Score
+        Gives the records' weights and the directions.
+
+    Returns
+    -------
+    ndarray, shape (free numbers,)
+        NaN where the records say nothing of a number.
+
+    References
+    ----------
+    .. [1] K.-Y. Liang, S. L. Zeger, "Longitudinal data analysis using generalized
+       linear models", Biometrika 73 (1986) 13-22.
+    .. [2] B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, SIAM,
+       1982.
+    """
+    if not state.free:
+        return np.zeros(0)
+    columns = np.hstack([state.tangents, state.beside_columns])
+    residual = _cleaned(state, columns)
+    columns, residual = _beyond_shape(columns, residual, score)
+    scale = np.sqrt(np.mean(columns**2, axis=0))
+    # What the output shows of a number must be more than rounding.
+    values = np.array([abs(state.value(free)) for free in state.free])
+    own = scale[: len(values)]
+    usable = scale > SHOWN * np.sqrt(score.floor)
+    usable[: len(values)] = own * values > SHOWN * np.sqrt(score.floor)
+    # One that is zero has no size: the step by which its slope was taken tells.
+    output = np.sqrt(np.mean((state.measured - state.residual) ** 2))
+    moved = own * np.abs(state.steps) > ROUNDING * output
+    usable[: len(values)] |= (values == 0) & moved
+    return _errors(columns, residual, usable, state, score.floor)[: len(state.free)]
+
+
+def error_of_size(state: ModelState, floor: float, number: int) -> float:
+    """Estimate the standard error of an added effect's size, as a share of it.
+
+    Of all its numbers together: they may stand in for each other, and none of them be
+    known where what they do is. What it adds to the output is one column here, beside
+    those of all other numbers. Directions of a wrong shape are not taken off: a gain or
+    a static curve would have no size beside them, however alike all records show it.
+    The record that moves the size most by being left out is not counted: it may be the
+    only one that tells the effect from another, which is not to disagree with the rest.
+
+    Parameters
+    ----------
+    state : ModelState
+    floor : float
+        Mean square of what no model explains, in squared output units.
+    number : int
+        Place of the effect among those that were added.
+    """
+    own = state.added[number].blocks
+    rest = [k for k, free in enumerate(state.free) if free.block not in own]
+    without = without_effect(state, number).settled()
+    columns = np.hstack(
+        [
+            (without.residual - state.residual)[:, None],
+            state.tangents[:, rest],
+            state.beside_columns,
+        ]
+    )
+    residual = _cleaned(state, np.hstack([state.tangents, state.beside_columns]))
+    usable = np.mean(columns**2, axis=0) > SHOWN**2 * floor
+    return float(_errors(columns, residual, usable, state, floor, uncounted=1)[0])
+
+
+def size_error(state: ModelState, floor_rms: float, number: int) -> float | None:
+    """Give the same of an effect whose size can be told, else None.
+
+    Of a signal beside the chain its own numbers tell; of an effect that others stand
+    on, nothing; nor where the records show nothing of it.
+    """
+    if not state.added[number].blocks or not removable(state, number):
+        return None
+    error = error_of_size(state, floor_rms**2, number)
+    return error if np.isfinite(error) else None
+
+
+def _cleaned(state: ModelState, columns: FloatArray) -> FloatArray:
+    """Give the residual without what is solved for beside the free numbers."""
+    beta = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
+    beta[: len(state.free)] = 0.0
+    return np.asarray(state.residual - columns @ beta)
+
+
+def _beyond_shape(
+    columns: FloatArray, residual: FloatArray, score: Score
+) -> tuple[FloatArray, FloatArray]:
+    """Take off what a wrong shape may do, as far as the residual fills it."""
+    _, inside = score.split(residual)
+    filled = float(inside @ inside) / max(len(inside), 1)
+    share = max(0.0, 1.0 - score.floor / max(filled, score.floor))
+    columns = columns - share * (score.directions @ (score.directions.T @ columns))
+    return columns, residual - share * (score.directions @ inside)
+
+
+def _errors(
+    columns: FloatArray,
+    residual: FloatArray,
+    usable: NDArray[np.bool_],
+    state: ModelState,
+    floor: float,
+    uncounted: int = 0,
+) -> FloatArray:
+    """Give robust standard errors of the amplitudes of columns; NaN of those unused."""
+    scale = np.sqrt(np.mean(columns[:, usable] ** 2, axis=0))
+    pieces = by_record(columns[:, usable] / scale, residual, state, floor)
+    between = between_records(pieces, uncounted)
+    variance = np.maximum(np.diag(between_stretches(pieces)), between)
+    errors = np.full(len(usable), np.nan)
+    errors[usable] = np.sqrt(np.maximum(variance, 0.0)) / scale
+    return errors
+
+
+class Pieces(NamedTuple):
+    """What weighted least squares are made of, by record."""
+
+    normals: list[FloatArray]  # shape (k, k): products of the columns
+    pushes: list[FloatArray]  # shape (scored samples, k): of columns and residual
+
+
+def by_record(
+    columns: FloatArray, residual: FloatArray, state: ModelState, floor: float
+) -> Pieces:
+    """Give the pieces of least squares in which every record weighs by its residual."""
+    normals, pushes = [], []
+    for part in state.sample.slices:
+        weight = 1.0 / max(float(np.mean(residual[part] ** 2)), floor)
+        weighted = weight * columns[part]
+        normals.append(columns[part].T @ weighted)
+        pushes.append(residual[part, None] * weighted)
+    return Pieces(normals, pushes)
+
+
+def between_stretches(pieces: Pieces) -> FloatArray:
+    """Covariance, shape (k, k), where the residuals of stretches are independent."""
+    bread = np.linalg.pinv(sum(pieces.normals), rcond=RANK)
+    totals = [
+        stretch.sum(axis=0)
+        for push in pieces.pushes
+        for stretch in np.array_split(push, STRETCHES)
+    ]
+    meat = np.einsum("ij,ik->jk", totals, totals)
+    meat *= len(totals) / max(len(totals) - len(bread), 1)
+    return np.asarray(bread @ meat @ bread)
+
+
+def between_records(pieces: Pieces, uncounted: int = 0) -> FloatArray:
+    """Variances, shape (k,), by leaving out one record after the other (jackknife).
+
+    What a model's form misses is alike within a record and differs between them. With
+    few records the interval is as wide as Student's t distribution makes it. Of each
+    number the records that move it most are left uncounted, as many as asked.
+    """
+    count = len(pieces.normals) - uncounted
+    if count < FEW:
+        return np.zeros(len(pieces.normals[0]))
+    whole = sum(pieces.normals)
+    moved = np.array(
+        [
+            np.linalg.pinv(whole - normal, rcond=RANK) @ push.sum(axis=0)
+            for normal, push in zip(*pieces, strict=True)
+        ]
+    )
+    far = np.argsort(np.abs(moved - np.median(moved, axis=0)), axis=0)
+    moved = np.take_along_axis(moved, far[:count], axis=0)
+    spread: FloatArray = (count - 1) * np.var(moved, axis=0)
+    # Quantiles of Student's t and of the normal distribution. Not by scipy.stats: to
+    # load it takes each job of an effect longer than all else that it loads.
+    wider = stdtrit(count - 1, 0.975) / ndtri(0.975)
+    return spread * float(wider) ** 2
+
+
+def on_more_samples(state: ModelState) -> ModelState:
+    """Give a model with more of each record's samples scored."""
+    sample = Sample.of(state.records, SAMPLES)
+    return replace(state, sample=sample, correction=None).settled()

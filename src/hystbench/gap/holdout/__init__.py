@@ -1,0 +1,1 @@
+"""What the hold-out records show of a decision."""

@@ -1,0 +1,1 @@
+"""What the named effects leave, and the verdict on it."""

@@ -1,0 +1,132 @@
+"""What a decision tells of the effects and their numbers, as gap.json holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks.calls import USED_UP
+from hystbench.blocks.external import External
+from hystbench.blocks.simulated_column import NEEDS_RERUN
+from hystbench.gap.fitting.parameters import parameters_of
+from hystbench.gap.fitting.state import Added, ModelState
+from hystbench.gap.fitting.uncertainty_beside import Errors
+from hystbench.gap.judging.verdict import Left, confidence, error_of
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rounds import Candidate, near
+from hystbench.model import Model
+from hystbench.record import FloatArray, Record
+
+
+def effect_mapping(
+    item: Added,
+    state: ModelState,
+    errors: FloatArray,
+    of_beside: Sequence[Errors],
+    ranking: Sequence[Candidate],
+    left: Left,
+    size_error: float | None = None,
+    trust: float = 1.0,
+) -> dict[str, Any]:
+    """Give an added effect with its numbers and how sure the name is.
+
+    Parameters
+    ----------
+    item : Added
+    state : ModelState
+    errors : ndarray, shape (free numbers,)
+    of_beside : sequence of dict
+        Standard errors of the signals beside the chain.
+    ranking : sequence of Candidate
+        The last by which it was taken.
+    left : Left
+    size_error : float, optional
+        Standard error of what it adds to the output, in times of it.
+    trust : float
+        Factor on the confidence, less than one where more stays unnamed than may.
+    """
+    own = next((x for x in ranking if x.effect == item.effect), None)
+    parameters = parameters_of(item, state, errors, of_beside)
+    # Of a shape each number stands in for its neighbours: only all together say much.
+    # Of a path in every record the mean slope is told, which may well be nothing.
+    shape = any(state.chain[k].hysteretic for k in item.blocks)
+    path = any(x.effect == item.effect and not given for x, given in state.beside)
+    error = error_of(size_error, {} if shape or path else parameters)
+    sure = 0.0 if own is None else confidence(own, ranking, left, error)
+    return {
+        "name": item.effect,
+        "place": item.place,
+        "parameters": parameters,
+        "size_error": size_error,
+        "confidence": trust * sure,
+        "cannot_be_told_from": [] if own is None else list(near(own, ranking)),
+    }
+
+
+def not_tried(named: Named) -> list[str]:
+    """Name the effects that no fit could try: the simulator could not be run for them.
+
+    It cannot be run again at all, or not more often than was allowed.
+    """
+    return [
+        item.effect
+        for one in named.rounds[:1]
+        for item in one.ranking
+        if item.declined == NEEDS_RERUN or USED_UP in item.declined
+    ]
+
+
+def simulator_mapping(model: Model, records: Sequence[Record]) -> dict[str, Any]:
+    """Tell what the model with its effects takes and gives, and how it can be run."""
+    channels = {"input": model.input, "output": model.output}
+    return {
+        side: {"name": item.name, "unit": item.unit} for side, item in channels.items()
+    } | {
+        "functions": [x.function for x in model.chain if isinstance(x, External)],
+        "runs_again": all(block.reruns for block in model.chain),
+        "sampling_interval_s": records[0].dt,
+    }
+
+
+def ranking_rows(named: Named) -> list[dict[str, Any]]:
+    """Give every candidate of every round and of the second looks after it.
+
+    Rankings stand in the order in which they were made, each with the best first.
+    """
+    rows = []
+    for number, one in enumerate(named.rounds, start=1):
+        beside = [item.effect for item in one.before.added]
+        about = {"round": number, "look": 0, "instead_of": None, "beside": beside}
+        best = one.ranking[0].effect if one.taken else None
+        rows += _rows(about, one.ranking, best)
+        for k, look in enumerate(one.looks, start=1):
+            where = {"instead_of": look.instead_of, "beside": list(look.beside)}
+            rows += _rows(about | {"look": k} | where, look.ranking, look.taken)
+    return rows
+
+
+def _rows(
+    about: Mapping[str, Any], ranking: Sequence[Candidate], taken: str | None
+) -> list[dict[str, Any]]:
+    return [{**about, **_candidate_row(x, x.effect == taken)} for x in ranking]
+
+
+def _candidate_row(item: Candidate, taken: bool) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "name": item.effect,
+        "place": item.place,
+        "taken": taken,
+        "refitted": item.state is not None,
+        "held_back": item.held_back,
+    }
+    if item.form:
+        row["form"] = item.form
+    if item.variants:
+        row["variants"] = [x._asdict() for x in item.variants if np.isfinite(x.score)]
+    if item.declined:
+        row["declined"] = item.declined
+    elif np.isfinite(item.score):
+        row |= {"score": item.score, "gain": item.gain}
+    return row

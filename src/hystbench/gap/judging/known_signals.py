@@ -1,0 +1,162 @@
+"""Known signals that tell what sort of thing a residual is, though not its name.
+
+Each group answers one question on what named effects leave: does the strength change
+from record to record, is there memory of another kind, a curve of another kind? The
+columns are made of the input, of the base's output and of that of the model with its
+effects; time constants come from the records alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from hystbench.blocks.linear import low_pass
+from hystbench.gap.fitting.state import ModelState
+from hystbench.operators import play
+from hystbench.record import FloatArray, Record
+
+SLOW_COSINES = 3
+"""Over a record, by which a strength may change in it."""
+PATH_COSINES = 5
+"""Over a record, that a path of its own may have."""
+TIMES = 5
+"""Of low-passes, from the shortest step on, and of slow averages."""
+DELAYS = (1, 2, 4, 8, 16)
+"""Shortest sampling intervals."""
+REACH = 300.0
+"""Longest low-pass of the dynamics, in shortest sampling intervals."""
+SLOWEST = 0.01
+"""Shortest slow average, in longest records."""
+THRESHOLDS = (0.1, 0.3, 0.5, 0.7)
+"""Of plays, as shares of the input's largest size."""
+
+PATH = "drift"
+"""The effect that gives every record a slow path of its own."""
+
+Columns = list[FloatArray]
+"""Of one record, shape (n,) each."""
+
+
+def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]:
+    """Give the groups of columns, each on the scored samples.
+
+    Parameters
+    ----------
+    base : ModelState
+        The model without effects.
+    state : ModelState
+        With the named effects.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (scored samples, k)
+        ``strength``, ``gain``, ``path``, ``slow power``, ``dynamics``, ``rate``,
+        ``statics``, ``memory``; no ``strength`` where nothing was added to the chain.
+    """
+    before, after = base.simulation.output, state.simulation.output
+    increments = [b - a for a, b in zip(before, after, strict=True)]
+    over_time = _each_record(state, lambda record: _cosines(record, SLOW_COSINES))
+    groups = {}
+    if any(x.any() for x in increments):
+        groups["strength"] = state.sample.take(increments)[:, None] * over_time
+    groups["gain"] = state.sample.take(before)[:, None] * over_time
+    groups["path"] = _each_record(state, lambda record: _cosines(record, PATH_COSINES))
+    largest = max(float(np.abs(record.u).max()) for record in state.records) or 1.0
+    size = max(float(np.abs(y).max()) for y in after) or 1.0
+    step = min(record.dt for record in state.records)
+    span = max(record.dt * len(record) for record in state.records)
+    fast = np.geomspace(step, min(REACH * step, span), TIMES)
+    slow = np.geomspace(SLOWEST * span, span, TIMES)
+    makers: dict[str, Callable[[Record, FloatArray, FloatArray], Columns]] = {
+        "slow power": lambda record, u, y: _slow_power(record.dt, u, y, slow),
+        "dynamics": lambda record, u, y: _dynamics(record.dt, y, fast, step),
+        "rate": lambda record, u, y: _rate(record.dt, u, y),
+        "statics": lambda record, u, y: _statics(u, y),
+        "memory": lambda record, u, y: _memory(record.dt, u, slow),
+    }
+    for name, make in makers.items():
+        made = [
+            np.column_stack(make(record, record.u / largest, y / size))
+            for record, y in zip(state.records, after, strict=True)
+        ]
+        groups[name] = state.sample.take(made)
+    return groups
+
+
+def halves(state: ModelState, signals: FloatArray) -> FloatArray:
+    """Give signals their two halves of every record as columns of their own.
+
+    Parameters
+    ----------
+    state : ModelState
+    signals : ndarray, shape (scored samples, k)
+
+    Returns
+    -------
+    ndarray, shape (scored samples, 2 k records)
+    """
+    columns = []
+    for rows in state.sample.slices:
+        middle = (rows.start + rows.stop) // 2
+        for part in (slice(rows.start, middle), slice(middle, rows.stop)):
+            own = np.zeros_like(signals)
+            own[part] = signals[part]
+            columns.append(own)
+    return np.hstack(columns)
+
+
+def _each_record(state: ModelState, make: Callable[[Record], FloatArray]) -> FloatArray:
+    """Give every record columns of its own, zero in the others."""
+    made = []
+    for record, rows, positions in zip(
+        state.records, state.sample.slices, state.sample.positions, strict=True
+    ):
+        own = make(record)[positions]
+        full = np.zeros((len(state.sample), own.shape[1]))
+        full[rows] = own
+        made.append(full)
+    return np.hstack(made)
+
+
+def _cosines(record: Record, count: int) -> FloatArray:
+    phase = np.pi * (np.arange(len(record)) + 0.5) / len(record)
+    return np.cos(phase[:, None] * np.arange(count + 1))
+
+
+def _slow_power(dt: float, u: FloatArray, y: FloatArray, times: FloatArray) -> Columns:
+    averages = [low_pass(u**2, dt, tau) for tau in times]
+    return [*averages, *(x * y for x in averages)]
+
+
+def _dynamics(dt: float, y: FloatArray, times: FloatArray, step: float) -> Columns:
+    rate = np.gradient(y, dt)
+    time = dt * np.arange(len(y))
+    late = [np.interp(time - k * step, time, y) - y for k in DELAYS]
+    passed = [low_pass(y, dt, tau, y[0]) - y for tau in times]
+    return [rate, np.gradient(rate, dt), *passed, *late]
+
+
+def _rate(dt: float, u: FloatArray, y: FloatArray) -> Columns:
+    rate = np.gradient(u, dt)
+    size = np.abs(rate)
+    root = np.sqrt(size)
+    return [np.sign(rate) * root, root, size, size * u, size * y]
+
+
+def _statics(u: FloatArray, y: FloatArray) -> Columns:
+    return [
+        *(z**k for z in (u, y) for k in (1, 2, 3, 4, 5)),
+        np.abs(u),
+        np.abs(y),
+    ]
+
+
+def _memory(dt: float, u: FloatArray, times: FloatArray) -> Columns:
+    plays = list(play(u, np.array(THRESHOLDS))[0].T)
+    return [
+        *plays,
+        *(x**2 for x in plays[1:3]),
+        *(low_pass(u, dt, tau) for tau in times[2:]),
+    ]

@@ -1,0 +1,225 @@
+"""What stays unnamed: structure in the residual that the named effects cannot own.
+
+A name is right when what it leaves is noise, a slightly wrong shape of the base's
+hysteresis, or what other numbers of the same effect would take away. Anything else that
+follows known signals speaks against it, however small beside the gap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.judging.grouped_evidence import Products
+from hystbench.gap.judging.known_signals import PATH, generic_groups, halves
+from hystbench.gap.simulation.reshape import orthonormal, products
+from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.record import FloatArray
+
+CHANGE = 0.2
+"""Of that share, what may go if an effect's numbers may differ in time."""
+LOOSE = 0.25
+"""Share of the power of the gap that may stay in all: half of its rms."""
+RELATED = 0.1
+"""Share of what stays that must follow known signals, to be called by their sort."""
+
+SORTS = {
+    "strength": "its strength changes with time or between records",
+    "history": "it depends on how hard the device was driven before",
+    "memory": "it has memory or delay of another kind",
+    "curve": "it is a curve or a loop of another kind",
+    "unrelated": "it does not follow the recorded input",
+}
+"""What is said of each sort of structure."""
+SORT_OF = {
+    "strength": "strength",
+    "gain": "strength",
+    "path": "strength",
+    "slow power": "history",
+    "dynamics": "memory",
+    "rate": "memory",
+    "statics": "curve",
+    "memory": "curve",
+}
+"""Of what sort a residual is that a group of columns explains best."""
+
+
+@dataclass(frozen=True)
+class Unnamed:
+    """What stays unnamed, as shares of the power of the gap above the floor.
+
+    Parameters
+    ----------
+    structured : float
+        What follows known signals and the named effects cannot own.
+    changing : float or None
+        What goes if the effects' strength and numbers may differ between the halves of
+        each record; None where no effect acts on the input.
+    unrelated : float
+        What follows no known signal.
+    gains : mapping of str to float
+        By how much each group of known signals, alone, raises the evidence, in natural
+        logarithms.
+    factors : tuple of float
+        The effects' strength in each record, as a multiple of what it is in all of
+        them; empty where no effect acts on the input.
+    """
+
+    structured: float
+    changing: float | None = None
+    unrelated: float = 0.0
+    gains: Mapping[str, float] = field(default_factory=dict)
+    factors: tuple[float, ...] = ()
+
+    @property
+    def stays(self) -> float:
+        """Share of the gap that the names leave beyond what they may own."""
+        return self.structured + self.unrelated
+
+    def too_much(self, share: float = UNNAMED_SHARE) -> bool:
+        """Tell whether more stays unnamed than may."""
+        return self._excess > share
+
+    def trust(self, share: float = UNNAMED_SHARE) -> float:
+        """Give the factor on a name's confidence: one where no more stays than may."""
+        return 1.0 if self._excess <= share else share / self._excess
+
+    @property
+    def _excess(self) -> float:
+        return max(self.structured, (self.changing or 0.0) / CHANGE)
+
+    def sort(self, share: float = UNNAMED_SHARE) -> str:
+        """Give the sort of what stays: a key of :data:`SORTS`."""
+        if (self.changing or 0.0) > CHANGE * share and self.structured <= share:
+            return "strength"
+        best = max(self.gains, key=lambda name: self.gains[name], default=None)
+        lone = self.structured < RELATED * self.stays
+        if best is None or self.gains[best] <= 0 or lone:
+            return "unrelated"
+        return SORT_OF[best]
+
+    def reason(self, share: float = UNNAMED_SHARE) -> str:
+        """Say why no name stands."""
+        if self.structured > share:
+            much = (
+                f"{_percent(self.structured)} of the gap's power follows known signals "
+                "in a way that no number of the named effects accounts for"
+            )
+        else:
+            much = (
+                f"{_percent(self.changing or 0.0)} of the gap's power goes if the "
+                "named effects may change within records"
+            )
+        return f"{much}: {SORTS[self.sort(share)]}"
+
+    def mapping(self, share: float = UNNAMED_SHARE) -> dict[str, Any]:
+        """Give what gap.json holds: no sort where no more stays than may."""
+        told = self.too_much(share) or self.stays > LOOSE
+        sort = self.sort(share) if told else None
+        return {
+            "allowed": share,
+            "structured": self.structured,
+            "changing": self.changing,
+            "unrelated": self.unrelated,
+            "sort": sort,
+            "sentence": SORTS[sort] if sort else None,
+            "factors": list(self.factors),
+        }
+
+
+NOTHING = Unnamed(0.0)
+"""Where everything is owned."""
+
+
+def what_is_unnamed(base: ModelState, state: ModelState, floor_rms: float) -> Unnamed:
+    """Measure what the effects of a model cannot own of what they leave.
+
+    Three variances of noise are found by evidence (:mod:`grouped_evidence`): ``s0``
+    with the columns that the names may own, ``s1`` with all known signals as well, and
+    ``s2`` with changes of the effects in time instead. With ``P`` the power of the gap
+    the shares are ``(s0 - s1) / P``, ``(s0 - s2) / P`` and, of what is left above the
+    floor, ``(s1 - floor) / P``.
+
+    Parameters
+    ----------
+    base, state : ModelState
+        Without and with the effects.
+    floor_rms : float
+        RMS of the noise. A gap of less power than the noise counts as one of as much.
+    """
+    floor = floor_rms**2
+    power = max(base.power(floor), floor)
+    own, generic, changing = owned(state), generic_groups(base, state), {}
+    increment = base.residual - state.residual
+    if any(item.blocks for item in state.added):
+        changing = {"changing": halves(state, _numbers(state, increment))}
+    integrates = any(record.decay_s is not None for record in state.records)
+    if integrates or any(beside.effect == PATH for beside, _ in state.beside):
+        # A path owns all that is slow, the input's slow power too. A free mass makes a
+        # path in each of its windows of any small error of a force.
+        own["path"] = generic.pop("path")
+        del generic["slow power"]
+    groups = own | generic | changing
+    ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
+    at = {k: range(*ends[n : n + 2]) for n, k in enumerate(groups)}
+    table = Products.of(np.hstack(list(groups.values())), state.residual)
+    alone, with_generic, with_changing = (
+        table.explained([at[name] for name in (*own, *more)])
+        for more in ((), generic, changing)
+    )
+    gains = {
+        name: table.explained([*(at[k] for k in own), at[name]]).evidence
+        - alone.evidence
+        for name in generic
+    }
+    return Unnamed(
+        max(alone.noise - with_generic.noise, 0.0) / power,
+        max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
+        max(with_generic.noise - floor, 0.0) / power,
+        gains,
+        _factors(state, increment) if changing else (),
+    )
+
+
+def owned(state: ModelState) -> dict[str, FloatArray]:
+    """Give the columns that the named effects and the base may own, by group.
+
+    Of the base a wrong shape of its hysteresis; of the effects other numbers and forms;
+    a constant and a gain; of what is new in every record its own columns.
+    """
+    rows = len(state.sample)
+    simulated = state.measured - state.residual
+    return {
+        "shape": orthonormal(state.reshapings),
+        "mixed shape": orthonormal(products(state.simulation, state.sample)),
+        "numbers": state.tangents,
+        "forms": state.other_forms,
+        "constant and gain": np.column_stack([np.ones(rows), simulated]),
+        "beside": state.beside_columns,
+    }
+
+
+def _numbers(state: ModelState, increment: FloatArray) -> FloatArray:
+    """Give what the effects add, and how it changes with each of their numbers."""
+    own = {k for item in state.added for k in item.blocks}
+    at = [k for k, free in enumerate(state.free) if free.block in own]
+    return np.column_stack([increment, state.tangents[:, at]])
+
+
+def _factors(state: ModelState, increment: FloatArray) -> tuple[float, ...]:
+    """Give the strength of what the effects add in each record, by least squares."""
+    found = []
+    for part in state.sample.slices:
+        own = increment[part]
+        square = float(own @ own)
+        more = float(own @ state.residual[part]) / square if square > 0 else 0.0
+        found.append(1.0 + more)
+    return tuple(found)
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g} %"

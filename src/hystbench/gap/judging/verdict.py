@@ -1,0 +1,365 @@
+"""The verdict: what the named effects leave, and how sure the names are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.judging.unnamed import LOOSE, NOTHING, Unnamed
+from hystbench.gap.naming.rank import make_score
+from hystbench.gap.naming.rounds import Candidate
+from hystbench.gap.thresholds import ABOVE_NOISE, UNNAMED_SHARE
+from hystbench.periods import find_period
+from hystbench.record import Record
+
+Word = Literal["named", "parameters", "no-gap", "unnamed"]
+
+OFF = 1 / 9
+"""Share of the gap that stays and may be the base's own error: a third of its rms."""
+SLIGHT = 0.015
+"""RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
+WIDE = 0.045
+"""The same of all that is left, most of which reshaping could do."""
+INSIDE = 0.3
+"""Share of the gap that then has to lie in what a wrong shape of it could do."""
+HALF = 0.5
+"""The same, where what stays is no more than a slightly wrong shape leaves."""
+LONE = 0.12
+"""Power that stays in samples far off, over that of the gap, that is not noise."""
+UNREPEATED = 0.5
+"""Power above the floor, in floors, that differs between periods and is not noise."""
+SOME = 0.03
+"""Share of what is left that has to differ so, to be told from settling."""
+SCALE = 4.0
+"""Difference in score that makes one name e times likelier than another."""
+SURE = 100.0
+"""Odds beyond e to this are all the same."""
+DISTRUST = 0.7
+"""Share of the gap that stays, at which no name is believed."""
+DOUBT = 0.02
+"""That none of the vocabulary is right though one fits well."""
+SAID = 0.1
+"""Share of the gap that a wrong shape of the base could leave, to be told."""
+
+
+GIVE = "give period_samples or noise_rms"
+"""What to write in dataset.yaml where nothing tells the noise."""
+
+
+@dataclass(frozen=True)
+class Left:
+    """What a model leaves, in mean squares over the records.
+
+    Parameters
+    ----------
+    before, after : float
+        Above the floor and beyond what a wrong shape of the hysteresis could leave,
+        of the base and of the model with its effects, in floors.
+    all_before, all_after : float
+        Above the floor, of the whole residual, in floors.
+    output : float
+        Mean square of the measured output about its mean, in floors.
+    """
+
+    before: float
+    after: float
+    all_before: float
+    all_after: float
+    output: float = 0.0
+
+    @property
+    def slight(self) -> bool:
+        """Whether no more is left than a hysteresis of a slightly wrong shape leaves.
+
+        No model of a few play operators fits a material much better than to a percent
+        of its output. So little tells of an effect only if most of it is nothing that
+        reshaping the hysteresis could do.
+        """
+        return self._slight(self.after, self.all_after)
+
+    @property
+    def slight_before(self) -> bool:
+        """Whether the base leaves no more than that."""
+        return self._slight(self.before, self.all_before)
+
+    def _slight(self, beyond: float, whole: float) -> bool:
+        if whole <= ABOVE_NOISE:
+            return True
+        if whole >= WIDE**2 * self.output:
+            return False
+        small = beyond < SLIGHT**2 * self.output
+        return beyond <= ABOVE_NOISE or (small and beyond < (1 - INSIDE) * whole)
+
+    @property
+    def little_named(self) -> bool:
+        """Whether effects leave most of what may be a slightly wrong shape alone."""
+        return self.slight_before and self.loose > HALF
+
+    @property
+    def loose(self) -> float:
+        """Share of the gap that no effect takes away.
+
+        The lesser of two: of the whole residual, which a wrong base fills too, and of
+        what lies beyond a wrong shape of the base, which may be little of an effect
+        that looks like one.
+        """
+        beyond = max(self.after, 0.0) / max(self.before, self.after, 1e-9)
+        return min(beyond, self.whole)
+
+    @property
+    def whole(self) -> float:
+        """Share of the gap that stays of the whole residual."""
+        return max(self.all_after, 0.0) / max(self.all_before, self.all_after, 1e-9)
+
+    @property
+    def stays(self) -> str:
+        """Say how much of the gap stays on the fit records, and of what it is a share.
+
+        The part beyond a wrong shape, by which the verdict is given, is told where it
+        is clearly another figure.
+        """
+        told = (
+            f"on the fit records {100 * self.whole:.0f} % of the gap's power above the "
+            "noise floor stays"
+        )
+        if self.whole - self.loose < SAID:
+            return told
+        return (
+            f"{told}; of the part that no wrong shape of the hysteresis could leave, "
+            f"{100 * self.loose:.0f} %"
+        )
+
+
+def what_is_left(base: ModelState, state: ModelState, floor_rms: float) -> Left:
+    """Measure what the base and what a model leaves, each beside its directions."""
+    floor = floor_rms**2
+    before, after = (_beyond(x, make_score(x, floor_rms)) for x in (base, state))
+    return Left(
+        before,
+        after,
+        base.power(floor) / floor,
+        state.power(floor) / floor,
+        float(np.var(base.measured)) / floor,
+    )
+
+
+def what_mends(records: Sequence[Record]) -> str:
+    """Say what to write so that the noise is measured: the periods that are found."""
+    found = [(record.name, find_period(record.u)) for record in records]
+    told = [
+        f"'period_samples: {period}' of record {name}"
+        for name, period in found
+        if period is not None
+    ]
+    if not told:
+        return GIVE
+    return f"the input repeats itself: write {', '.join(told)} in dataset.yaml"
+
+
+def judge(
+    left: Left,
+    named: bool,
+    explained_by_box: float | None = None,
+    retuned: bool = False,
+    bound: bool = False,
+    lone: float = 0.0,
+    unrepeated: float | None = None,
+    unnamed: Unnamed = NOTHING,
+    unnamed_share: float = UNNAMED_SHARE,
+    mends: str = GIVE,
+) -> tuple[Word, str]:
+    """Choose the word and say why.
+
+    Parameters
+    ----------
+    left : Left
+    named : bool
+        Whether an effect was added.
+    explained_by_box : float or None
+        Share of what the base leaves, above the floor, that a black box takes away on
+        folds of the fit records; said where nothing is named.
+    retuned : bool
+        Whether the base had numbers of its own to re-tune.
+    bound : bool
+        Whether the noise floor is only an upper bound: it may hold the whole gap, so
+        that there is none cannot be claimed from it.
+    lone : float
+        Share of the power of what is left that stands in samples far off.
+    unrepeated : float or None
+        Power of what is left that differs between periods of the same input, above the
+        floor and in floors; none where no record repeats.
+    unnamed : Unnamed
+        What stays that the named effects cannot own.
+    unnamed_share : float
+        Share of the power of the gap that may stay so.
+    mends : str
+        What to write so that the noise is measured.
+    """
+    if not named:
+        foreign = _foreign(left, lone, unrepeated)
+        if left.slight and foreign:
+            return "unnamed", foreign
+        if retuned and left.all_before > ABOVE_NOISE and left.loose < LOOSE:
+            return "parameters", (
+                "re-tuning the base within what is free is enough, and no effect pays "
+                f"beside it: {left.stays}"
+            )
+        if left.slight and bound:
+            return "unnamed", (
+                "no effect pays; the floor is only an upper bound, so that there is "
+                f"no gap cannot be claimed: {mends}"
+            )
+        if left.slight and left.all_after <= ABOVE_NOISE:
+            return "no-gap", "what is left is noise"
+        if left.slight:
+            share = float(np.sqrt(left.all_after / left.output))
+            return "no-gap", (
+                f"what is left on the fit records, {100 * share:.2g} % of the output's "
+                "rms, is no more than a slightly wrong shape of the base could leave"
+            )
+        return "unnamed", (
+            f"on the fit records a gap of {left.after:.2g} times the noise power is "
+            "there and no effect of the vocabulary pays; "
+            f"{_box_words(explained_by_box, 'it')}"
+        )
+    if unnamed.too_much(unnamed_share):
+        why = unnamed.reason(unnamed_share)
+        if left.whole - unnamed.structured > OFF:
+            why += (
+                "; this is less sure, as a third of the gap's rms or more may be the "
+                "base's own error, which can look like that"
+            )
+        return "unnamed", why
+    if unnamed.stays > LOOSE:
+        return "unnamed", (
+            f"too much stays for a name: {left.stays}, and most of it follows no known "
+            "signal"
+        )
+    return "named", left.stays
+
+
+def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
+    """Say what is left that no effect and no wrong hysteresis does, if any is."""
+    gap = max(left.all_before, 1.0)
+    far = lone * (1.0 + left.all_after)
+    if far > LONE * gap:
+        return (
+            f"{100 * lone:.0f} % of the power that is left on the fit records stands "
+            "in lone samples, far off from the others, which no effect of the "
+            "vocabulary does"
+        )
+    differs = unrepeated is not None and unrepeated > max(
+        UNREPEATED, SOME * left.all_after
+    )
+    if differs:
+        return (
+            f"on the fit records {unrepeated:.2g} times the noise power is left that "
+            "differs from one period of the same input to the next, which neither a "
+            "named effect nor a wrong hysteresis does"
+        )
+    return ""
+
+
+def confidence(
+    first: Candidate, ranking: Sequence[Candidate], left: Left, errors: float = 0.0
+) -> float:
+    """Give the probability that an effect is the one, among those that were tried.
+
+    Each finalist counts by how much worse it scores; what stays unexplained speaks
+    against any name. No name is surer than that its numbers are anything but nothing:
+    of a number that is normally distributed, with a standard error of so many times
+    itself, the probability that it is less than twice itself and not below zero.
+
+    Parameters
+    ----------
+    first : Candidate
+    ranking : sequence of Candidate
+    left : Left
+    errors : float
+        Standard error of the effect, in times of it: :func:`error_of`.
+    """
+    odds = sum(
+        float(np.exp(min((first.score - item.score) / SCALE, SURE)))
+        for item in ranking
+        if item.effect != first.effect and item.state is not None
+    )
+    trust = max(0.0, 1.0 - left.loose / DISTRUST)
+    return min((1.0 - DOUBT) * trust / (1.0 + odds), is_anything(errors))
+
+
+def is_anything(errors: float) -> float:
+    """Give the probability that a number is anything but nothing.
+
+    ``2 Phi(1 / e) - 1`` with the standard normal distribution ``Phi``: the level of
+    the widest interval about the number that does not hold zero.
+
+    Parameters
+    ----------
+    errors : float
+        The number's standard error ``e``, in times of the number.
+    """
+    return math.erf(1.0 / (errors * math.sqrt(2.0))) if errors > 0 else 1.0
+
+
+def error_of(
+    size_error: float | None, parameters: Mapping[str, Mapping[str, Any]]
+) -> float:
+    """Give the standard error of an effect, in times of it.
+
+    The larger of two: that of its size, which is what all its numbers together add to
+    the output, and that of the number of it that is known best. The first says nothing
+    of numbers that stand in for each other; the second nothing of a number that is not
+    zero where there is no effect, as a frequency or the gain of a sensor.
+
+    Parameters
+    ----------
+    size_error : float or None
+        None where it cannot be told.
+    parameters : mapping
+        As gap.json holds them.
+
+    Returns
+    -------
+    float
+        Zero where nothing can be told.
+    """
+    each = [
+        abs(error / value) if value else math.inf
+        for item in parameters.values()
+        for value, error in zip(
+            _listed(item["value"]), _listed(item["standard_error"]), strict=False
+        )
+        if error is not None and not isinstance(value, str)
+    ]
+    return max(size_error or 0.0, min(each, default=0.0))
+
+
+def _listed(value: Any) -> Sequence[Any]:
+    return value if isinstance(value, list | tuple) else (value,)
+
+
+def _box_words(explained: float | None, what: str) -> str:
+    if explained is None:
+        return f"how much of {what} a black box takes away on folds is not known"
+    if explained < 0:
+        return f"a black box makes {what} worse on folds of the fit records"
+    return (
+        f"a black box takes {100 * explained:.0f} % of the power of {what} away on "
+        "folds of the fit records"
+    )
+
+
+def _beyond(model: ModelState, score: Score) -> float:
+    residual, beside = model.residual, model.beside_columns
+    rest, _ = score.split(residual)
+    if beside.shape[1]:
+        columns = np.hstack([beside, score.directions])
+        rest = residual - columns @ np.linalg.lstsq(columns, residual, rcond=1e-10)[0]
+    squares = [float(np.mean(rest[part] ** 2)) for part in model.sample.slices]
+    return float(np.mean(squares)) / score.floor - 1.0

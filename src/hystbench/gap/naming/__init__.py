@@ -1,0 +1,1 @@
+"""Which effects are added to a model, and why."""

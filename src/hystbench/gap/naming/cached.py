@@ -1,0 +1,133 @@
+"""The four steps of naming that cost: computed, or looked up where they were before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from hystbench.blocks.simulated_column import NEEDS_RERUN
+from hystbench.gap.effects.base import Declined, Effect, Variant
+from hystbench.gap.fitting import refit, search
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.search import Attempt, Trial, at_a_glance, coarse
+from hystbench.gap.fitting.serialize import (
+    remembered_of,
+    state_again,
+    state_with_correction,
+)
+from hystbench.gap.fitting.state import ModelState
+
+Tried = tuple[Attempt, Trial]
+"""A variant beside a model, and how it does over its grid."""
+
+
+def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried], str]:
+    """Score every variant of an effect over its grid; or say why it declines."""
+    try:
+        variants = list(effect.variants(state.simulation))
+    except Declined as reason:
+        return [], str(reason)
+    runnable = [
+        (number, item)
+        for number, item in enumerate(variants)
+        if not _needs_rerun(state, item)
+    ]
+    if variants and not runnable:
+        return [], NEEDS_RERUN
+
+    def read(content: Any) -> tuple[list[Tried], str]:
+        kept, why = content
+        found = [
+            (
+                Attempt(state, variants[number], score, number),
+                Trial(variants[number], values, value),
+            )
+            for number, values, value in kept
+        ]
+        return found, why
+
+    return remembered_of(
+        state,
+        lambda: ["tried", effect.name, score.digest],
+        lambda: _tried(runnable, state, score),
+        lambda result: [
+            [[each.number, x.values, x.score] for each, x in result[0]],
+            result[1],
+        ],
+        read,
+    )
+
+
+def fine(attempt: Attempt, trial: Trial) -> Trial:
+    """Search a variant around the best point of its grid."""
+    variant = trial.variant
+    about = [variant.effect, attempt.number, trial.values]
+    return remembered_of(
+        attempt.state,
+        lambda: ["fine", *about, attempt.score.digest],
+        lambda: search.fine(attempt, trial),
+        lambda found: [found.values, found.score],
+        lambda kept: Trial(variant, *kept),
+    )
+
+
+def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
+    """Add an effect as a trial found it and refit everything together.
+
+    Raises
+    ------
+    InputError
+        If a block refuses the values.
+    """
+    variant = trial.variant
+    about = [variant.effect, variant.place, variant.form, variant.start]
+    return remembered_of(
+        state,
+        lambda: ["added", *about, trial.values, score.digest],
+        lambda: refit.added(state, trial, score),
+        _written,
+        lambda kept: _read(kept, state),
+    )
+
+
+def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
+    """Simulate a model exactly and refit it to the end."""
+    return remembered_of(
+        state,
+        lambda: ["finished", score.digest],
+        lambda: refit.finished(state, score),
+        _written,
+        lambda kept: _read(kept, state),
+    )
+
+
+def _written(result: tuple[ModelState, float]) -> list[Any]:
+    return [state_with_correction(result[0]), result[1]]
+
+
+def _read(kept: list[Any], like: ModelState) -> tuple[ModelState, float]:
+    return state_again(kept[0], like), kept[1]
+
+
+def _tried(
+    runnable: Sequence[tuple[int, Variant]], state: ModelState, score: Score
+) -> tuple[list[Tried], str]:
+    """Score variants over their grids; say why none can be, if so."""
+    few, few_score = at_a_glance(state, score)
+    found: list[Tried] = []
+    refused = ""
+    for number, item in runnable:
+        attempt = Attempt(state, item, score, number)
+        try:
+            trial = coarse(attempt, Attempt(few, item, few_score))
+        except Declined as reason:
+            refused = str(reason)
+            continue
+        found.append((attempt, trial))
+    return found, "" if found else refused
+
+
+def _needs_rerun(state: ModelState, variant: Variant) -> bool:
+    """Tell whether a variant changes what enters a block whose output is stored."""
+    behind = state.chain[variant.start :]
+    return variant.beside is None and not all(block.reruns for block in behind)

@@ -1,0 +1,236 @@
+"""Naming: the base alone, then every effect, added while something pays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
+from hystbench.gap.fitting.refit import finished, ready
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.step_error import above_floor
+from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
+from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.naming.removal import TakenOut, is_most_of_it, without_what_goes
+from hystbench.gap.naming.rounds import Candidate, Round, reasons
+from hystbench.gap.naming.second_looks import reconsidered
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.thresholds import (
+    BESIDE_SHAPE,
+    CERTAIN,
+    FURTHER,
+    MATTERS,
+    MOST,
+    PAYS,
+    SHAPE,
+)
+
+LITTLE = "what the effects leave of a slightly wrong shape is most of it"
+
+
+@dataclass(frozen=True)
+class Named:
+    """What naming found.
+
+    Parameters
+    ----------
+    state : ModelState
+        The model with all effects that were added.
+    rounds : tuple of Round
+    gone : tuple of TakenOut
+        Effects that were added and went out again.
+    """
+
+    state: ModelState
+    rounds: tuple[Round, ...] = ()
+    gone: tuple[TakenOut, ...] = ()
+
+    @property
+    def reasons(self) -> dict[str, tuple[Candidate, ...]]:
+        """The last ranking by which each effect was taken, or kept."""
+        return reasons(self.rounds)
+
+    def taken_back(self) -> Named:
+        """Give the same with no effect named: the base as it was before the first."""
+        gone = [TakenOut(item.effect, LITTLE) for item in self.state.added]
+        return replace(self, state=self.rounds[0].before, gone=(*self.gone, *gone))
+
+
+def name(state: ModelState, floor_rms: float, say: Say = silent) -> Named:
+    """Add effects to a model for as long as one pays."""
+    foretell(state, say)
+    found = _path(state, floor_rms, say)
+    try:
+        return settled(found, state, floor_rms, say)
+    except CallsUsedUp:
+        return Named(found.state, found.rounds)
+    finally:
+        current().release()
+
+
+def settled(found: Progress, start: ModelState, floor_rms: float, say: Say) -> Named:
+    """Give what a path found, or another where a wrong shape is to go first.
+
+    Where a wrong shape of the hysteresis takes more of the gap away than the effect
+    that scores best, that effect may still be one of several that do without it. So
+    they are tried first; if the shape is needed after all, it goes first.
+    """
+    cut_short = current().refused()
+    if (
+        not cut_short
+        and found.deferred
+        and any(item.effect == SHAPE for item in found.state.added)
+    ):
+        say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
+        found = _path(start, floor_rms, say, shape_first=True)
+    state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
+    rounds = found.rounds
+    if not cut_short and len(state.added) > 1 and _others_than_taken(state, rounds):
+        state, again = reconsidered(state, rounds, floor_rms, say, True)
+        last = replace(rounds[-1], looks=(*rounds[-1].looks, *again))
+        rounds = (*rounds[:-1], last)
+    if state.added:
+        # Its own numbers are found without what other forms of it could do.
+        state, _ = finished(state, make_score(state, floor_rms, forms=False))
+    return Named(state, rounds, gone)
+
+
+def _others_than_taken(state: ModelState, rounds: Sequence[Round]) -> bool:
+    """Tell whether effects gave way or went: no round has seen just these together."""
+    taken = {one.ranking[0].effect for one in rounds if one.taken}
+    return {item.effect for item in state.added} != taken
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far adding effects one by one has come.
+
+    Parameters
+    ----------
+    state : ModelState
+    gap : float
+        Mean square of the base's gap above the floor.
+    rounds : tuple of Round
+    deferred : bool
+        Whether a shape that takes more of the gap was put off.
+    closed : bool
+        Whether nothing is left that an effect could gain.
+    """
+
+    state: ModelState
+    gap: float
+    rounds: tuple[Round, ...] = ()
+    deferred: bool = False
+    closed: bool = False
+
+    @classmethod
+    def begun(cls, state: ModelState, floor_rms: float) -> Progress:
+        """Start from the base, re-tuned where it has free numbers."""
+        floor = floor_rms**2
+        if state.free:
+            state, _ = finished(state, make_score(state, floor_rms))
+        return cls(state, max(state.power(floor), floor * 1e-6))
+
+    @property
+    def done(self) -> bool:
+        """Whether nothing more is to be added."""
+        stopped = bool(self.rounds) and not self.rounds[-1].taken
+        return stopped or self.closed or len(self.state.added) >= MOST
+
+
+def _path(
+    state: ModelState, floor_rms: float, say: Say, shape_first: bool = False
+) -> Progress:
+    """Add effects one by one."""
+    progress = Progress.begun(state, floor_rms)
+    calls = current()
+    while not (progress.done or calls.refused()):
+        try:
+            further = advance(progress, floor_rms, say, shape_first)
+        except CallsUsedUp:
+            break
+        # A round that was cut short counts only where nothing in it needed a call.
+        if not calls.refused() or not progress.state.added:
+            progress = further
+        foretell_rest(progress.state, len(progress.rounds))
+    if calls.refused():
+        say(f"{USED_UP}: the search ends here")
+    return progress
+
+
+def advance(
+    progress: Progress,
+    floor_rms: float,
+    say: Say,
+    shape_first: bool = False,
+) -> Progress:
+    """Try every effect beside the model and add the one that pays, if any does."""
+    floor, state = floor_rms**2, progress.state
+    score = make_score(state, floor_rms)
+    closed = _is_closed(state, score)
+    if not closed:
+        state = ready(state, score)
+        closed = _is_closed(state, score)
+    if closed:
+        say("nothing is left that an effect could gain")
+        return replace(progress, closed=True)
+    ranking = rank(state, score)
+    deferred = progress.deferred
+    if _shape_takes_more(ranking, state, floor):
+        deferred = True
+        if shape_first:
+            ranking = tuple(sorted(ranking, key=lambda x: x.effect != SHAPE))
+    first = ranking[0]
+    for item in ranking[:4]:
+        say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
+    taken = _pays(first, state, floor, progress.gap)
+    one = Round(state, first.score + first.gain, ranking, taken)
+    state = progress.state
+    if taken:
+        assert first.state is not None  # noqa: S101  (for the type checker)
+        state = first.state
+        if len(state.added) > 1:
+            rounds = (*progress.rounds, one)
+            state, looks = reconsidered(state, rounds, floor_rms, say)
+            one = replace(one, looks=looks)
+    return Progress(state, progress.gap, (*progress.rounds, one), deferred)
+
+
+def _is_closed(state: ModelState, score: Score) -> bool:
+    """Tell whether the effects that a model has leave nothing to gain."""
+    return bool(state.added) and above_floor(state, score) < FURTHER
+
+
+def _shape_takes_more(
+    ranking: tuple[Candidate, ...], before: ModelState, floor: float
+) -> bool:
+    """Tell whether a wrong shape pays and takes twice as much as the best effect."""
+    shape = next((x for x in ranking if x.effect == SHAPE and x.state), None)
+    first = ranking[0]
+    if shape is None or shape.state is None or first.state is None:
+        return False
+    if shape is first or shape.gain < PAYS:
+        return False
+    gap = before.power(floor)
+    most = shape.state.share(before, floor, gap)
+    return first.state.share(before, floor, gap) < most / 2
+
+
+def _pays(item: Candidate, state: ModelState, floor: float, gap: float) -> bool:
+    """Tell whether an effect is to be added.
+
+    The first has only to pay. A further one must matter as well, or be beyond doubt:
+    what is left after the right effect is also what its form, or the simulation,
+    misses.
+    """
+    if item.state is None or item.gain < PAYS:
+        return False
+    if not state.added:
+        return True
+    beside_shape = any(other.effect == SHAPE for other in state.added)
+    matters = BESIDE_SHAPE if beside_shape else MATTERS
+    share = item.state.share(state, floor, gap)
+    if is_most_of_it(item.effect, item.gain, share):
+        return True
+    return item.gain > CERTAIN or (item.gain > FURTHER and share > matters)

@@ -1,0 +1,244 @@
+"""Every effect beside a model, tried and ranked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
+from hystbench.blocks.simulator import Simulator
+from hystbench.errors import InputError
+from hystbench.gap.effects import among, effects
+from hystbench.gap.effects.base import Effect
+from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.edit_chain import at_end
+from hystbench.gap.fitting.refit import score_of
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.search import Trial
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming import cached
+from hystbench.gap.naming.rounds import Candidate, TriedVariant, in_order
+from hystbench.gap.simulation.reshape import orthonormal
+from hystbench.gap.thresholds import (
+    CERTAIN,
+    EXACT,
+    FINALISTS,
+    MATTERS,
+    NEAR,
+    PAYS,
+    SHAPE,
+    STILL,
+    WORSE,
+)
+
+
+def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
+    """Give the score for a model: what could be wrong in its shape is spanned anew.
+
+    Parameters
+    ----------
+    state : ModelState
+    floor_rms : float
+    forms : bool
+        Whether the added effects may be of another form too; not when their own
+        numbers are to be found.
+    """
+    wrong = [state.reshapings] + ([state.other_forms] if forms else [])
+    return Score(state.sample, orthonormal(np.hstack(wrong)), floor_rms**2)
+
+
+def rank(
+    state: ModelState,
+    score: Score,
+    known: Sequence[Effect] | None = None,
+    folds: bool = True,
+) -> tuple[Candidate, ...]:
+    """Try every effect beside a model, the likely ones to the end.
+
+    Parameters
+    ----------
+    state : ModelState
+    score : Score
+    known : sequence of Effect, optional
+        All that are offered by default.
+    folds : bool
+        Whether finalists that pay are judged anew on records held back.
+
+    Returns
+    -------
+    tuple of Candidate
+        Finalists first, then the others, then those that declined.
+    """
+    known = tuple(among(state.offered).values()) if known is None else tuple(known)
+    have = {item.effect for item in state.added}
+    now = score_of(state, score)
+    declined = [
+        Candidate(effect.name, effect.place, declined="added already")
+        for effect in known
+        if effect.name in have
+    ]
+    others = [effect for effect in known if effect.name not in have]
+    found: list[cached.Tried] = []
+    for effect in others:
+        trials, why = cached.tried(effect, state, score)
+        found += trials
+        if why:
+            declined.append(Candidate(effect.name, effect.place, declined=why))
+    if not found:
+        return tuple(declined)
+    best = min(trial.score for _, trial in found)
+    reach = max(NEAR, (now - best) * STILL)
+    refined = [
+        cached.fine(attempt, trial) if trial.score < best + reach else trial
+        for attempt, trial in found
+    ]
+    refined.sort(key=lambda trial: trial.score)
+    of_effect: dict[str, Trial] = {}
+    tested: dict[str, list[TriedVariant]] = {}
+    for trial in refined:
+        of_effect.setdefault(trial.variant.effect, trial)
+        tested.setdefault(trial.variant.effect, []).append(_tested(trial))
+    likely = [
+        trial
+        for number, trial in enumerate(of_effect.values())
+        if number < FINALISTS
+        or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
+    ]
+    judged = [_judged(trial, state, score, now) for trial in likely]
+    judged += [
+        _candidate(trial, now)
+        for trial in of_effect.values()
+        if not any(trial is item for item in likely)
+    ]
+    judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
+    judged = [_not_cut_short(item, state) for item in judged]
+    declined += [item for item in judged if item.declined]
+    candidates = in_order(item for item in judged if not item.declined)
+    exact = [
+        item.effect
+        for item in candidates[:EXACT]
+        if item.score < candidates[0].score + NEAR
+    ]
+    candidates = in_order(
+        exactly(item, score, now) if item.effect in exact else item
+        for item in candidates
+    )
+    if not folds:
+        return (*beyond_an_offset(candidates, state, score), *declined)
+    candidates = [on_folds(item, state, score) for item in candidates]
+    judged = [_not_cut_short(item, state) for item in candidates]
+    declined += [item for item in judged if item.declined]
+    candidates = in_order(item for item in judged if not item.declined)
+    # Folds may put one first that was not simulated exactly.
+    while candidates and candidates[0].effect not in exact and candidates[0].held_back:
+        first = candidates.pop(0)
+        exact.append(first.effect)
+        again = on_folds(exactly(first, score, now), state, score)
+        candidates = in_order([again, *candidates])
+    return (*beyond_an_offset(candidates, state, score), *declined)
+
+
+def beyond_an_offset(
+    candidates: Sequence[Candidate], before: ModelState, score: Score
+) -> list[Candidate]:
+    """Charge what a law has beside an offset of the output as a further effect.
+
+    A bias of the field has one, as the sensor may be set to zero with it on. Where an
+    effect of fewer numbers leaves hardly more of the gap, the bias has to be beyond
+    doubt: it may stand for what the simulation misses.
+    """
+    floor = score.floor
+    gap = before.power(floor)
+
+    def charged(item: Candidate) -> Candidate:
+        if item.state is None or item.form not in effects()[item.effect].offsets:
+            return item
+        for other in candidates:
+            if other.state is None or other.gain < PAYS or other.score <= item.score:
+                continue
+            more = item.state.freedom > other.state.freedom
+            if more and item.state.share(other.state, floor, gap) < MATTERS:
+                dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
+                return replace(item, score=dearer, gain=gain)
+        return item
+
+    return in_order(charged(item) for item in candidates)
+
+
+def _tested(trial: Trial) -> TriedVariant:
+    variant = trial.variant
+    position = variant.start + variant.positions[0] if variant.positions else None
+    return TriedVariant(variant.place, variant.form, position, trial.score)
+
+
+def _candidate(trial: Trial, now: float) -> Candidate:
+    variant = trial.variant
+    gain = now - trial.score
+    return Candidate(variant.effect, variant.place, variant.form, trial.score, gain)
+
+
+def _judged(trial: Trial, state: ModelState, score: Score, now: float) -> Candidate:
+    """Add an effect that gains anything, refit all together, and say what is wrong."""
+    variant = trial.variant
+    item = _candidate(trial, now)
+    if item.gain <= 0:
+        return item
+
+    def declined(why: str) -> Candidate:
+        return Candidate(variant.effect, variant.place, declined=why)
+
+    try:
+        after, value = cached.added(state, trial, score)
+    except InputError as error:
+        return declined(f"fits best where {error}")
+    end = at_end(after, variant)
+    if end:
+        return declined(f"fits best at the end of what it can be: {end}")
+    power = state.power(score.floor)
+    if after.share(state, score.floor, power) < -WORSE:
+        return declined("makes the gap wider")
+    return replace(item, score=value, gain=now - value, state=after)
+
+
+def _not_cut_short(item: Candidate, state: ModelState) -> Candidate:
+    """Decline what needs calls of a simulator, once a call was not allowed.
+
+    Its refit or its folds may have ended before they were done. What lies behind the
+    simulator needs no call.
+    """
+    if not current().refused() or not item.variants or item.declined:
+        return item
+    places = [k for k, x in enumerate(state.chain) if isinstance(x, Simulator)]
+    position = item.variants[0].position
+    if not places or position is None or position > places[-1]:
+        return item
+    return Candidate(item.effect, item.place, declined=USED_UP)
+
+
+def exactly(item: Candidate, score: Score, now: float) -> Candidate:
+    """Simulate a candidate exactly: what steps of time miss may look like an effect."""
+    if item.state is None:
+        return item
+    try:
+        after, value = cached.finished(item.state, score)
+    except CallsUsedUp as error:
+        return Candidate(item.effect, item.place, declined=str(error))
+    return replace(item, state=after, score=value, gain=now - value)
+
+
+def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:
+    """Judge a finalist that pays on records that did not fit it.
+
+    What it gained on all records, charged for its freedom, it can only lose: a fold
+    that fits better than all of them together shows no merit.
+    """
+    if item.state is None or item.gain < PAYS:
+        return item
+    try:
+        held = gain_held_back(before, item.state, score)
+    except CallsUsedUp as error:
+        return Candidate(item.effect, item.place, declined=str(error))
+    lost = max(item.gain - held, 0.0)
+    return replace(item, score=item.score + lost, gain=item.gain - lost, held_back=held)

@@ -1,0 +1,135 @@
+"""What a round of the search says: every effect as it did, and what was taken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.thresholds import SHAPE, TIE
+
+
+class TriedVariant(NamedTuple):
+    """A variant of an effect: where and how it was tried, and its score."""
+
+    place: str
+    form: str
+    position: int | None
+    """Of its first block in the chain; None for a signal beside it."""
+    score: float
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect as it did in one round.
+
+    Parameters
+    ----------
+    effect, place, form : str
+    score : float
+        Of the model with it; raised by what records held back take off its gain.
+    gain : float
+        By how much it lowers the score: of a finalist that pays the less of what all
+        records tell and what records held back do.
+    state : ModelState, optional
+        With the effect, jointly refitted; finalists have it.
+    declined : str
+        Why it could not be judged, if so.
+    held_back : float, optional
+        What a finalist that pays gains on records held back.
+    variants : tuple of TriedVariant
+        Every place and form of it that could be scored, best first.
+    """
+
+    effect: str
+    place: str
+    form: str = ""
+    score: float = np.inf
+    gain: float = 0.0
+    state: ModelState | None = None
+    declined: str = ""
+    held_back: float | None = None
+    variants: tuple[TriedVariant, ...] = ()
+
+
+@dataclass(frozen=True)
+class SecondLook:
+    """A second look: an effect and its rivals in its place, now that others are there.
+
+    Parameters
+    ----------
+    instead_of : str
+        The effect in whose place they were tried.
+    beside : tuple of str
+        The other effects, which stayed.
+    ranking : tuple of Candidate
+        Best first.
+    taken : str, optional
+        The effect that has the place by this ranking. None where the one that was
+        there could not be judged again: it stays by the ranking that took it before.
+    """
+
+    instead_of: str
+    beside: tuple[str, ...]
+    ranking: tuple[Candidate, ...]
+    taken: str | None
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round: the model before, every effect beside it, what was added.
+
+    Parameters
+    ----------
+    before : ModelState
+    score : float
+        Of the model before.
+    ranking : tuple of Candidate
+        Best first.
+    taken : bool
+        Whether the first of the ranking was added.
+    looks : tuple of SecondLook
+        At the effects that were there when it was, in their order.
+    """
+
+    before: ModelState
+    score: float
+    ranking: tuple[Candidate, ...]
+    taken: bool
+    looks: tuple[SecondLook, ...] = ()
+
+
+def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:
+    """Give the last ranking by which each effect was taken, or kept.
+
+    What scores better than a wrong shape that goes first is no rival of it: the shape
+    is needed beside it.
+    """
+    found: dict[str, tuple[Candidate, ...]] = {}
+    for one in rounds:
+        first = one.ranking[0]
+        if one.taken and first.effect == SHAPE:
+            found[SHAPE] = tuple(x for x in one.ranking if x.score >= first.score)
+        elif one.taken:
+            found[first.effect] = one.ranking
+        found |= {x.taken: x.ranking for x in one.looks if x.taken is not None}
+    return found
+
+
+def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
+    """Give the effects that score within the tie of one that was added."""
+    return tuple(
+        item.effect
+        for item in ranking
+        if item.effect != first.effect
+        and item.state is not None
+        and item.score < first.score + TIE
+    )
+
+
+def in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Put finalists first, and what scores least first among them."""
+    return sorted(candidates, key=lambda item: (item.state is None, item.score))

@@ -1,0 +1,107 @@
+"""Looking again at the effects that were added, now that others are there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hystbench.gap.effects import among
+from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.edit_chain import last_to, removable, without_effect
+from hystbench.gap.fitting.refit import finished
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
+from hystbench.gap.progress import Say
+from hystbench.gap.thresholds import CLOSE, PAYS, SHAPE, SWAP
+
+
+def reconsidered(
+    state: ModelState,
+    rounds: Sequence[Round],
+    floor_rms: float,
+    say: Say,
+    every: bool = False,
+) -> tuple[ModelState, tuple[SecondLook, ...]]:
+    """Try the rivals of each effect in its place, now that others are there.
+
+    The first effect was named while the others were missing: one like it may have
+    looked better for that, or another form of it. A rival has to do better than both.
+
+    Parameters
+    ----------
+    state : ModelState
+    rounds : sequence of Round
+        Tell which effects came near one.
+    floor_rms : float
+    say : callable
+    every : bool
+        Whether all effects are rivals, not only those that came near.
+
+    Returns
+    -------
+    state : ModelState
+    looks : tuple of SecondLook
+        At each effect in turn; the last one is that at which one gave way, if any did.
+    """
+    looks: list[SecondLook] = []
+    better: tuple[int, ModelState, tuple[Candidate, ...]] | None = None
+    for number, item in enumerate(state.added):
+        if item.effect == SHAPE or not removable(state, number):
+            continue
+        short = without_effect(state, number)
+        # Other forms of the effect itself would do for a rival what the rival does not.
+        score = make_score(short, floor_rms)
+        as_is, now = finished(state, score)
+        have = tuple(other.effect for other in short.added)
+        names = set(among(state.offered)) if every else _rivals(item.effect, rounds)
+        known = list(among(names - set(have)).values())
+        ranking = rank(short, score, known, folds=False)
+        best = ranking[0]
+        own = next((x for x in ranking if x.effect == item.effect and x.state), None)
+        least = now if own is None else min(now, own.score)
+        if best.state and best.effect != item.effect and best.score < least - SWAP:
+            held_back = gain_held_back(short, best.state, score)
+            ranking = (replace(best, held_back=held_back), *ranking[1:])
+            if held_back > PAYS:
+                say(f"{item.effect} gives way to {best.effect}")
+                looks.append(SecondLook(item.effect, have, ranking, best.effect))
+                return last_to(best.state, number), tuple(looks)
+        if own is None:
+            looks.append(SecondLook(item.effect, have, ranking, None))
+            continue
+        if better is None and own.state and own.score < now - SWAP:
+            anew, least = finished(own.state, score)
+            if least < now - SWAP:
+                anew = last_to(anew, number)
+                better = len(looks), anew, _with(ranking, own, own.form, least, anew)
+        shown = _with(ranking, own, item.form, now, as_is)
+        looks.append(SecondLook(item.effect, have, shown, item.effect))
+    if better is not None:
+        place, state, ranking = better
+        looks[place] = replace(looks[place], ranking=ranking)
+        say(f"{looks[place].instead_of} is fitted anew")
+    return state, tuple(looks)
+
+
+def _with(
+    ranking: Sequence[Candidate],
+    own: Candidate,
+    form: str,
+    score: float,
+    state: ModelState,
+) -> tuple[Candidate, ...]:
+    """Give a ranking in which an effect stands as a model has it."""
+    gain = own.gain + own.score - score
+    shown = replace(own, form=form, score=score, gain=gain, state=state)
+    return tuple(in_order(shown if x is own else x for x in ranking))
+
+
+def _rivals(effect: str, rounds: Sequence[Round]) -> set[str]:
+    found = {effect}
+    for one in rounds:
+        best = one.ranking[0].gain
+        near = {x.effect for x in one.ranking if x.gain > CLOSE * best}
+        if effect in near:
+            found |= near
+    return found

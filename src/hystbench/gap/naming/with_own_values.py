@@ -1,0 +1,164 @@
+"""Naming beside what records have of their own: a late trigger, another range."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hystbench.gap.cache import records_digest
+from hystbench.gap.fitting.edit_chain import removable, without_effect
+from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
+from hystbench.gap.fitting.refit import ENOUGH, score_of
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.serialize import remembered_of
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.naming import cached
+from hystbench.gap.naming.name import Named, name
+from hystbench.gap.naming.rank import make_score
+from hystbench.gap.progress import Say
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import ABOVE_NOISE, PAYS
+from hystbench.record import FloatArray, Record
+
+
+def named_apart(
+    start: ModelState, floor_rms: float, named: Named, say: Say
+) -> tuple[ModelState, Named, OwnValues]:
+    """Name anew beside what records have of their own, where that explains them better.
+
+    Effects go first: they are laws, with few numbers, that hold for every record. What
+    records have of their own is looked for beside the effects that were named, beside
+    those of them that do not do the same to all records, and beside the base alone. It
+    is taken off the records and naming begins again; what is named then tells better
+    what the records have of their own, and so on while the score falls and the names
+    change. The whole has to lower the score of the first names by as much as a first
+    effect has to lower it, all numbers charged; of names that are themselves new in
+    every record, such as a drift, it only has to be the better one. And noise alone has
+    to be left: numbers of one record stand in for any law that its rate or its
+    amplitude brings out.
+
+    Parameters
+    ----------
+    start : ModelState
+        The base on the fit records.
+    floor_rms : float
+    named : Named
+        What was named on the records as they are.
+    say : callable
+        Told a line of progress at a time.
+
+    Returns
+    -------
+    start : ModelState
+        The base, on records without what is their own.
+    named : Named
+    own : OwnValues
+    """
+    score = make_score(start, floor_rms, forms=False)
+    found = (start, named, NONE)
+    least = score_of(named.state, score)
+    least -= 0.0 if any(not values for _, values in named.state.beside) else PAYS
+    models = dict.fromkeys((named.state, without_shared(named.state), start))
+    likely = _likely(start, tuple(models), score)
+    for _ in range(ROUNDS):
+        value, own = next((item for item in likely if item[0] < least), (least, NONE))
+        if not own.records:
+            break
+        say(f"records have {own.words} of their own: naming beside that")
+        apart = on_records(start, own.taken_off(start.records, start.hold))
+        again = name(apart, floor_rms, say)
+        value = score_of(again.state, score) + own.charge
+        if value >= least:
+            say("that scores no better: they have none of their own")
+            break
+        square = floor_rms**2
+        share = apart.share(start, square, start.power(square))
+        same = _names(again) == _names(found[1])
+        found, least = (apart, again, replace(own, share=share)), value
+        if same:
+            break  # naming has told all that it can
+        likely = _likely(start, (on_records(again.state, start.records),), score)
+    # Beside more than noise they cannot be told from what the simulator does wrong.
+    if found[1].state.power(score.floor) > ABOVE_NOISE * score.floor:
+        if found[2].records:
+            say("more than noise is left beside that: it is not told")
+        return start, named, NONE
+    return found
+
+
+def _names(named: Named) -> set[tuple[str, str]]:
+    return {(item.effect, item.form) for item in named.state.added}
+
+
+SHARED = {"input-delay", "calibration-error"}
+"""Effects that do to all records what each may have of its own."""
+
+
+def without_shared(state: ModelState) -> ModelState:
+    """Give a model without a delay, a gain or an offset that all records share.
+
+    Beside one that was named it would not be seen that each record has its own.
+    """
+    for number in reversed(range(len(state.added))):
+        if state.added[number].effect in SHARED and removable(state, number):
+            state = without_effect(state, number)
+    return state
+
+
+ROUNDS = 3
+"""Of naming, after each of which what records have of their own is known better."""
+
+
+def _likely(
+    start: ModelState, models: Sequence[ModelState], score: Score
+) -> list[tuple[float, OwnValues]]:
+    """Find what records have of their own beside models, and the scores with it.
+
+    A model is refitted without it, and what is their own found again, while that helps.
+    """
+    found = []
+    for state in models:
+        best: tuple[float, OwnValues] = (np.inf, NONE)
+        for _ in range(ROUNDS):
+            own = _own_values(state, start, score.floor)
+            if not own.records:
+                break
+            bare = own.taken_off(start.records, start.hold)
+            apart, value = cached.finished(on_records(state, bare), score)
+            if value + own.charge >= best[0] - ENOUGH:
+                break
+            best = value + own.charge, own
+            state = on_records(apart, start.records)
+        if best[1].records:
+            found.append(best)
+    return sorted(found, key=lambda item: item[0])
+
+
+def _own_values(state: ModelState, start: ModelState, floor: float) -> OwnValues:
+    """Find what records have of their own beside a model, or look it up."""
+    kinds = kinds_of(start)
+    return remembered_of(
+        state,
+        lambda: ["own values", records_digest(start.records), floor, kinds],
+        lambda: own_values(start.records, simulated(state), floor, kinds),
+        OwnValues.plain,
+        OwnValues.of_plain,
+    )
+
+
+def kinds_of(state: ModelState) -> tuple[str, ...]:
+    """Give what may be a record's own: no delay where the base cannot be run again."""
+    reruns = all(block.reruns for block in state.chain)
+    return KINDS if reruns else tuple(kind for kind in KINDS if kind != "delay")
+
+
+def on_records(state: ModelState, records: tuple[Record, ...]) -> ModelState:
+    """Give a model on other records of the same lengths."""
+    return replace(state, records=records, correction=None).settled()
+
+
+def simulated(state: ModelState) -> Sequence[FloatArray]:
+    """Give the output of a model's chain on the fit records."""
+    return Simulation(state.chain, state.records, state.hold, fine=True).output

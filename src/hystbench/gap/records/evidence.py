@@ -1,0 +1,170 @@
+"""What the gap workflow reads: fit records, hold-out records, how the input moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from hystbench.blocks.held import Hold
+from hystbench.dataset import load_dataset
+from hystbench.device_kinds import DeviceKind
+from hystbench.doubts import doubts
+from hystbench.errors import InputError
+from hystbench.gap.records import folds, nuisance
+from hystbench.gap.records.usable import check_usable
+from hystbench.gap.records.windows import decay_of_free_mass, windows
+from hystbench.model import Model
+from hystbench.quantities import NONE_KNOWN, Quantities
+from hystbench.record import Channel, Record, Use
+from hystbench.units import check_same_unit
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Records of one device.
+
+    Parameters
+    ----------
+    name : str
+    fit : tuple of Record
+        What models are fitted to; folds of these decide what pays.
+    hold_out : tuple of Record
+        Read once, after everything is decided.
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
+    noise_rms : float, optional
+        As declared, in the output's unit.
+    identification : str, optional
+        Name of the fit record that a hysteretic base is identified from; by default
+        the slowest.
+    simulated_column : str, optional
+        Column of the output that a simulator gave elsewhere, if the records have one.
+    warnings : tuple of str
+        What of the records is hardly meant, one line each.
+    quantities : Quantities
+        What the device takes and gives.
+    device_kind : str, optional
+        Kind of the device, where dataset.yaml tells it.
+    """
+
+    name: str
+    fit: tuple[Record, ...]
+    hold_out: tuple[Record, ...]
+    hold: Hold = "band-limited"
+    noise_rms: float | None = None
+    identification: str | None = None
+    simulated_column: str | None = None
+    warnings: tuple[str, ...] = ()
+    quantities: Quantities = NONE_KNOWN
+    device_kind: DeviceKind | None = None
+
+    @property
+    def input(self) -> Channel:
+        """Name and unit of the input."""
+        return (*self.fit, *self.hold_out)[0].input
+
+    @property
+    def output(self) -> Channel:
+        """Name and unit of the output."""
+        return (*self.fit, *self.hold_out)[0].output
+
+    @property
+    def slowest(self) -> Record:
+        """The record for identification: the one named, or the slowest to fit."""
+        if self.identification is None:
+            return min(self.fit, key=lambda record: record.rate)
+        return next(item for item in self.fit if item.name == self.identification)
+
+
+def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
+    """Read a dataset for the gap workflow.
+
+    Parameters
+    ----------
+    path : str or Path
+    use : {"fit", "hold-out"}, optional
+        Read only these records; the files of the others are not opened.
+
+    Raises
+    ------
+    InputError
+        If a record cannot be used, there is none to fit or none held out, or one held
+        out is a copy of one to fit.
+    """
+    dataset = load_dataset(path)
+    if not any(dataset.use(name) == "hold-out" for name in dataset.record_files):
+        raise InputError(
+            f"{dataset.path}: records: none has 'use: hold-out'; expected at least "
+            "one, to show by how much the gap shrinks"
+        )
+    records = [
+        dataset.read(name)
+        for name in dataset.record_files
+        if use in (None, dataset.use(name))
+    ]
+    for record in records:
+        file = dataset.record_files[record.name]
+        _check_length(file, record)
+        check_usable(file, record, dataset.stands_still(record.name))
+    about = dataset.about
+    hold: Hold = about["input"].get("hold", "band-limited")
+    named = about.get("identification")
+    if named is not None and dataset.use(named) != "fit":
+        raise InputError(
+            f"{dataset.path}: identification: {named!r} is held out; expected a record "
+            "with 'use: fit'"
+        )
+    notes = doubts(dataset, records)
+    decay = decay_of_free_mass(records, dataset.quantities)
+    if decay is not None:
+        notes, named = (*notes, CUT), None
+        records = [window for record in records for window in windows(record, decay)]
+    fit = tuple(record for record in records if record.use == "fit")
+    hold_out = tuple(record for record in records if record.use == "hold-out")
+    return Evidence(
+        dataset.name,
+        fit,
+        hold_out,
+        hold,
+        about.get("noise_rms"),
+        named,
+        dataset.simulated_column,
+        notes,
+        dataset.quantities,
+        dataset.device_kind,
+    )
+
+
+CUT = (
+    "a force moves a mass that no spring holds: every record is cut where the motion "
+    "turns; each window starts at zero, and what its velocity there does is left out"
+)
+
+
+def _check_length(file: Path, record: Record) -> None:
+    """Refuse a record that is too short for its role, whatever will be named."""
+    least, why = {
+        "fit": (folds.LEAST, "blocks of it judge what was fitted to the others"),
+        "hold-out": (nuisance.LEAST, "its first 30 % give what is new in it"),
+    }[record.use]
+    if len(record) < least:
+        raise InputError(
+            f"{file}: {len(record)} samples; expected at least {least}, as {why}"
+        )
+
+
+def check_units(evidence: Evidence, model: Model, place: str) -> None:
+    """Refuse a model whose units are not those of the records, in some spelling.
+
+    Raises
+    ------
+    InputError
+        Which unit, and what was expected.
+    """
+    for key, model_has, data_have in (
+        ("input", model.input, evidence.input),
+        ("output", model.output, evidence.output),
+    ):
+        whose = f"the {data_have.name} of {evidence.name}"
+        where = f"{place}: {key}: unit"
+        check_same_unit(where, model_has.unit, whose, data_have.unit)

@@ -1,0 +1,171 @@
+"""The noise floor: how small a residual can get, whatever the model.
+
+White noise is sought in a spectrum by the median of its bins. Drift sits in the lowest
+bins, mains in a few lone ones and a gap in the excited ones; the median passes them by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy import fft
+
+from hystbench.errors import InputError
+from hystbench.gap.records.residual import Compared
+from hystbench.record import FloatArray, Record
+
+Method = Literal["repeats", "declared", "upper-bound"]
+
+# The median of a chi-square variable of two degrees of freedom over its mean.
+MEDIAN_OF_CHI_SQUARE = float(np.log(2))
+# Below this share of the output's RMS nothing is called noise.
+TINY = 1e-9
+# Fewer bins than this give no median worth the name.
+LEAST_BINS = 8
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The noise that no model explains.
+
+    Parameters
+    ----------
+    rms : float
+        RMS of the white noise on the output, in the output's unit; above zero.
+    method : {"repeats", "declared", "upper-bound"}
+        Differences of periods; stated by the dataset; or the high, unexcited part of
+        the residual's spectrum. The last is a bound: what a gap leaves up there is
+        taken for noise.
+    per_record : dict of str to float
+        The same by record. A record without repeats beside others that have some is
+        judged by its residual.
+    """
+
+    rms: float
+    method: Method
+    per_record: dict[str, float]
+
+
+def noise_floor(compared: Sequence[Compared], declared: float | None = None) -> Floor:
+    """Measure the white noise of the output.
+
+    A declared floor is taken as it is. Otherwise the first half of a record's periods
+    is subtracted from the second half: no model enters, and what the input causes
+    cancels, gap included. Where no record holds two whole periods, the residual is
+    read above the band that the input excites.
+
+    Parameters
+    ----------
+    compared : sequence of Compared
+        Sampling rates and lengths may differ.
+    declared : float, optional
+        ``noise_rms`` of the dataset, in the output's unit.
+
+    Returns
+    -------
+    Floor
+
+    Raises
+    ------
+    InputError
+        If there is no record, or the declared noise is not above zero.
+
+    Notes
+    -----
+    The estimate from the residual is called an upper bound always: nothing in one
+    record tells noise from a gap that is broad and high. Of quantised output the floor
+    is at least that of the quantisation, step / sqrt(12).
+    """
+    if not compared:
+        raise InputError("noise floor: expected at least one record, got none")
+    if declared is not None:
+        if not (np.isfinite(declared) and declared > 0):
+            raise InputError(f"noise_rms: expected a number above 0, got {declared}")
+        names = [item.record.name for item in compared]
+        return Floor(float(declared), "declared", dict.fromkeys(names, float(declared)))
+    measured = {
+        item.record.name: _from_repeats(item.record) or _from_residual(item)
+        for item in compared
+    }
+    repeated = [item for item in compared if _whole_periods(item.record) >= 2]
+    used = repeated or list(compared)
+    # The noise is one: the median over the records shrugs off a spoilt one.
+    rms = float(np.median([measured[item.record.name] for item in used]))
+    return Floor(rms, "repeats" if repeated else "upper-bound", measured)
+
+
+def _whole_periods(record: Record) -> int:
+    """Count the whole periods that can be compared."""
+    period = record.period_samples
+    if not period or len(record) // period * period < 4 * LEAST_BINS:
+        return 0
+    return len(record) // period
+
+
+def _from_repeats(record: Record) -> float | None:
+    """Read the noise off the difference of two runs of whole periods."""
+    periods = _whole_periods(record)
+    if periods < 2 or record.period_samples is None:
+        return None
+    # Two long runs, not many short ones: mains and the input's own lines stay narrow.
+    n = periods // 2 * record.period_samples
+    difference = (record.y[-n:] - record.y[-2 * n : -n]) / np.sqrt(2)
+    power, _ = periodogram(difference, record.dt)
+    return _at_least(record.y, np.sqrt(_median_level(power[2:])))
+
+
+def _from_residual(item: Compared) -> float:
+    """Read the noise off the residual above what the input excites."""
+    record = item.record
+    power, frequency = periodogram(item.residual, record.dt)
+    edge = 0.0
+    for cause in (record.u, item.simulated):
+        caused, _ = periodogram(cause - np.mean(cause), record.dt)
+        total = np.cumsum(caused)
+        edge = max(edge, float(frequency[np.searchsorted(total, 0.999 * total[-1])]))
+    # Harmonics reach above the input's own band, but a quarter of the spectrum is kept.
+    start = min(5 * edge, 0.75 * frequency[-1])
+    high = power[(frequency >= start) & (frequency <= 0.98 * frequency[-1])]
+    return _at_least(record.y, np.sqrt(_median_level(high)))
+
+
+def periodogram(values: FloatArray, dt: float) -> tuple[FloatArray, FloatArray]:
+    """Give the Hann-windowed power of each bin, white noise of variance s^2 being s^2.
+
+    Returns
+    -------
+    power, frequency : ndarray, shape (n // 2 + 1,)
+        In the square of the values' unit, and in Hz.
+    """
+    n = len(values)
+    window = np.hanning(n)
+    spectrum = fft.rfft((values - np.mean(values)) * window)
+    power = np.abs(spectrum) ** 2 / max(float(np.sum(window**2)), 1e-300)
+    return power, fft.rfftfreq(n, dt)
+
+
+def _median_level(power: FloatArray) -> float:
+    """Give the level of white noise whose periodogram has this median."""
+    return float(np.median(power) / MEDIAN_OF_CHI_SQUARE) if len(power) else 0.0
+
+
+def _at_least(y: FloatArray, rms: float) -> float:
+    """Keep the floor above that of quantisation, and above zero."""
+    scale = float(np.max(np.abs(y)))
+    return float(max(rms, _step(y) / np.sqrt(12), TINY * scale, TINY**2))
+
+
+def _step(y: FloatArray) -> float:
+    """Give the step of quantised values: all differences are whole multiples of it."""
+    values = np.unique(y)
+    steps = np.diff(values)
+    steps = steps[steps > TINY * float(values[-1] - values[0])]
+    if not len(steps):
+        return 0.0
+    least = float(np.min(steps))
+    multiples = steps / least
+    whole = np.abs(multiples - np.round(multiples)) < 0.05
+    return least if bool(np.all(whole)) else 0.0

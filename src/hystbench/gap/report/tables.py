@@ -1,0 +1,156 @@
+"""The verdicts on several datasets side by side, for the documentation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from hystbench.blocks.parameter import SETTINGS
+from hystbench.files import write_csv
+from hystbench.gap.fitting.parameter_units import unit_at
+from hystbench.model import Model
+
+Content = Mapping[str, Any]
+
+COLUMNS = (
+    "dataset",
+    "base",
+    "verdict",
+    "effects",
+    "withdrawn",
+    "unit",
+    "before",
+    "after",
+    "black_box",
+    "noise_floor",
+    "floor_method",
+    "explained_percent",
+    "explained_on_fit_percent",
+    "reason",
+    "shortfall",
+)
+RECORD_COLUMNS = ("dataset", "record", "outside", "before", "black_box", "after")
+EFFECT_COLUMNS = (
+    "dataset",
+    "effect",
+    "place",
+    "confidence",
+    "cannot_be_told_from",
+    "parameter",
+    "value",
+    "standard_error",
+    "unit",
+)
+
+
+ADDS_COLUMNS = ("block", "parameter", "value", "unit")
+
+
+def write_summary(contents: Sequence[Content], path: Path) -> None:
+    """Write one row a dataset: the verdict, and RMS over its hold-out records."""
+    write_csv(path, COLUMNS, [_row(content) for content in contents])
+
+
+def write_records(contents: Sequence[Content], path: Path) -> None:
+    """Write one row a hold-out record: RMS, and in what it is outside what was fitted.
+
+    There a black box knows nothing, and effects that are the right ones still hold.
+    """
+    rows = [
+        [
+            content["dataset"],
+            item["name"],
+            " and ".join(item["outside"]),
+            *(_rms(item[key]) for key in ("before", "after", "named")),
+        ]
+        for content in contents
+        for item in content["black_box"]["records"]
+    ]
+    write_csv(path, RECORD_COLUMNS, rows)
+
+
+def write_effects(contents: Sequence[Content], path: Path) -> None:
+    """Write one row a parameter of each named effect."""
+    rows = [row for content in contents for row in _effect_rows(content)]
+    write_csv(path, EFFECT_COLUMNS, rows)
+
+
+def write_adds(model: Model, path: Path) -> None:
+    """Write what a model adds behind its hysteresis: one row a parameter.
+
+    Beside what was named on the model's records it shows which of it was found.
+    """
+    rows = [
+        [
+            label,
+            name,
+            _any(about.plain(getattr(block, name))),
+            unit_at(about.unit, model.chain, k, model.input.unit, model.output.unit),
+        ]
+        for k, (label, block) in enumerate(model.labelled())
+        if not block.hysteretic
+        for name, about in block.parameters().items()
+        if name not in SETTINGS
+    ]
+    write_csv(path, ADDS_COLUMNS, rows)
+
+
+def _row(content: Content) -> list[str]:
+    gap = content["gap"]
+    return [
+        content["dataset"],
+        content["model"],
+        content["verdict"],
+        " + ".join(item["name"] for item in content["effects"]) or "none",
+        " + ".join((content["withdrawn"] or {}).get("names", ())),
+        content["unit"],
+        *(_rms(gap[key]) for key in ("before", "after")),
+        _rms(content["black_box"]["after"]),
+        _number(gap["noise_floor"]),
+        gap["floor_method"],
+        _share(gap["explained"]),
+        _share(content["fit"]["explained"]),
+        content["reason"],
+        (content["shortfall"] or {}).get("sentence", ""),
+    ]
+
+
+def _effect_rows(content: Content) -> Iterator[list[str]]:
+    for item in content["effects"]:
+        shown = [
+            content["dataset"],
+            item["name"],
+            item["place"],
+            _number(item["confidence"]),
+            ", ".join(item["cannot_be_told_from"]),
+        ]
+        for name, about in item["parameters"].items():
+            value, error = about["value"], about["standard_error"]
+            yield [*shown, name, _any(value), _any(error), about["unit"]]
+
+
+def _share(explained: float | Sequence[float] | None) -> str:
+    """Give a share in percent, or a range of it where the floor is a bound."""
+    if explained is None:
+        return ""
+    if isinstance(explained, Sequence):
+        return " to ".join(f"{100 * each:.1f}" for each in explained)
+    return f"{100 * explained:.1f}"
+
+
+def _any(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Sequence):
+        return " ".join(_any(each) for each in value)
+    return "" if value is None else _number(float(str(value)))
+
+
+def _rms(value: float | None) -> str:
+    """Give an RMS; a model that runs away on a record has none."""
+    return "unbounded" if value is None else _number(value)
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"

@@ -1,0 +1,215 @@
+"""What a hysteresis of the wrong shape could do, spanned without any truth.
+
+Powers of what enters the hysteresis, powers of play operators of it (sums of play
+operators approximate any Prandtl-Ishlinskii operator, sums of their powers much of a
+Preisach operator), each operator of the chain's own hysteresis and the tangents of its
+envelopes, all sent through the blocks behind the hysteresis.
+
+Of a simulator whose inside is not seen the same is made of what it gives as well: what
+else may lie in it, behind its hysteresis, is in there.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.simulation import Signals, Simulation
+from hystbench.operators import play
+from hystbench.record import FloatArray
+
+POWERS = 5
+OPERATORS = 10
+OPERATOR_POWERS = 3
+MIXED = 6
+"""Play operators, the input among them, of which products are taken."""
+SLOPES = (1, 5)
+"""Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input."""
+SMALL = 1e-3
+"""Size of a change beside the signal that it changes."""
+SMALLEST = 1e-3
+"""Directions weaker than this share of the strongest are left out."""
+
+
+def reshapings(simulation: Simulation, sample: Sample) -> FloatArray:
+    """Give what reshaping the hysteresis could add to the output.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    sample : Sample
+
+    Returns
+    -------
+    ndarray, shape (scored samples, k)
+        Without anything in the chain that holds a hysteresis, no column.
+    """
+    return _behind(simulation, sample, _ways)
+
+
+def products(simulation: Simulation, sample: Sample) -> FloatArray:
+    """Give what a hysteresis could add that is no sum of curves of play operators.
+
+    Products of the input and of play operators of it, two of them or the square of one
+    with another: they tell a hysteresis whose loops depend on where they lie, as of
+    most materials, from one of play operators. Sent on as the reshapings are.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    sample : Sample
+
+    Returns
+    -------
+    ndarray, shape (scored samples, k)
+        Without anything in the chain that holds a hysteresis, no column.
+    """
+    return _behind(simulation, sample, _mixed)
+
+
+def _behind(
+    simulation: Simulation,
+    sample: Sample,
+    make: Callable[[Simulation, Sample | None], list[Signals]],
+) -> FloatArray:
+    """Make signals of the hysteresis and send them through what follows it."""
+    if simulation.loop is None:
+        return np.zeros((len(sample), 0))
+    behind = simulation.chain[simulation.behind_hysteresis :]
+    at = None if behind else sample  # what nothing follows is wanted there alone
+    ways = make(simulation, at)
+    if behind:
+        return np.column_stack(
+            [sample.take(_sent(simulation, behind, way)) for way in ways]
+        )
+    return np.column_stack([np.concatenate(way) for way in ways])
+
+
+def orthonormal(columns: FloatArray) -> FloatArray:
+    """Give an orthonormal basis of columns, each scaled to one first."""
+    if not columns.shape[1]:
+        return columns
+    size = np.linalg.norm(columns, axis=0)
+    usable = np.isfinite(size) & (size > 0)
+    columns = columns[:, usable] / size[usable]
+    # By the small Gram matrix: a full decomposition of the columns is ten times dearer.
+    values, vectors = np.linalg.eigh(columns.T @ columns)
+    keep = values > (SMALLEST**2) * values[-1]
+    basis = columns @ (vectors[:, keep] / np.sqrt(values[keep]))
+    # A second pass makes what rounding has left orthonormal too.
+    triangle = np.linalg.cholesky(basis.T @ basis)
+    return np.ascontiguousarray(np.linalg.solve(triangle, basis.T).T)
+
+
+def _ways(simulation: Simulation, sample: Sample | None) -> list[Signals]:
+    """Give ways in which the output of the hysteresis could differ.
+
+    Of whole records, or of scored samples.
+    """
+    place = simulation.loop
+    assert place is not None  # noqa: S101  (the caller has looked)
+    block, v = simulation.chain[place], simulation.before[place]
+    ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
+    sources = [v] if block.seen else [v, simulation.before[place + 1]]
+    for signals in sources:
+        ways += _powers(signals, sample)
+    own: list[Signals] = []
+    if isinstance(block, GeneralizedPrandtlIshlinskii):
+        own = [_at(x, sample) for x in _own(simulation, block, v)]
+    return ways + own
+
+
+def _mixed(simulation: Simulation, sample: Sample | None) -> list[Signals]:
+    """Give products of what enters the hysteresis and of play operators of it."""
+    place = simulation.loop
+    assert place is not None  # noqa: S101  (the caller has looked)
+    signals = simulation.before[place]
+    amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
+    thresholds = np.arange(MIXED) / (MIXED + 1)  # the first is the input itself
+    plays = [
+        play(z / amplitude, thresholds)[0].T[:, _rows(k, sample)]
+        for k, z in enumerate(signals)
+    ]
+    each = range(MIXED)
+    ways: list[Signals] = []
+    for i, j in itertools.combinations(each, 2):
+        ways.append(tuple(p[i] * p[j] for p in plays))
+        ways.append(tuple(p[i] ** 2 * p[j] for p in plays))
+        ways.append(tuple(p[i] * p[j] ** 2 for p in plays))
+    return ways
+
+
+def _rows(record: int, sample: Sample | None) -> slice | NDArray[np.intp]:
+    return slice(None) if sample is None else sample.positions[record]
+
+
+def _at(signals: Signals, sample: Sample | None) -> Signals:
+    """Give whole signals, or their scored samples."""
+    if sample is None:
+        return signals
+    return tuple(z[at] for z, at in zip(signals, sample.positions, strict=True))
+
+
+def _powers(signals: Signals, sample: Sample | None) -> list[Signals]:
+    """Give powers of signals and of play operators of them."""
+    amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
+    thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)
+    scaled = _at(tuple(z / amplitude for z in signals), sample)
+    plays = []
+    for k, z in enumerate(signals):
+        p = play(z, thresholds)[0].T / amplitude
+        plays.append(p if sample is None else p[:, sample.positions[k]])
+    ways = []
+    for base in (scaled, *zip(*plays, strict=True)):
+        power = base
+        for _ in range(POWERS if base is scaled else OPERATOR_POWERS):
+            ways.append(power)
+            power = tuple(a * b for a, b in zip(power, base, strict=True))
+    return ways
+
+
+def _own(
+    simulation: Simulation, block: GeneralizedPrandtlIshlinskii, v: Signals
+) -> list[Signals]:
+    """Give a few groups of the block's operators, and tangents of its envelopes."""
+    count = len(block.thresholds)
+    groups = np.array_split(np.arange(count), min(count, OPERATORS))
+    sums = [
+        np.add.reduceat(block.operators(z), [group[0] for group in groups], axis=1)
+        for z in v
+    ]
+    ways: list[Signals] = [tuple(z[:, k] for z in sums) for k in range(len(groups))]
+    now = simulation.run((block,), v)
+    slope = 1.0 / (max(float(np.abs(z).max()) for z in v) or 1.0)
+    for k, value in enumerate(block.envelope):
+        moved = list(block.envelope)
+        least = 0.1 * (slope if k in SLOPES else 1.0)
+        moved[k] = value + SMALL * max(abs(value), least)
+        other = simulation.run((replace(block, envelope=tuple(moved)),), v)
+        ways.append(tuple(a - b for a, b in zip(other, now, strict=True)))
+    return ways
+
+
+def _sent(
+    simulation: Simulation, behind: tuple[Block, ...], signals: Signals
+) -> Signals:
+    """Send a small change of the hysteresis's output through the blocks behind it."""
+    if not behind:
+        return signals
+    now = simulation.before[simulation.behind_hysteresis]
+    size = SMALL * simulation.largest(simulation.behind_hysteresis)
+    change = size / max(float(max(np.abs(s).max() for s in signals)), 1e-300)
+    moved = tuple(z + change * s for z, s in zip(now, signals, strict=True))
+    return tuple(
+        (after - before) / change
+        for after, before in zip(
+            simulation.run(behind, moved), simulation.output, strict=True
+        )
+    )

@@ -1,0 +1,304 @@
+"""A chain of blocks on the fit records: signals before every block, kept."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any, cast
+
+import numpy as np
+
+from hystbench.blocks.attached import AttachedBlock, attached
+from hystbench.blocks.base import Block
+from hystbench.blocks.curve import finer
+from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
+from hystbench.errors import InputError
+from hystbench.record import FloatArray, Record
+
+Signals = tuple[FloatArray, ...]
+"""One signal a record."""
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """A chain on records; what is computed once is kept.
+
+    Parameters
+    ----------
+    chain : tuple of Block
+    records : tuple of Record
+    hold : {"zero-order", "linear", "band-limited"}
+        How the input moves between samples.
+    quick : bool
+        Take straight lines where a block takes a band-limited signal: a tenth of the
+        time, and near enough to compare candidates by.
+    fine : bool
+        Take shorter steps through the hysteresis where the input is band-limited, so
+        that turning points between samples are met: what the chain says of physics,
+        without the error of its own steps.
+    """
+
+    chain: tuple[Block, ...]
+    records: tuple[Record, ...]
+    hold: Hold = "band-limited"
+    quick: bool = False
+    fine: bool = False
+
+    @cached_property
+    def before(self) -> tuple[Signals, ...]:
+        """Signals before each block, and behind the last: shape (blocks + 1, records).
+
+        Before a wrapping block stands the output of what it wraps, without it.
+        """
+        stages: list[Signals] = [tuple(record.u for record in self.records)]
+        for k in range(len(self.chain)):
+            start = k
+            while isinstance(self.chain[start], AttachedBlock):
+                start -= 1
+            signals = self.run(self.chain[start : k + 1], stages[start])
+            for z in signals:
+                z.setflags(write=False)  # so that what it is made of can be kept
+            stages.append(signals)
+        return tuple(stages)
+
+    @cached_property
+    def output(self) -> Signals:
+        """The chain's output."""
+        if self.quick:
+            return self.before[-1]
+        return self.run(self.chain, tuple(record.u for record in self.records))
+
+    def tail(self, start: int, blocks: Sequence[Block]) -> Signals:
+        """Simulate other blocks from ``start`` on, in place of those in the chain."""
+        return self.run(blocks, self.before[start])
+
+    def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
+        """Send signals through blocks, from rest."""
+        steps = attached([_quick(block) for block in blocks] if self.quick else blocks)
+        out = []
+        finely = self.fine and self.hold == LIMITED
+        for z, record in zip(signals, self.records, strict=True):
+            for step in steps:
+                if finely and (isinstance(step, Wrapped) or step.hysteretic):
+                    z = _finely(step, z, record.dt, FINER)
+                elif self.quick and _takes_short_steps(step):
+                    z = _finely(step, z, record.dt, QUICK)
+                else:
+                    z = self._known(step, z).simulate(z, record.u, record.dt)
+            out.append(z)
+        return tuple(out)
+
+    def _known(self, step: Block | Wrapped, z: FloatArray) -> Block | Wrapped:
+        """Put in what the chain's own hysteresis gives for a signal, if it is wrapped.
+
+        Another shape of it is tried in many ways, each of which would run it again.
+        """
+        if not isinstance(step, Wrapped) or z.flags.writeable:
+            return step
+        inner = step.inner
+        if isinstance(inner, Wrapped):
+            return Wrapped(cast(Wrapped, self._known(inner, z)), step.by)
+        if all(inner is not cast(Hysteresis, block) for block in self.chain):
+            return step
+        known = self._outputs.setdefault((id(z), inner), _Known(inner, z))
+        return Wrapped(known, step.by)
+
+    @cached_property
+    def _outputs(self) -> dict[tuple[int, Hysteresis], _Known]:
+        return {}
+
+    @cached_property
+    def hysteresis(self) -> int | None:
+        """Place of the hysteresis in the chain, if it has one."""
+        for k, block in enumerate(self.chain):
+            if block.hysteretic:
+                return k
+        return None
+
+    @cached_property
+    def loop(self) -> int | None:
+        """Place of what makes the loop: the hysteresis, or what may hold one unseen."""
+        held = [
+            k for k, block in enumerate(self.chain) if may_hold(block, self.records)
+        ]
+        if self.hysteresis is not None:
+            held.append(self.hysteresis)
+        return max(held, default=None)
+
+    @cached_property
+    def behind_hysteresis(self) -> int:
+        """Place behind the hysteresis and what wraps it; 0 without a hysteresis.
+
+        Or behind a simulator that may hold one.
+        """
+        if self.loop is None:
+            return 0
+        k = self.loop + 1
+        while k < len(self.chain) and isinstance(self.chain[k], WrappingBlock):
+            k += 1
+        return k
+
+    @property
+    def behind_material(self) -> int:
+        """Place behind the hysteresis and the material's curves that follow it."""
+        k = self.behind_hysteresis
+        while k < len(self.chain) and self.chain[k].place == "material":
+            k += 1
+        return k
+
+    @property
+    def behind_mechanics(self) -> int:
+        """Place behind the last block that is not the sensor's."""
+        k = len(self.chain)
+        while k and self.chain[k - 1].place == "sensor":
+            k -= 1
+        return k
+
+    def hold_at(self, place: int) -> Hold:
+        """Tell how the signal before a block moves between samples.
+
+        A staircase is smooth behind the first block that is dynamic.
+        """
+        before = self.chain[:place]
+        smooth = any(isinstance(item, HeldBlock) and item.smooths for item in before)
+        return "linear" if self.hold == "zero-order" and smooth else self.hold
+
+    @property
+    def step(self) -> float:
+        """Shortest sampling interval, in seconds."""
+        return min(record.dt for record in self.records)
+
+    @property
+    def span(self) -> float:
+        """Longest record, in seconds."""
+        return max(record.dt * len(record) for record in self.records)
+
+    @property
+    def shortest(self) -> float:
+        """Shortest record, in seconds."""
+        return min(record.dt * len(record) for record in self.records)
+
+    def largest(self, place: int) -> float:
+        """Largest size of the signal before a block."""
+        return float(max(np.abs(z).max() for z in self.before[place]))
+
+    def fastest(self, place: int = 0) -> float:
+        """Largest rate of the signal before a block, in its unit a second."""
+        pairs = zip(self.before[place], self.records, strict=True)
+        return float(max(np.abs(np.diff(z)).max() / record.dt for z, record in pairs))
+
+
+class _Known:
+    """A hysteresis that keeps what it gave for one input."""
+
+    def __init__(self, inner: Hysteresis, v: FloatArray) -> None:
+        self.inner, self.v = inner, v
+        self.output: FloatArray | None = None
+
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Compute the output, or give it."""
+        if growth is not None or v is not self.v:
+            return self.inner.grow(v, u, dt, growth)
+        if self.output is None:
+            self.output = self.inner.grow(v, u, dt, None)
+            self.output.setflags(write=False)
+        return self.output
+
+    def check_growth(self) -> None:
+        """Refuse as the hysteresis does."""
+        self.inner.check_growth()
+
+
+@lru_cache(maxsize=1024)
+def _quick(block: Block) -> Block:
+    # The drive's blocks are the first: what they miss would pass for an effect.
+    if not isinstance(block, HeldBlock) or block.place == "drive" or not block.smooths:
+        return block
+    return replace(block, hold="linear") if block.holding == LIMITED else block
+
+
+LIMITED = "band-limited"
+FINER = 8
+"""Steps through the hysteresis in a sampling interval, where exact."""
+QUICK = 2
+"""The same for hysteresis that depends on the rate, where quick."""
+
+
+def _takes_short_steps(step: Block | Wrapped) -> bool:
+    """Tell whether hysteresis takes short steps by itself."""
+    if not isinstance(step, Wrapped):
+        return False
+    by = step.by
+    return (isinstance(by, HeldBlock) and by.holding == LIMITED) or (
+        isinstance(step.inner, Wrapped) and _takes_short_steps(step.inner)
+    )
+
+
+def _finely(step: Block | Wrapped, z: FloatArray, dt: float, factor: int) -> FloatArray:
+    """Simulate hysteresis, which does not look at the model's input, in short steps."""
+    v = finer(z, factor)
+    return _plain(step).simulate(v, v, dt / factor)[::factor].copy()
+
+
+def _plain(step: Block | Wrapped) -> Block | Wrapped:
+    """Let what takes shorter steps by itself take those that it is given."""
+    if isinstance(step, Wrapped):
+        inner = cast(Hysteresis, _plain(cast(Block, step.inner)))
+        if "hold" in step.by.parameters():
+            straight: dict[str, Any] = {"hold": "linear"}
+            return Wrapped(inner, replace(step.by, **straight))
+        return Wrapped(inner, step.by)
+    return step
+
+
+REST = 6
+"""Of the longest record, that the input rests after it has gone there and back."""
+
+
+REMAINS = 0.01
+"""Of the output's range, by which outputs must differ to remember the way."""
+
+
+STAYS = 0.5
+"""Of that difference, in the first half of the rest, that must be left in the other."""
+
+
+def may_hold(block: Block, records: Sequence[Record]) -> bool:
+    """Tell whether a block is a simulator that may hold a hysteresis.
+
+    Of a stored output it is not known, nor of a function that refuses to be asked. Any
+    other is asked: its input goes to one end of its range and back to the middle, or to
+    the other end and back, as slowly as the longest record lasts, and rests there. What
+    forgets comes to the same output; a hysteresis does not.
+
+    Parameters
+    ----------
+    block : Block
+    records : sequence of Record
+        Their inputs are the range; the way starts where the longest of them does.
+    """
+    if block.seen:
+        return False
+    if not block.reruns:
+        return True
+    low = min(float(record.u.min()) for record in records)
+    high = max(float(record.u.max()) for record in records)
+    longest = max(records, key=lambda record: record.dt * len(record))
+    first, n = float(longest.u[0]), len(longest)
+    ways = [
+        np.interp(
+            np.arange((2 + REST) * n), [0, n, 2 * n], [first, end, (low + high) / 2]
+        )
+        for end in (high, low)
+    ]
+    try:
+        up, down = (block.simulate(way, way, longest.dt) for way in ways)
+    except InputError:
+        return True
+    early, late = (abs(float(x.mean())) for x in np.split((up - down)[2 * n :], 2))
+    reach = max(float(np.ptp(up)), float(np.ptp(down)))
+    return late > max(REMAINS * reach, STAYS * early)

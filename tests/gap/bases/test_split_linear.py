@@ -1,0 +1,232 @@
+"""A linear base whose halves have a static curve between them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.gap.bases.load import load_base, written_base
+from hystbench.gap.bases.output_error import OutputError
+from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
+from hystbench.gap.bases.split_linear import _block
+from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
+from hystbench.gap.decision import find
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import INSIDE
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
+from tests.gap.small import block
+
+
+def mode(frequency_hz, damping):
+    w = 2 * np.pi * frequency_hz
+    return lambda s: 1 / (1 + 2 * damping * s / w + (s / w) ** 2)
+
+
+FRONT, BACK = mode(30.0, 0.5), mode(55.0, 0.35)
+COUNT, DT = 2000, 1e-3
+
+
+def behind(y, response):
+    """What a linear system makes of a signal that repeats: no transient."""
+    f = np.fft.rfftfreq(len(y), DT)
+    return np.fft.irfft(np.fft.rfft(y) * response(2j * np.pi * f), len(y))
+
+
+def measured(curve, *, noise=0.01, front=FRONT, back=BACK, count=COUNT):
+    """Records of front, curve and back in steady state, and one held out."""
+    rng = np.random.default_rng(3)
+    records = []
+    for seed in range(4):
+        sines = multisine(seed, highest_hz=90.0, lines=60, count=count, dt=DT)
+        u = steady(sines, count=count, dt=DT) / 6
+        w = steady(sines, front, count=count, dt=DT) / 6
+        y = behind(curve(w), back) + noise * rng.standard_normal(count)
+        use = "hold-out" if seed == 3 else "fit"
+        records.append(record(u, 2 * y + 0.3, name=f"r{seed}", dt=DT, use=use))
+    return Evidence("made", tuple(records[:3]), (records[3],))
+
+
+def clipped(w):
+    """One side runs into a corner, as of a diode."""
+    return np.minimum(w, 0.3)
+
+
+def poles(half):
+    return np.sort_complex(np.roots(half.denominator))
+
+
+def of_mode(frequency_hz, damping):
+    w = 2 * np.pi * frequency_hz
+    return w * (-damping + 1j * np.sqrt(1 - damping**2))
+
+
+@pytest.fixture(scope="module")
+def clipped_records():
+    return measured(clipped)
+
+
+@pytest.fixture(scope="module")
+def split(clipped_records):
+    return load_base("linear", clipped_records)
+
+
+def test_the_halves_are_those_of_the_system(split):
+    model, note = split
+    assert "two in series" in note
+    front, between, back, end = model.chain
+    assert [front.name, between.name] == ["transfer-function", "gain"]
+    assert [back.name, end.name] == ["transfer-function", "gain"]
+    for half, wanted in ((front, of_mode(30, 0.5)), (back, of_mode(55, 0.35))):
+        near = np.abs(poles(half) - wanted).min()
+        assert near < 0.1 * abs(wanted)
+
+
+def test_the_base_stays_linear(split, clipped_records):
+    model = split[0].with_hold("band-limited")
+    u = clipped_records.fit[0].u
+    zero, once, twice = (model.simulate(k * u, DT) for k in (0.0, 1.0, 2.0))
+    assert twice - zero == pytest.approx(2 * (once - zero), abs=1e-9)
+
+
+def test_the_base_is_no_worse_than_one_block(split, clipped_records):
+    records = clipped_records.fit
+    spectra = Spectra.of([Stretch(x.u, x.y, x.dt) for x in records], "band-limited")
+    whole = tuple(np.arange(COUNT) >= COUNT // 10 for _ in records)
+    task = OutputError(records, "band-limited", spectra.scale, "rest")
+    one = task.refined(fit_ratio(spectra, 4, 3), whole, 20)
+    model = split[0].with_hold("band-limited")
+    left = sum(
+        np.sum((item.y - model.simulate(item.u, DT))[mask] ** 2)
+        for item, mask in zip(records, whole, strict=True)
+    )
+    assert left < 1.05 * one.cost
+
+
+def test_without_a_curve_inside_the_base_is_one_block():
+    """The curve is before all that moves; where there is none, see the given base."""
+    records = measured(clipped, front=lambda s: 1 + 0 * s, count=COUNT // 2)
+    model, note = load_base("linear", records)
+    assert "series" not in note
+    assert [block.name for block in model.chain] == ["transfer-function", "gain"]
+
+
+def test_the_curve_is_named_in_its_place(split, clipped_records):
+    model = split[0].with_hold("band-limited")
+    found = find("made", clipped_records.fit, model)
+    assert found.content["verdict"] == "named"
+    first = found.content["effects"][0]
+    assert (first["name"], first["place"]) == ("saturation", INSIDE)
+    names = [block.name for block in found.model.chain]
+    assert names[:4] == ["transfer-function", "gain", "saturation", "transfer-function"]
+    (held,) = clipped_records.hold_out
+    before, after = (
+        np.std(held.y - each.with_hold("band-limited").simulate(held.u, DT))
+        for each in (model, found.model)
+    )
+    assert after < 0.3 * before
+
+
+@pytest.mark.parametrize("name", ["saturation", "asymmetry", "dead-zone"])
+def test_static_effects_are_offered_between_the_halves(name, split, clipped_records):
+    simulation = Simulation(split[0].chain, clipped_records.fit)
+    places = {item.place: item.start for item in effects()[name].variants(simulation)}
+    assert places[INSIDE] == 2
+    alone = Simulation(split[0].chain[:1], clipped_records.fit)
+    assert INSIDE not in {item.place for item in effects()[name].variants(alone)}
+
+
+def halves():
+    return Halves(
+        np.array([1.3, 0.9]),
+        np.array([1.1, 0.2]),
+        np.array([0.8, 1.2]),
+        np.array([0.7]),
+        np.array([1.0, -0.2, 0.1, 0.05, -0.02]),
+        0.4,
+    )
+
+
+@pytest.mark.parametrize("start", ["rest", "settled"])
+def test_derivatives_are_those_of_the_simulation(start, clipped_records):
+    records = clipped_records.fit[:1]
+    masks = (np.ones(COUNT, dtype=bool),)
+    task = HalvesError(records, masks, "band-limited", 200.0, start)
+    now, given = halves(), task._derivatives(halves(), 0, task._sent(halves(), 0))
+    for k in range(now.count):
+        step = np.zeros(now.count)
+        step[k] = 1e-5
+        up, down = (task._sent(now.moved(sign * step), 0).output for sign in (1, -1))
+        wanted = (up - down) / 2e-5
+        if start == "rest":
+            assert given[:, k] == pytest.approx(wanted, abs=1e-6 * np.abs(wanted).max())
+
+
+def test_halves_simulate_what_their_blocks_simulate(clipped_records):
+    """From rest; by state space and by lines of the spectrum."""
+    u = clipped_records.fit[0].u * np.minimum(1.0, np.arange(COUNT) / 250)
+    made = replace(clipped_records.fit[0], u=u)
+    masks = (np.ones(COUNT, dtype=bool),)
+    task = HalvesError((made,), masks, "linear", 200.0, "rest")
+    straight = replace(halves(), curve=np.eye(5)[0])
+    found = task._sent(straight, 0).output
+    front = _block(task, straight.front_b, straight.front_a, "rest")
+    back = _block(task, straight.back_b, straight.back_a, "rest")
+    w = front.simulate(u, u, DT)
+    assert found == pytest.approx(back.simulate(w, u, DT) + 0.4, abs=5e-3)
+
+
+def given(behind=(), **about):
+    """One transfer function as a user brings it: the product of both halves."""
+    down = np.ones(1)
+    for frequency_hz, damping in ((30.0, 0.5), (55.0, 0.35)):
+        w = 2 * np.pi * frequency_hz
+        down = np.polymul(down, [1 / w**2, 2 * damping / w, 1.0])
+    one = block("transfer-function", numerator=[1.7], denominator=down.tolist())
+    return Model("rig", CURRENT, DISPLACEMENT, (one, *behind), **about)
+
+
+def test_a_given_transfer_function_is_split_and_does_what_it_did(
+    tmp_path, clipped_records
+):
+    behind = (block("gain", value=1.0, offset=0.1),)
+    free = ("transfer-function.denominator", "gain.offset")
+    model = given(behind, free=free, tolerances={"gain.offset": 0.2})
+    model.save(tmp_path / "rig.yaml")
+    found, note = load_base(str(tmp_path / "rig.yaml"), clipped_records)
+    assert "two in series" in note
+    names = [item.name for item in found.chain]
+    assert names.count("transfer-function") == 2
+    front = next(item for item in found.chain if item.name == "transfer-function")
+    assert poles(front)[0].real == pytest.approx(of_mode(30, 0.5).real, rel=1e-6)
+    for one in clipped_records.fit:
+        old, new = (
+            item.with_hold("band-limited").simulate(one.u, DT)
+            for item in (model, found)
+        )
+        assert new == pytest.approx(old, abs=1e-3 * np.ptp(old))
+    assert set(found.free) >= {
+        "transfer-function.denominator",
+        "transfer-function#2.denominator",
+    }
+    # The user's own gain is the last one, whatever it is called now.
+    (gain,) = (name for name in found.free if name.startswith("gain"))
+    assert found.value(gain) == 0.1
+    assert found.tolerances == {gain: 0.2}
+
+
+def test_a_given_base_stays_where_there_is_no_curve(tmp_path):
+    given().save(tmp_path / "rig.yaml")
+    found, note = load_base(str(tmp_path / "rig.yaml"), measured(lambda w: w))
+    assert found.chain == given().chain
+    assert "series" not in note
+
+
+def test_the_base_of_a_round_is_taken_as_it_is_written(tmp_path, clipped_records):
+    given().save(tmp_path / "rig.yaml")
+    found = written_base(tmp_path / "rig.yaml", clipped_records)
+    assert found.chain == given().chain
+    split, _ = load_base(str(tmp_path / "rig.yaml"), clipped_records)
+    assert len(split.chain) > len(found.chain)

@@ -1,0 +1,179 @@
+"""What records have of their own: a late trigger, another range, another zero."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.signal import lfilter
+
+from hystbench.gap.decision import find
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.own_values import NONE, Own, OwnValues, fitted, own_values
+from hystbench.gap.jobs import decide_in, show_in
+from hystbench.gap.naming.with_own_values import without_shared
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.schema import RECORD_VALUES
+from hystbench.model import Model
+from hystbench.schema import check_against_schema
+from tests.gap.closing import close_gap
+from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
+from tests.gap.small import block, state_of
+
+DT, COUNT, NOISE = 1e-3, 800, 0.02
+GAIN, LAG_S = 12.0, 0.006
+
+
+def tones(time, seed):
+    """Four sines that start and end at rest; before and behind there is nothing."""
+    rng = np.random.default_rng(seed)
+    lines = zip(rng.uniform(3, 40, 4), rng.uniform(0, 6, 4), strict=True)
+    inside = np.clip(time / 0.05, 0, 1) * np.clip(
+        (DT * COUNT - 0.1 - time) / 0.05, 0, 1
+    )
+    return sum(0.3 * np.sin(2 * np.pi * f * time + p) for f, p in lines) * inside
+
+
+def made(owns, lag_s=0.0, first=0):
+    """Records by formula: what the device gives at a time is known between samples."""
+    rng = np.random.default_rng(first)
+    time, found = np.arange(COUNT) * DT, []
+    for k, own in enumerate(owns):
+        late, gain, offset = own
+        fine = np.arange(40 * COUNT) * DT / 40
+        x = GAIN * tones(fine - late, first + k)
+        if lag_s:  # the lag's own formula, forty times as fine
+            decay = np.exp(-DT / 40 / lag_s)
+            x = lfilter([1 - decay], [1, -decay], x)
+        y = gain * x[::40] + offset + NOISE * rng.standard_normal(COUNT)
+        found.append(record(tones(time, first + k), y, name=f"r{k}", dt=DT))
+    return tuple(found)
+
+
+DELAYS = [(0.001, 1, 0), (0.004, 1, 0), (0.0023, 1, 0), (0, 1, 0), (-0.0031, 1, 0)]
+SWITCHED = [(0, 1, 0)] * 3 + [(0, 2, 0)] + [(0, 1, 0)]
+MOVED = [(0, 1, 0.3), (0, 1, -0.2), (0, 1, 0.1), (0, 1, 0), (0, 1, -0.5)]
+
+
+def found_in(owns, floor=NOISE**2):
+    records = made(owns)
+    return own_values(records, [GAIN * item.u for item in records], floor)
+
+
+@pytest.mark.parametrize(
+    ("owns", "kind"), [(DELAYS, "delay"), (SWITCHED, "gain"), (MOVED, "offset")]
+)
+def test_each_kind_is_found_with_its_values_and_no_other(owns, kind):
+    found = found_in(owns)
+    assert found.kinds == (kind,)
+    told = dict(found.records)
+    for k, true in enumerate(owns):
+        # What is as the simulator has it is not told.
+        assert (f"r{k}" in told) == (true != (0, 1, 0))
+        if f"r{k}" in told:
+            near = pytest.approx(true, abs=5e-3)
+            assert tuple(told[f"r{k}"]) == near
+            assert told[f"r{k}"].delay_s == pytest.approx(true[0], abs=2e-5)
+
+
+@pytest.mark.parametrize("shared", [(0.003, 1, 0), (0, 1.1, 0), (0, 1, 0.4), (0, 1, 0)])
+def test_what_all_records_share_is_no_records_own(shared):
+    """It is left to the effects: a delay, a gain or an offset of the device."""
+    assert found_in([shared] * 5) == NONE
+
+
+def test_a_record_differs_from_what_the_others_share():
+    ((name, own),) = found_in([(0.003, 1, 0)] * 4 + [(0.003, 2, 0)]).records
+    assert name == "r4"
+    assert tuple(own) == pytest.approx((0, 2, 0), abs=5e-3)
+
+
+def test_one_record_has_nothing_of_its_own():
+    assert found_in([(0.003, 1.2, 0.4)]) == NONE
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-0.02, 0.02), st.floats(0.2, 5), st.floats(-3, 3), st.integers(0, 99))
+def test_what_is_taken_off_leaves_what_the_simulator_gives(late, gain, offset, seed):
+    (item,) = made([(late, gain, offset)], first=seed)
+    own = Own(late, gain, offset)
+    values = OwnValues(("delay", "gain", "offset"), (("r0", own),))
+    (bare,) = values.taken_off([item], "band-limited")
+    rest = bare.y - GAIN * bare.u
+    assert np.sqrt(np.mean(rest**2)) < 1.5 * NOISE / gain + 0.01
+    assert values.taken_off([replace(item, name="other")], "linear")[0].y is not bare.y
+    again = OwnValues.of_mapping(values.mapping("um"))
+    assert again == values
+
+
+def test_a_part_of_a_record_tells_its_own():
+    (item,) = made([(0.002, 1.5, 0.3)])
+    own = fitted(item, GAIN * item.u, ("delay", "gain", "offset"), 300)
+    assert tuple(own) == pytest.approx((0.002, 1.5, 0.3), abs=0.02)
+
+
+def rig():
+    return Model("rig", CURRENT, DISPLACEMENT, (block("gain", value=GAIN),))
+
+
+def values_of(content):
+    values = content["record_values"]
+    check_against_schema(values, RECORD_VALUES, "record_values")
+    assert values["kinds"] == ["delay"]
+    for item in values["records"]:
+        true = DELAYS[int(item["name"][1:])][0]
+        assert item["delay_s"] == pytest.approx(true, abs=2e-4)
+        assert item["name"] in values["sentence"]
+    return values
+
+
+def test_an_effect_is_named_beside_late_triggers():
+    content = find("made", made(DELAYS, LAG_S), rig(), declared=NOISE).content
+    assert content["verdict"] == "named"
+    (effect,) = content["effects"]
+    # Behind a plain gain the lags are one and the same.
+    assert effect["name"] in ("sensor-lag", "drive-lag", "creep")
+    (value,) = effect["parameters"].values()
+    assert value["value"] == pytest.approx(LAG_S, rel=0.05)
+    assert 0 < values_of(content)["share_of_gap_power"] < 1
+
+
+def test_late_triggers_alone_are_no_gap_and_hold_out_records_have_theirs(tmp_path):
+    held = made([(0.0027, 1, 0), (0, 1, 0)], first=20)
+    held = [replace(item, name=f"h{item.name}", use="hold-out") for item in held]
+    data = write_folder(tmp_path / "rig", [*made(DELAYS), *held], noise_rms=NOISE)
+    evidence = load_evidence(data)
+    one, two = tmp_path / "one", tmp_path / "two"
+    content = close_gap(evidence, rig(), one, report=False).content
+    assert (content["verdict"], content["effects"]) == ("no-gap", [])
+    assert values_of(content)["share_of_gap_power"] == pytest.approx(1, abs=0.01)
+    # As recorded it is 1 um and more; a base that is exact is told as exact.
+    raw = held[0].y - GAIN * held[0].u
+    assert np.sqrt(np.mean(raw**2)) > 1.0
+    assert content["gap"]["before"] == pytest.approx(NOISE, rel=0.2)
+    # The jobs do the same: what was decided is read back.
+    decide_in(two, load_evidence(data, "fit"), rig())
+    show_in(two, evidence, rig())
+    for file in ("gap.json", "model.yaml", "holdout/hr0.csv"):
+        assert (one / file).read_bytes() == (two / file).read_bytes()
+
+
+def test_a_delay_that_all_share_hides_those_of_each():
+    """With it, some records would be early; without, each is as late as it is."""
+    start = state_of((block("gain", value=GAIN),), made(NOTHING))
+    both = start
+    for name, values in (
+        ("drive-lag", {"time_constant_s": 0.01}),
+        ("input-delay", LATE),
+    ):
+        variant = next(effects()[name].variants(both.simulation))
+        both = with_effect(both, variant, values)
+    left = without_shared(both)
+    assert [item.effect for item in left.added] == ["drive-lag"]
+    assert without_shared(start) is start
+
+
+LATE = {"delay_s": 0.002}
+NOTHING = [(0, 1, 0)] * 3

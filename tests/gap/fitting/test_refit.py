@@ -1,0 +1,282 @@
+"""Fits: never worse than what they start from, and where a plain minimiser ends."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import optimize
+
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.refit import FAR, added, finished, refit, score_of, sizes
+from hystbench.gap.fitting.search import Attempt, coarse, fine
+from hystbench.gap.fitting.state import Free
+from hystbench.gap.naming.rank import make_score, rank
+from tests.gap.small import (
+    ENVELOPE,
+    block,
+    chains,
+    hysteresis,
+    measured,
+    plain_score,
+    records,
+    state_of,
+)
+
+NOISE = 0.02
+
+
+def lagged(tau):
+    return (block("drive-lag", time_constant_s=tau), hysteresis())
+
+
+def mode(hertz, part):
+    return (
+        hysteresis(),
+        block("resonance", frequency_hz=hertz, damping_ratio=0.05, participation=part),
+    )
+
+
+def free_of(chain, names):
+    return tuple(
+        Free(k, name)
+        for k, item in enumerate(chain)
+        for name in names
+        if name in item.parameters()
+    )
+
+
+@given(
+    st.floats(2e-4, 3e-2),
+    st.floats(1e-4, 5e-2),
+    st.sampled_from([1e-9, 4e-4, 1.0]),
+)
+@settings(max_examples=20)
+def test_a_refit_never_scores_worse(there, start, floor):
+    given_records = measured(lagged(there), NOISE)
+    chain = lagged(start)
+    state = state_of(chain, given_records, free=free_of(chain, ["time_constant_s"]))
+    score = plain_score(state, floor)
+    after, value = refit(state, score)
+    assert value <= score_of(state, score)
+    assert value == pytest.approx(score_of(after, score))
+    assert [x.name for x in after.chain] == [x.name for x in chain]
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=10)
+def test_a_refit_of_many_numbers_never_scores_worse(seed):
+    """Far off, with every number free: steps that do harm are taken back."""
+    rng = np.random.default_rng(seed)
+    given_records = measured(mode(110.0, 0.25), NOISE)
+    chain = mode(*(np.array([110.0, 0.25]) * rng.uniform(0.3, 2.5, 2)))
+    names = ["frequency_hz", "damping_ratio", "participation"]
+    free = (*free_of(chain, names), *(Free(0, "weights", k) for k in range(4)))
+    state = state_of(chain, given_records, free=free)
+    score = make_score(state, NOISE)
+    after, value = refit(state, score)
+    assert value <= score_of(state, score)
+    for item in after.free:
+        about = after.chain[item.block].parameters()[item.parameter]
+        assert about.low <= after.value(item) <= about.high
+
+
+def test_a_refit_ends_where_a_plain_minimiser_does():
+    given_records = measured(lagged(4e-3), NOISE)
+    chain = lagged(3e-3)
+    state = state_of(chain, given_records, free=free_of(chain, ["time_constant_s"]))
+    score = plain_score(state)
+    after, value = refit(state, score)
+
+    def plain(tau):
+        return score_of(state.with_chain(lagged(tau)), score)
+
+    best = optimize.minimize_scalar(plain, bounds=(2e-3, 6e-3), method="bounded")
+    assert value < best.fun + 0.1
+    assert after.chain[0].time_constant_s == pytest.approx(best.x, rel=1e-2)
+    assert after.chain[0].time_constant_s == pytest.approx(4e-3, rel=2e-2)
+
+
+def test_a_tolerance_holds_a_number_of_the_base_back():
+    given_records = measured((block("gain", value=12.0),), NOISE)
+    found = {}
+    for tolerance in (None, 1.0, 1e-3):
+        state = state_of(
+            (block("gain", value=11.0),),
+            given_records,
+            free=(Free(0, "value", None, tolerance),),
+        )
+        after, _ = refit(state, plain_score(state))
+        found[tolerance] = after.chain[0].value
+    assert found[None] == pytest.approx(12.0, rel=1e-3)
+    assert found[None] >= found[1.0] - 1e-6
+    assert 11.0 <= found[1e-3] < 11.5
+
+
+def attempt(state, score, name):
+    variant = next(iter(effects()[name].variants(state.simulation)))
+    return Attempt(state, variant, score)
+
+
+def test_the_coarse_search_is_the_best_point_of_the_grid():
+    state = state_of((hysteresis(),), measured(lagged(4e-3), NOISE))
+    score = plain_score(state)
+    one = attempt(state, score, "drive-lag")
+    axis = one.variant.grids["time_constant_s"]
+    found = coarse(one)
+    values = [
+        score_of(
+            with_effect(state, one.variant, {"time_constant_s": float(tau)}), score
+        )
+        for tau in axis
+    ]
+    assert found.score == pytest.approx(min(values))
+    assert found.values["time_constant_s"] == axis[np.argmin(values)]
+
+
+def test_the_fine_search_stays_in_its_grid_and_is_no_worse():
+    state = state_of((hysteresis(),), measured(lagged(4e-3), NOISE))
+    score = plain_score(state)
+    one = attempt(state, score, "drive-lag")
+    start = coarse(one)
+    end = fine(one, start)
+    assert end.score <= start.score
+    # Where the grid is halved twice it is as near as a quarter of a step.
+    axis = one.variant.grids["time_constant_s"]
+    step = np.log(axis[1] / axis[0]) / 4
+    assert abs(np.log(end.values["time_constant_s"] / 4e-3)) < 2 * step
+    edge = fine(one, one.at((float(axis[0]),)))
+    assert edge.values["time_constant_s"] >= axis[0]
+
+
+@pytest.mark.parametrize("name", ["drive-lag", "resonance"])
+def test_a_step_is_the_same_with_the_signals_at_hand_and_without(name):
+    state = state_of((hysteresis(),), measured(mode(110.0, 0.25), NOISE))
+    score = plain_score(state)
+    one = attempt(state, score, name)
+    best = coarse(one)
+    other = one.at(tuple(float(axis[0]) for axis in one.variant.grids.values()))
+    assert other.score > best.score
+    for trial in (best, other):
+        without = attempt(state, score, name)  # has looked at no point
+        np.testing.assert_array_equal(one.step(trial), without.step(trial))
+
+
+def test_what_is_solved_for_comes_out_as_it_was_put_in():
+    state = state_of((hysteresis(),), measured(mode(110.0, 0.25), NOISE))
+    score = plain_score(state)
+    one = attempt(state, score, "resonance")
+    trial = fine(one, coarse(one))
+    after, value = added(state, trial, score)
+    assert value <= trial.score + 1.0
+    found = after.chain[1]
+    assert found.frequency_hz == pytest.approx(110.0, rel=0.02)
+    assert found.participation == pytest.approx(0.25, rel=0.1)
+
+
+def test_finished_is_exact_and_no_worse_than_its_start_is_exactly():
+    chain = mode(100.0, 0.2)
+    free = free_of(chain, ["frequency_hz", "participation"])
+    state = state_of(chain, measured(mode(110.0, 0.25), NOISE), free=free)
+    score = plain_score(state)
+    after, value = finished(state, score)
+    assert value <= score_of(state.settled(), score)
+    exact = after.settled()
+    assert value == pytest.approx(score_of(exact, score))
+
+
+def test_declined_effects_stand_at_the_end_with_a_reason():
+    state = state_of(chains()["gain"], measured(chains()["gain"], NOISE))
+    known = [effects()[x] for x in ("hysteresis-shape", "calibration-error")]
+    ranking = rank(state, plain_score(state, NOISE**2), known)
+    assert {item.effect for item in ranking} == {item.name for item in known}
+    last = ranking[-1]
+    assert last.effect == "hysteresis-shape"
+    assert "no hysteresis" in last.declined
+    assert last.state is None
+
+
+def test_an_effect_is_not_added_twice():
+    chain = lagged(4e-3)
+    state = state_of((hysteresis(),), measured(chain, NOISE))
+    score = plain_score(state, NOISE**2)
+    known = [effects()[x] for x in ("drive-lag", "calibration-error")]
+    first = rank(state, score, known)[0]
+    assert first.effect == "drive-lag"
+    again = rank(first.state, score, known)
+    assert again[-1].effect == "drive-lag"
+    assert again[-1].declined == "added already"
+
+
+def test_gains_are_what_the_score_falls_by():
+    state = state_of((hysteresis(),), measured(lagged(4e-3), NOISE))
+    score = make_score(state, NOISE)
+    now = score_of(state, score)
+    known = [effects()[x] for x in ("drive-lag", "sensor-lag", "asymmetry")]
+    ranking = rank(state, score, known)
+    judged = [item for item in ranking if not item.declined]
+    for item in judged:
+        assert item.gain == pytest.approx(now - item.score)
+    finalists = [item.score for item in judged if item.state is not None]
+    assert finalists == sorted(finalists)
+    for item in judged:
+        if item.held_back is not None:
+            gain = now - score_of(item.state, score)
+            held = gain_held_back(state, item.state, score)
+            assert item.gain == pytest.approx(min(gain, held))
+        elif item.state is not None:
+            assert score_of(item.state, score) == pytest.approx(item.score)
+
+
+def test_the_frequency_of_a_tone_is_found_to_what_the_noise_lets_see():
+    noise, hertz = 0.002, 50.037
+    plain = measured(chains()["gain"], noise)
+    picked = [
+        replace(item, y=item.y + 0.3 * np.sin(2 * np.pi * hertz * item.time + k))
+        for k, item in enumerate(plain)
+    ]
+    state = state_of(chains()["gain"], tuple(picked))
+    tone = next(effects()["mains-pickup"].variants(state.simulation))
+    near = with_effect(state, tone, {"frequency_hz": hertz + 0.02})
+    after, _ = finished(near, plain_score(state, noise**2))
+    ((_, values),) = after.beside
+    # The bound of Cramer and Rao for the longer record alone, its scored samples.
+    length, count = plain[0].time[-1], len(state.sample.positions[0])
+    bound = np.sqrt(6 / count) * noise / (np.pi * 0.3 * length)
+    assert abs(values["frequency_hz"] - hertz) < 4 * bound
+
+
+@pytest.mark.parametrize("unit", [1.0, 2.0**-20])
+def test_a_number_that_hardly_moves_the_output_stays_among_those_of_its_list(unit):
+    """An operator that the input only just reaches; its weight could be anything."""
+    one = block("gpi", envelope=ENVELOPE, thresholds=[0.0], weights=[1.0])
+    reach = max(one.simulate(x.u, x.u, x.dt).max() for x in records())
+    loop = block(
+        "gpi",
+        envelope=ENVELOPE,
+        thresholds=[0.0, reach - 1e-9],
+        weights=[0.8 * unit, 0.5 * unit],
+    )
+    state = state_of((loop,), free=tuple(Free(0, "weights", k) for k in (0, 1)))
+    own, hardly = sizes(state) / unit
+    assert own == pytest.approx(0.8)
+    assert 0.5 <= hardly <= 0.8 * FAR
+
+
+def test_a_number_that_is_zero_has_the_size_that_moves_the_output_a_tenth():
+    chain = (hysteresis(), block("asymmetry", coefficient=0.0))
+    state = state_of(chain, free=free_of(chain, ["coefficient"]))
+    (size,) = sizes(state)
+    plain = np.concatenate(
+        [
+            x[at]
+            for x, at in zip(
+                state.simulation.output, state.sample.positions, strict=True
+            )
+        ]
+    )
+    wanted = 0.1 * np.sqrt(np.mean(plain**2) / np.mean(plain**4))
+    assert size == pytest.approx(wanted, rel=1e-3)

@@ -1,0 +1,75 @@
+"""How a grid is looked at: no valley is too narrow, and what is refused is skipped."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.errors import InputError
+from hystbench.gap.effects.base import Declined
+from hystbench.gap.fitting.search import Trial, coarse
+
+
+def attempt(axes, score):
+    """A variant whose score at a point is a plain function; what was asked for it."""
+    variant = SimpleNamespace(grids={str(k): np.array(a) for k, a in enumerate(axes)})
+    asked = []
+
+    def at(point):
+        if point not in asked:
+            asked.append(point)
+        return Trial(variant, {}, score(*point))
+
+    return SimpleNamespace(variant=variant, at=at), asked
+
+
+@given(st.integers(1, 25), st.integers(0, 24))
+def test_of_one_number_no_valley_is_too_narrow(size, valley):
+    valley %= size
+    one, asked = attempt([range(size)], lambda x: -1.0 if x == valley else float(x))
+    assert coarse(one).score == -1.0
+    assert len(asked) == size
+
+
+@given(st.integers(1, 20), st.integers(1, 6), st.data())
+def test_of_two_numbers_a_slanted_valley_is_followed(size, other, data):
+    """Narrow over the first, and its place there moves with the second."""
+    place = data.draw(st.integers(0, size - 1))
+    rest = data.draw(st.integers(0, other - 1))
+    slant = data.draw(st.sampled_from([-1, 0, 1]))
+
+    def score(x, y):
+        return 10.0 * abs(x - place - slant * (y - rest)) + abs(y - rest)
+
+    one, asked = attempt([range(size), range(other)], score)
+    assert coarse(one).score == min(
+        score(x, y) for x in range(size) for y in range(other)
+    )
+    assert len(asked) == size * other
+
+
+def test_a_grid_that_is_refused_nearly_everywhere_is_tried_whole():
+    def score(x, y):
+        if (x, y) != (4, 0):
+            raise InputError("refused")
+        return 3.0
+
+    one, _ = attempt([range(5), range(6)], score)
+    assert coarse(one).score == 3.0
+
+
+def test_a_grid_that_is_refused_everywhere_declines_with_the_reason():
+    def score(x, y):
+        raise InputError(f"{x} and {y} are refused")
+
+    one, _ = attempt([range(5), range(6)], score)
+    with pytest.raises(Declined, match="are refused"):
+        coarse(one)
+
+
+def test_without_a_number_to_search_there_is_one_point():
+    one, asked = attempt([], lambda: 2.0)
+    assert coarse(one).score == 2.0
+    assert asked == [()]

@@ -1,0 +1,61 @@
+"""A model written by the job that names, as the job that shows reads it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Declined
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.search import Attempt, coarse
+from hystbench.gap.fitting.serialize import Restorer, state_mapping
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.naming.rank import make_score
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.model import load_model
+from tests.gap.tiny import write_tiny
+
+#: What an effect needs in the chain, and those that a chain with hysteresis refuses.
+NEEDS = {"stiffness-hardening": ["resonance"]}
+DECLINE = {"hysteresis"}
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    data, base = write_tiny(tmp_path_factory.mktemp("tiny"))
+    evidence = load_evidence(data, "fit")
+    model = load_model(base)
+    return model, *start_state(evidence.fit, model, evidence.hold, evidence.noise_rms)
+
+
+CHAINED = sorted(name for name, item in effects().items() if item.place != "inside")
+
+
+@pytest.mark.parametrize("added", CHAINED)
+def test_a_model_comes_back_from_its_file(tiny, added):
+    """Every effect, added to a chain that lags: it simulates the same."""
+    model, state, floor = tiny
+    score = make_score(state, floor.rms)
+    chain = ["drive-lag", *NEEDS.get(added, []), added]
+    for effect in dict.fromkeys(chain):
+        try:
+            variants = list(effects()[effect].variants(state.simulation))
+        except Declined:
+            assert effect in DECLINE
+            return
+        trial = coarse(Attempt(state, variants[-1], score))
+        state = with_effect(state, trial.variant, trial.values)
+    state = state.settled()
+    changes = {k: 1e-3 * step for k, step in enumerate(state.steps)}
+    moved = replace(state, chain=state.moved(changes))
+    kept = json.loads(json.dumps(state_mapping(moved), allow_nan=False))
+    restored = Restorer(moved.records, model.chain).state(kept)
+    assert restored.chain == moved.chain
+    assert restored.free == moved.free
+    assert restored.added == moved.added
+    np.testing.assert_array_equal(restored.residual, moved.residual)
+    np.testing.assert_array_equal(restored.beside_columns, moved.beside_columns)

@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+
+from hystbench.gap.holdout.black_box import black_box_mapping
+from hystbench.gap.holdout.shrink import mapping, records_mapping, shrink
+from hystbench.gap.judging.black_box import BlackBox
+from hystbench.gap.records.folds import make_folds
+from hystbench.gap.records.residual import rms
+from tests.gap.made import compared, sine
+
+
+def test_black_box_beside_the_named_effects():
+    # A cubic gap; the black box sees amplitudes to 1.2, one hold-out record has 4.
+    items = [
+        compared(sine(f, amplitude=a), sine(f, amplitude=a) ** 3, name=f"r{f}")
+        for f, a in ((1, 1), (2, 1.2), (3, 0.8), (5, 1.1))
+    ]
+    box = BlackBox.fit(items, make_folds([item.record for item in items]), 0.001)
+    held = [
+        compared(sine(2, amplitude=a), sine(2, amplitude=a) ** 3, name=name)
+        for name, a in (("inside", 1.0), ("beyond", 4.0))
+    ]
+    records = [item.record for item in held]
+    before = [item.simulated for item in held]
+    named = shrink(records, before, [item.y for item in records], 0.001, "declared")
+    found = black_box_mapping(box, records, before, named)
+    inside, beyond = found["records"]
+    assert (inside["name"], inside["outside"]) == ("inside", [])
+    assert beyond["outside"] == ["amplitude", "rate"]
+    assert inside["explained"] > 0.95 > beyond["explained"]
+    assert inside["named"] == beyond["named"] == 0
+    assert found["explained_on_folds"] == box.explained_on_folds
+    assert found["outside"] == {
+        key: beyond[key] for key in ("before", "after", "named")
+    }
+    # what is left, by hand
+    left = [item.residual - box.predict(item.record, item.simulated) for item in held]
+    assert found["after"] == pytest.approx(rms(np.concatenate(left)))
+
+
+def test_mappings_are_plain():
+    item = compared(sine(2), sine(3))
+    after = item.simulated + 0.5 * item.residual
+    whole = shrink([item.record], [item.simulated], [after], 0.1, "upper-bound")
+    assert mapping(whole)["explained"] == list(whole.explained)
+    (row,) = records_mapping(whole)
+    assert row["before"] == pytest.approx(np.sqrt(0.5))
+    assert row["after"] == pytest.approx(np.sqrt(0.5) / 2)

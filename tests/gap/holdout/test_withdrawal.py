@@ -1,0 +1,125 @@
+"""Hold-out records choose nothing, and take back what is worse on them."""
+
+import json
+
+import numpy as np
+import pytest
+
+from hystbench.gap.holdout.withdrawal import (
+    WORSE,
+    first_figure,
+    withdrawal,
+    without_names,
+)
+from hystbench.gap.jobs import DECISION, decide_in, show_in
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.report.words import verdict_sentence
+from hystbench.gap.schema import SCHEMA
+from hystbench.model import Model, load_model
+from hystbench.schema import check_against_schema
+from tests.gap.closing import close_gap
+from tests.gap.tiny import BASE, write_tiny
+
+
+def content(before=1.0, after=0.5, verdict="named", names=("creep",), **gap):
+    return {
+        "verdict": verdict,
+        "unit": "um",
+        "effects": [{"name": name} for name in names],
+        "gap": {"before": before, "after": after, "explained": 0.8} | gap,
+        "records": [{"name": "a", "before": before, "after": after, "explained": 0}],
+        "runs_away": [{"record": "a"}] if after is None else [],
+    }
+
+
+@pytest.mark.parametrize(
+    ("verdict", "names"),
+    [
+        ("named", ("creep",)),
+        ("unnamed", ("creep", "backlash")),
+        ("parameters", ()),
+        ("unnamed", ()),
+    ],
+)
+def test_what_is_worse_than_the_base_goes_whatever_the_verdict_was(verdict, names):
+    def taken(after):
+        return withdrawal(content(1.0, after, verdict, names))
+
+    assert taken(0.5) is None
+    assert taken(1.0) is None
+    assert taken(WORSE) is None  # no more than rounding is worth
+    for after in (1.02, 30.0, None):
+        found = taken(after)
+        assert found["names"] == list(names)
+        assert (found["before"], found["after"]) == (1.0, after)
+        assert " and ".join(names) in found["why"]
+    assert "from 1 to 30 um rms" in taken(30.0)["why"]
+
+
+def test_where_there_is_no_gap_the_base_goes_back_to_what_it_was():
+    """Re-tuned it does worse; that says nothing of a gap."""
+    given = content(1.0, 2.0, "no-gap", ()) | {"reason": "noise"}
+    numbers = {"gain.value": {"before": 1.0, "after": 3.0}}
+    found = without_names(given | {"base_parameters": numbers}, withdrawal(given))
+    assert (found["verdict"], found["reason"]) == ("no-gap", "noise")
+    assert found["base_parameters"] == {"gain.value": {"before": 1.0, "after": 1.0}}
+    assert found["withdrawn"]["names"] == []
+
+
+def test_the_first_figure_says_of_what_it_is_a_share():
+    said = first_figure(content(2.0, 1.0))
+    assert said == (
+        "on the hold-out records 80.0 % of the gap's power above the noise floor is "
+        "gone, 2 to 1 um rms"
+    )
+    assert "46.0 % to 54.0 %" in first_figure(content(explained=[0.46, 0.54]))
+    assert "%" not in first_figure(content(explained=None))
+    assert "none of the gap's power" in first_figure(content(explained=-0.001))
+
+
+@pytest.fixture(scope="module")
+def misled(tmp_path_factory):
+    """The drive of the fit records lags, that of the hold-out record does not."""
+    folder = tmp_path_factory.mktemp("misled")
+    data, base = write_tiny(folder)
+    file = data / "unseen.csv"
+    table = np.loadtxt(file, delimiter=",", skiprows=1)
+    table[:, 2] = Model.from_mapping(BASE, "base").simulate(table[:, 1], table[1, 0])
+    table[:, 2] += 0.02 * np.random.default_rng(1).standard_normal(len(table))
+    np.savetxt(file, table, "%.9g", ",", header="time_s,current_A,displacement_um")
+    file.write_text(file.read_text().removeprefix("# "))
+    close_gap(load_evidence(data), load_model(base), folder / "out", report=False)
+    return folder, data, base, json.loads((folder / "out" / "gap.json").read_text())
+
+
+def test_a_name_is_withdrawn_where_the_gap_grows(misled):
+    folder, _, base, found = misled
+    check_against_schema(found, SCHEMA, "gap.json")
+    assert (found["verdict"], found["effects"]) == ("unnamed", [])
+    taken = found["withdrawn"]
+    assert (taken["verdict"], taken["names"]) == ("named", ["drive-lag"])
+    assert taken["after"] > 2 * taken["before"]
+    assert [step["rms"] for step in found["ladder"]] == pytest.approx(
+        [taken["before"], taken["after"]], rel=1e-3
+    )
+    # All that is said now is of the model that was written: the base.
+    assert found["gap"]["after"] == found["gap"]["before"]
+    assert load_model(folder / "out" / "model.yaml").chain == load_model(base).chain
+    table = np.loadtxt(folder / "out/holdout/unseen.csv", delimiter=",", skiprows=1)
+    assert np.array_equal(table[:, 2], table[:, 3])
+
+
+def test_the_page_says_so_first(misled):
+    assert "Drive lag was withdrawn" in verdict_sentence(misled[-1])
+
+
+def test_jobs_take_back_what_one_process_does(misled, tmp_path):
+    """The job that decides knows no hold-out record: it wrote the name."""
+    folder, data, base, _ = misled
+    decide_in(tmp_path, load_evidence(data, "fit"), load_model(base))
+    decided = json.loads((tmp_path / DECISION).read_text())
+    assert (decided["verdict"], len(decided["effects"])) == ("named", 1)
+    assert not (tmp_path / "model.yaml").exists()
+    show_in(tmp_path, load_evidence(data), load_model(base))
+    for file in ("gap.json", "model.yaml", "holdout/unseen.csv"):
+        assert (tmp_path / file).read_bytes() == (folder / "out" / file).read_bytes()

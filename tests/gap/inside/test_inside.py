@@ -1,0 +1,194 @@
+"""Effects inside the dynamics: linear hosts, forces in them, windows of a free mass."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.law import Moved
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.inside.hosts import best_host, one_coordinate
+from hystbench.gap.records.nuisance import left_over
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.windows import decay_of_free_mass, windows
+from hystbench.quantities import Quantities
+from hystbench.record import Channel, Record
+from tests.gap.inside_host import search
+
+DT = 0.005
+NOISE = 0.02
+TIME = np.arange(1600) * DT
+
+
+def record(name, u, y, units=("mm", "N"), use="fit"):
+    channels = Channel("in", units[0]), Channel("out", units[1])
+    return Record(name, DT, u, y, *channels, "measured", use)
+
+
+def damper(size, frequency, seed):
+    """A device that is moved: viscous and dry friction, written without a block."""
+    x = size * np.sin(2 * np.pi * frequency * TIME) + 0.2 * size * np.sin(9.1 * TIME)
+    v = np.gradient(x, DT)
+    noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
+    return record(f"run-{seed}", x, 0.03 * v + 4.0 * np.tanh(v / 3.0) + 1.0 + noise)
+
+
+@pytest.fixture(scope="module")
+def found():
+    records = tuple(damper(s, f, k) for k, (s, f) in enumerate([(2, 1.3), (5, 0.7)]))
+    begun = list(one_coordinate(records, Quantities("position", "force"), "linear"))
+    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    return search(best_host(begun, score), score, offered=["friction", "drag"])
+
+
+def test_friction_of_a_device_that_is_moved_is_found_with_its_numbers(found):
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("friction",)
+    assert best.forms == ("smooth",)
+    law = next(x for x in best.fitted.state.chain if x.name == "smooth-friction")
+    assert law.coulomb == pytest.approx(4.0, rel=0.02)
+    assert law.velocity_scale == pytest.approx(3.0, rel=0.05)
+    rms = np.sqrt(np.mean(best.fitted.state.residual**2))
+    assert rms == pytest.approx(NOISE, rel=0.1)
+
+
+def test_a_host_without_a_force_stands_first(found):
+    assert found[0].effects == ()
+    assert found[0].score > min(item.score for item in found) + 100
+
+
+def test_a_store_has_no_impedance():
+    level = Quantities("position", "level")
+    assert list(one_coordinate((damper(2, 1.3, 0),), level, "linear")) == []
+
+
+def mass(spring):
+    """A mass that a force moves, by small steps of Euler, and a spring."""
+    rng = np.random.default_rng(5)
+    u = 3 * np.sin(2 * np.pi * 0.5 * TIME) + np.cumsum(rng.standard_normal(1600)) * 1e-3
+    fine, q, v, out = 20, 0.0, 0.0, []
+    for force in u:
+        out.append(q)
+        for _ in range(fine):
+            v += DT / fine * (force - 0.8 * v - 0.2 * np.sign(v) - spring * q)
+            q += DT / fine * v
+    return record("mass", u, np.array(out), ("N", "m"))
+
+
+MOVES = Quantities("force", "position")
+
+
+def test_a_mass_without_a_spring_is_known_by_its_records():
+    decay = decay_of_free_mass([mass(0.0)], MOVES)
+    assert decay == pytest.approx(1 / 0.8, rel=0.2)  # mass over damping
+    assert decay_of_free_mass([mass(30.0)], MOVES) is None
+    assert decay_of_free_mass([mass(0.0)], Quantities("position", "force")) is None
+    assert decay_of_free_mass([replace(mass(0.0), use="hold-out")], MOVES) is None
+
+
+def test_windows_begin_at_rest_and_at_zero():
+    whole = mass(0.0)
+    cut = windows(whole)
+    assert len(cut) > 3
+    assert sum(map(len, cut)) <= len(whole)
+    fastest = np.abs(np.gradient(whole.y, DT)).max()
+    for window in cut:
+        assert window.y[0] == 0.0
+        assert abs(window.y[1] - window.y[0]) / DT < 0.05 * fastest
+
+
+def test_what_a_velocity_at_the_first_sample_does_is_left_out():
+    whole = replace(mass(0.0), decay_s=1 / 0.8)
+    plain = replace(whole, decay_s=None)
+    pushed = replace(whole, y=whole.y + 0.3 * whole.of_start[:, 0])
+    sample = Sample.of([whole])
+    assert np.abs(sample.take([whole.y]) - sample.take([pushed.y])).max() < 1e-12
+    assert np.abs(Sample.of([plain]).take([whole.y - pushed.y])).max() > 0.05
+    residual, scored = left_over(pushed, whole.y, None)
+    assert scored.all()
+    assert np.abs(residual).max() < 1e-12
+    assert whole.digest != plain.digest
+
+
+def test_a_window_knows_which_of_its_samples_were_measured():
+    lost = np.zeros(len(TIME), dtype=bool)
+    lost[700:740] = True
+    cut = windows(replace(mass(0.0), interpolated=lost))
+    assert all(len(window.counted) == len(window) for window in cut)
+    assert sum(int((~window.counted).sum()) for window in cut) == 40
+
+
+def test_where_the_place_does_not_matter_no_force_depends_on_it():
+    moved = Moved(reach=1.0, speed=1.0, force=1.0, step=DT, anywhere=True)
+    offered = {name for name, item in effects().items() if any(item.inside(moved))}
+    assert {"friction", "drag", "hysteretic-force"} <= offered
+    assert not {"stop", "stiffness-hardening", "gravity"} & offered
+
+
+def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring():
+    def swing(u, fine=20):
+        angle, rate, found = 0.0, 0.0, []
+        for moment in np.repeat(u, fine):
+            found.append(angle)
+            rate += DT / fine * (moment - 40.0 * np.sin(angle) - 0.8 * rate)
+            angle += DT / fine * rate
+        return np.array(found[::fine])
+
+    random = np.random.default_rng(3)
+    units = ("N*m", "rad")
+    records = []
+    for size in (8.0, 25.0):
+        u = size * np.repeat(random.uniform(-1, 1, 80), 20)
+        y = swing(u) + 1e-3 * random.standard_normal(1600)
+        records.append(record(f"swing-{size:g}", u, y, units))
+    assert max(float(np.abs(one.y).max()) for one in records) > 1.2
+    quantities = Quantities("force", "position")
+    begun = one_coordinate(tuple(records), quantities, "zero-order")
+    sample = Sample.of(tuple(records))
+    score = Score(sample, np.zeros((len(sample), 0)), 1e-6)
+    tried = search(best_host(list(begun), score), score, turns=True)
+    best = min(tried[1:], key=lambda item: item.score)
+    assert best.effects == ("gravity",)
+    assert best.fitted.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)
+
+
+def test_a_limit_of_the_amplifier_before_a_mass_on_a_spring_is_found_there():
+    random = np.random.default_rng(6)
+    records = []
+    for size in (2.0, 6.0):
+        u = size * np.repeat(random.uniform(-1, 1, 160), 10)
+        q, v, out = 0.0, 0.0, []
+        for force in np.repeat(np.clip(u, -3.0, 3.0), 20):
+            out.append(q)
+            v += DT / 20 * (force - 1.5 * v - 60.0 * q)
+            q += DT / 20 * v
+        noise = 1e-4 * random.standard_normal(1600)
+        records.append(record(f"{size:g}", u, np.array(out[::20]) + noise, ("N", "m")))
+    begun = one_coordinate(tuple(records), MOVES, "zero-order")
+    sample = Sample.of(tuple(records))
+    score = Score(sample, np.zeros((len(sample), 0)), 1e-8)
+    best = min(search(best_host(list(begun), score), score), key=lambda x: x.score)
+    assert best.effects == ("drive-saturation",)
+    limit, *_ = best.fitted.state.chain
+    assert limit.limit == pytest.approx(3.0, rel=0.02)
+    assert best.fitted.state.added[0].place == "before"
+
+
+def test_a_slider_without_a_clearance_is_friction_and_no_rival_of_it():
+    """A slider whose clearance goes to nothing fits as well, with two numbers more."""
+    t = TIME
+    x = 2 * np.sin(2 * np.pi * 1.3 * t) + 0.4 * np.sin(9.1 * t)
+    way = np.zeros(len(t))
+    for k in range(1, len(t)):  # slides at 0.1 mm: a stop operator
+        way[k] = np.clip(way[k - 1] + x[k] - x[k - 1], -0.1, 0.1)
+    noise = NOISE * np.random.default_rng(0).standard_normal(len(t))
+    y = 0.03 * np.gradient(x, DT) + 40.0 * way + noise
+    (begun,) = one_coordinate(
+        (record("run", x, y),), Quantities("position", "force"), "linear"
+    )
+    score = Score(begun.sample, np.zeros((len(begun.sample), 0)), NOISE**2)
+    every = search(
+        best_host([begun], score), score, offered=["friction", "slider-with-gap"]
+    )
+    assert {item.effects for item in every} == {(), ("friction",)}

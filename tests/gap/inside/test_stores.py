@@ -1,0 +1,84 @@
+"""Effects of stores: two tanks, written here by small steps of Euler."""
+
+import numpy as np
+import pytest
+
+from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.inside.hosts import best_host
+from hystbench.gap.inside.name import chosen
+from hystbench.gap.inside.stores import stores
+from hystbench.record import Channel, Record
+from tests.gap.inside_host import search
+
+DT, COUNT, FINE = 4.0, 800, 80
+NOISE = 0.02
+CHANNELS = Channel("pump", "V"), Channel("level", "V")
+
+
+def tanks(root, height, seed=3):
+    """One tank above another; what the upper one spills is lost."""
+    rng = np.random.default_rng(seed)
+    u = np.clip(3 + np.repeat(rng.normal(0, 1.5, COUNT // 20), 20), 0, 7)
+    upper, lower, out = 60.0, 50.0, []
+    power = 0.5 if root else 1.0
+    rates = (0.35, 0.3) if root else (0.04, 0.03)
+    step = DT / FINE
+    for flow in u:
+        out.append(lower)
+        for _ in range(FINE):
+            leaves = rates[0] * max(upper, 0.0) ** power
+            lower += step * (leaves - rates[1] * max(lower, 0.0) ** power)
+            upper = min(upper + step * (flow - leaves), height)
+    noise = NOISE * rng.standard_normal(COUNT)
+    y = np.array(out) / 20
+    return Record("run", DT, u, y + noise, *CHANNELS, "measured")
+
+
+def found(record):
+    score = Score(
+        next(stores((record,), "zero-order", NOISE, 2)).sample, np.zeros((800, 0)), 4e-4
+    )
+    host = best_host(list(stores((record,), "zero-order", NOISE, 2)), score)
+    return chosen(search(host, score), score.floor), score
+
+
+def test_an_outflow_by_the_root_of_the_level_is_named():
+    best, _ = found(tanks(root=True, height=np.inf))
+    assert best.effects == ("outflow",)
+    assert all(store.exponent == pytest.approx(0.5, abs=0.1)
+               for store in best.fitted.state.chain)  # fmt: skip
+    left = np.sqrt(np.mean(best.fitted.state.residual**2))
+    assert left < 1.5 * NOISE
+
+
+def test_overflow_is_named_and_goes_out_again():
+    best, _ = found(tanks(root=False, height=90.0))
+    assert best.effects == ("overflow",)
+    state = best.fitted.state
+    assert np.sqrt(np.mean(state.residual**2)) < 1.5 * NOISE
+    # The inflow is counted in volts of the pump: the upper store's unit is ours.
+    assert state.chain[0].height == pytest.approx(90.0, rel=0.03)
+    short = without_effect(state, 0)
+    assert all(store.height > 1e20 for store in short.chain)
+    assert not {free.parameter for free in short.free} & {"height", "caught"}
+    assert short.added == ()
+
+
+def test_linear_stores_need_no_effect():
+    best, _ = found(tanks(root=False, height=np.inf))
+    assert best.effects == ()
+
+
+def test_an_output_that_is_negative_is_no_level():
+    record = tanks(root=False, height=np.inf)
+    below = Record("below", DT, record.u, record.y - 3, *CHANNELS, "measured")
+    assert list(stores((below,), "zero-order", NOISE, 1)) == []
+
+
+def test_a_level_may_be_negative_by_its_noise():
+    record = tanks(root=True, height=np.inf)
+    low = record.y - record.y[0] - NOISE
+    begun = Record("low", DT, record.u, low - low.min() - NOISE, *CHANNELS, "measured")
+    assert min(begun.y) < 0
+    assert list(stores((begun,), "zero-order", NOISE, 1))

@@ -1,0 +1,111 @@
+"""Groups of columns with variances of their own, on problems with a known answer."""
+
+import itertools
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from hystbench.gap.judging.grouped_evidence import Products, _factored
+
+ROWS = 2000
+
+
+def made(seed, counts, sizes, noise):
+    """Columns, and a sum of them with normal amplitudes and white noise."""
+    rng = np.random.default_rng(seed)
+    columns = rng.standard_normal((ROWS, sum(counts)))
+    columns /= np.sqrt(np.mean(columns**2, axis=0))
+    amplitudes = rng.standard_normal(sum(counts)) * np.repeat(sizes, counts)
+    signal = columns @ amplitudes + noise * rng.standard_normal(ROWS)
+    ends = np.cumsum([0, *counts])
+    groups = [range(a, b) for a, b in itertools.pairwise(ends)]
+    return columns, signal, groups
+
+
+def test_of_orthogonal_columns_the_variance_has_a_closed_form():
+    # Their amplitudes by least squares are normal with variance v + s / n.
+    rng = np.random.default_rng(1)
+    columns = np.linalg.qr(rng.standard_normal((ROWS, 12)))[0] * np.sqrt(ROWS)
+    signal = columns @ rng.normal(0, 0.3, 12) + rng.standard_normal(ROWS)
+    found = Products.of(columns, signal).explained([range(12)])
+    amplitudes = columns.T @ signal / ROWS
+    left = signal - columns @ amplitudes
+    # At a fixed point the noise is charged for what the amplitudes determine.
+    assert found.variances[0] + found.noise / ROWS == pytest.approx(
+        np.mean(amplitudes**2), rel=1e-6
+    )
+    assert found.noise == pytest.approx(left @ left / (ROWS - 12), rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_noise_and_sizes_are_found_again(seed):
+    counts, sizes = (30, 40, 20), (2.0, 0.0, 0.5)
+    columns, signal, groups = made(seed, counts, sizes, 1.0)
+    found = Products.of(columns, signal).explained(groups)
+    assert found.noise == pytest.approx(1.0, abs=4 * np.sqrt(2 / ROWS))
+    for size, count, variance in zip(sizes, counts, found.variances, strict=True):
+        error = 4 * np.sqrt(2 / count) * size**2 + 4 / ROWS
+        assert variance == pytest.approx(size**2, abs=error)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_groups_that_explain_nothing_take_no_noise_away(seed):
+    # By least squares 200 columns would take a tenth of it.
+    columns, signal, groups = made(seed, (5, 200), (1.0, 0.0), 1.0)
+    products = Products.of(columns, signal)
+    few, all_of_them = (products.explained(groups[:k]) for k in (1, 2))
+    assert all_of_them.noise == pytest.approx(few.noise, rel=0.02)
+    assert all_of_them.evidence <= few.evidence + 3.0
+
+
+def test_the_evidence_is_the_density_of_the_signal():
+    columns, signal, groups = made(3, (4, 6), (1.0, 0.2), 0.7)
+    columns, signal = columns[:300], signal[:300]
+    columns = columns / np.sqrt(np.mean(columns**2, axis=0))
+    found = Products.of(columns, signal).explained(groups)
+    spread = np.repeat(found.variances, [len(group) for group in groups])
+    covariance = (columns * spread) @ columns.T + found.noise * np.eye(300)
+    density = multivariate_normal(cov=covariance).logpdf(signal)
+    assert found.evidence == pytest.approx(density, rel=1e-6)
+
+
+def test_a_group_offered_twice_explains_no_more():
+    columns, signal, groups = made(4, (15,), (1.0,), 1.0)
+    twice = Products.of(np.hstack([columns, columns]), signal)
+    once = Products.of(columns, signal).explained(groups)
+    assert twice.explained([range(15), range(15, 30)]).noise == pytest.approx(
+        once.noise, rel=1e-3
+    )
+
+
+def test_scales_of_columns_do_not_matter():
+    columns, signal, groups = made(5, (10, 10), (1.0, 0.0), 1.0)
+    scales = 10.0 ** np.arange(-10, 10)
+    one = Products.of(columns, signal).explained(groups)
+    other = Products.of(columns * scales, signal).explained(groups)
+    assert other.noise == pytest.approx(one.noise, rel=1e-9)
+
+
+def test_a_column_of_zeros_and_no_group_at_all():
+    _, signal, _ = made(6, (1,), (1.0,), 1.0)
+    products = Products.of(np.zeros((ROWS, 2)), signal)
+    power = np.mean(signal**2)
+    assert products.explained([]).noise == pytest.approx(power)
+    assert products.explained([range(2)]).noise == pytest.approx(power)
+
+
+def test_products_over_a_tiny_noise_are_inverted_where_rounding_hides_the_one():
+    # One plus v v^T / noise: along v the inverse is noise over v^T v, elsewhere one or,
+    # where rounding adds to the one, less.
+    v = np.random.default_rng(3).standard_normal(30)
+    noise = 1e-20
+    matrix = np.outer(v, v) / noise
+    matrix.flat[:: len(v) + 1] += 1.0
+    with pytest.raises(np.linalg.LinAlgError):
+        np.linalg.cholesky(matrix)
+    factor, determinant = _factored(matrix)
+    sizes = np.linalg.svd(factor, compute_uv=False)
+    assert sizes.max() == pytest.approx(1.0)
+    assert sizes.min() == pytest.approx(np.sqrt(noise / (v @ v)), rel=1e-6)
+    assert determinant == pytest.approx(-2 * np.log(sizes).sum())

@@ -1,0 +1,228 @@
+"""What named effects cannot own, on records whose hidden effect is known."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from hystbench.commands.gap import gap
+from hystbench.gap.effects import effects
+from hystbench.gap.fitting.edit_chain import numbers_of
+from hystbench.gap.fitting.state import Added
+from hystbench.gap.judging.known_signals import halves, low_pass
+from hystbench.gap.judging.unnamed import CHANGE, SORTS, Unnamed, what_is_unnamed
+from hystbench.gap.report.words import verdict_sentence
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.gap.thresholds import UNNAMED_SHARE
+from tests.gap.made import record
+from tests.gap.small import block, measured, state_of
+
+NOISE = 0.02
+GAIN = block("gain", value=12.0)
+
+
+@cache
+def inputs():
+    """Four records of tones that start softly, each of other tones."""
+    given = []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        t = np.arange(1600) / 800
+        u = sum(
+            rng.uniform(0.1, 0.3) * np.sin(2 * np.pi * f * t + rng.uniform(0, 6))
+            for f in rng.uniform(1, 60, 5)
+        )
+        soft = np.minimum(1, t / 0.1)
+        given.append(record(u * soft, name=f"tones-{seed}", dt=1 / 800))
+    return tuple(given)
+
+
+def with_output(change, seed=0):
+    """The gain's output, changed record by record, with noise."""
+    rng = np.random.default_rng(100 + seed)
+    return tuple(
+        record(
+            one.u,
+            12.0 * one.u + change(k, one) + NOISE * rng.standard_normal(len(one)),
+            name=one.name,
+            dt=one.dt,
+        )
+        for k, one in enumerate(inputs())
+    )
+
+
+def lagging(given, tau):
+    """The gain with a sensor lag named behind it."""
+    start = state_of((GAIN,), given, count=800)
+    lag = block("sensor-lag", time_constant_s=tau)
+    simulation = Simulation((GAIN,), given)
+    (variant, *_) = effects()["sensor-lag"].variants(simulation)
+    added = Added("sensor-lag", "sensor", "", (1,), {"time_constant_s": tau}, 1)
+    chain = (GAIN, lag)
+    state = state_of(
+        chain,
+        given,
+        count=800,
+        free=tuple(numbers_of(lag, 1, variant)),
+        added=(added,),
+    )
+    return start, state
+
+
+def lag_of(tau):
+    return lambda k, one: low_pass(12.0 * one.u, one.dt, tau, 0.0) - 12.0 * one.u
+
+
+def test_the_right_name_owns_all_that_it_leaves():
+    given = measured((GAIN, block("sensor-lag", time_constant_s=4e-3)), NOISE)
+    for tau in (4e-3, 4.2e-3):  # a number a little off is its own
+        found = what_is_unnamed(*lagging(given, tau), NOISE)
+        assert not found.too_much()
+        assert found.structured < 1e-3
+        assert found.changing is not None
+        assert found.changing < 1e-3
+        assert found.unrelated < 0.01
+        assert found.factors == pytest.approx([1.0, 1.0], abs=0.1)
+
+
+@pytest.mark.parametrize("spread", [0.3, -0.3])
+def test_a_strength_that_differs_between_records_is_found_with_its_factors(spread):
+    # A signal of every record that the model has as 12 u (1 + 0.1 strength).
+    strength = 1 + spread * np.array([1.0, -1.0, 0.5, -0.5])
+    given = with_output(lambda k, one: 1.2 * strength[k] * one.u)
+    start = state_of((GAIN,), given, count=800)
+    named = block("calibration-error", gain=1.1, offset=0.0)
+    added = Added("calibration-error", "sensor", "", (1,), {}, 1)
+    state = state_of((GAIN, named), given, count=800, added=(added,))
+    found = what_is_unnamed(start, state, NOISE)
+    assert found.too_much()
+    assert found.sort() == "strength"
+    assert found.factors == pytest.approx(strength, abs=0.02)
+    # Of strengths 1 + e_k the mean of e_k^2 over the mean of (1 + e_k)^2 goes, but for
+    # a common gain, which the name may own: the records' own powers weigh both.
+    powers = np.array([np.var(one.u) for one in given])
+    common = powers @ strength / powers.sum()
+    share = powers @ (strength - common) ** 2 / (powers @ strength**2)
+    assert found.structured == pytest.approx(share, rel=0.1)
+    assert found.changing == pytest.approx(share, rel=0.1)
+
+
+SHAPES = {
+    "memory": lambda k, one: lag_of(3e-3)(k, one),
+    "curve": lambda k, one: 2.0 * np.abs(one.u) ** 3,
+    "history": lambda k, one: 3.0 * one.u * low_pass(one.u**2, one.dt, 0.6, 0.0),
+    "unrelated": lambda k, one: np.random.default_rng(k).standard_normal(len(one)),
+}
+
+
+@pytest.mark.parametrize("sort", SHAPES)
+def test_with_no_name_the_sort_of_the_gap_is_told(sort):
+    given = with_output(SHAPES[sort])
+    start = state_of((GAIN,), given, count=800)
+    found = what_is_unnamed(start, start, NOISE)
+    assert found.sort() == sort
+    assert found.changing is None
+    assert found.factors == ()
+    if sort == "unrelated":
+        assert found.structured < UNNAMED_SHARE
+        assert found.unrelated > 0.9
+
+
+def test_noise_alone_has_no_structure():
+    given = with_output(lambda k, one: 0.0)
+    start = state_of((GAIN,), given, count=800)
+    found = what_is_unnamed(start, start, NOISE)
+    # Of less gap than noise the noise's power counts: shares are of that.
+    assert found.structured < 0.02
+    assert found.unrelated < 0.1
+
+
+def test_another_effect_than_the_hidden_one_is_withdrawn():
+    # A cube beside a lag: a lag alone cannot own it.
+    given = with_output(lambda k, one: lag_of(4e-3)(k, one) + 6.0 * one.u**3)
+    start, state = lagging(given, 4e-3)
+    found = what_is_unnamed(start, state, NOISE)
+    assert found.too_much()
+    assert found.sort() == "curve"
+    assert SORTS["curve"] in found.reason()
+
+
+def test_a_path_that_is_named_owns_slow_paths():
+    def wander(k, one):
+        slow = np.arange(len(one)) / len(one)
+        return 0.5 * np.cos(np.pi * (k + 1) * slow)
+
+    given = with_output(wander)
+    start = state_of((GAIN,), given, count=800)
+    simulation = Simulation((GAIN,), given)
+    beside = next(
+        x.beside
+        for x in effects()["drift"].variants(simulation)
+        if x.beside is not None
+    )
+    added = Added("drift", "sensor", "", (), {}, 1)
+    state = state_of((GAIN,), given, count=800, added=(added,), beside=((beside, {}),))
+    assert what_is_unnamed(start, start, NOISE).structured > 0.5
+    assert not what_is_unnamed(start, state, NOISE).too_much()
+    # In windows of a free mass any small error of a force makes such a path.
+    cut = state_of((GAIN,), [replace(one, decay_s=1.0) for one in given], count=800)
+    assert what_is_unnamed(cut, cut, NOISE).structured < 0.1
+
+
+def test_one_number_sets_both_limits():
+    for share in (0.01, 0.05):
+        assert Unnamed(1.01 * share).too_much(share)
+        assert not Unnamed(0.99 * share, 0.99 * CHANGE * share).too_much(share)
+        assert Unnamed(0.0, 1.01 * CHANGE * share).too_much(share)
+
+
+def test_what_changes_is_told_where_that_alone_withdraws():
+    found = Unnamed(0.002, 0.004, 0.0, {"statics": 50.0})
+    assert found.sort() == "strength"
+    assert "0.4 %" in found.reason()
+    assert found.mapping()["sentence"] == SORTS["strength"]
+    fine = Unnamed(0.002, 0.001, 0.1, {"statics": 50.0}).mapping()
+    assert fine["sort"] is fine["sentence"] is None
+
+
+def test_halves_are_those_of_every_record():
+    given = measured((GAIN,))
+    state = state_of((GAIN,), given, count=100)
+    signals = np.random.default_rng(0).standard_normal((len(state.sample), 3))
+    parts = halves(state, signals)
+    assert parts.shape == (len(state.sample), 3 * 2 * len(given))
+    assert parts.reshape(len(signals), -1, 3).sum(axis=1) == pytest.approx(signals)
+    assert (np.count_nonzero(parts, axis=0) == 50).all()
+
+
+PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None}
+
+
+@pytest.mark.parametrize("sort", SORTS)
+def test_the_page_says_what_it_is_like_and_of_what_sort(sort):
+    told = PLAIN | {"unnamed": {"sentence": SORTS[sort]}}
+    like = verdict_sentence(
+        told | {"effects": [{"name": "drive-lag"}, {"name": "creep"}]}
+    )
+    assert like.endswith(
+        f"It looks like drive lag and creep, but is not that: {SORTS[sort]}."
+    )
+    assert verdict_sentence(told | {"effects": []}).endswith(f" {SORTS[sort]}.")
+
+
+def test_an_older_result_without_the_shares_has_its_sentence_too():
+    told = PLAIN | {"unnamed": None}
+    assert verdict_sentence(told | {"effects": [{"name": "creep"}]}).endswith(
+        "not that."
+    )
+    assert verdict_sentence(told | {"effects": []}).endswith("what differs.")
+
+
+def test_the_command_and_the_workflow_allow_the_same_share():
+    command = {option.name: option for option in gap.params}
+    assert command["unnamed_share"].default == UNNAMED_SHARE
+    config = yaml.safe_load(Path("config.yaml").read_text())
+    assert config["gap"]["unnamed_share"] == UNNAMED_SHARE

@@ -1,0 +1,248 @@
+"""The word of the verdict and the confidence of a name, at and around their limits."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.gap.judging.unnamed import CHANGE, LOOSE, Unnamed
+from hystbench.gap.judging.verdict import (
+    GIVE,
+    LONE,
+    SLIGHT,
+    SOME,
+    UNREPEATED,
+    WIDE,
+    Left,
+    confidence,
+    error_of,
+    judge,
+    what_is_left,
+    what_mends,
+)
+from hystbench.gap.naming.rounds import Candidate, near
+from hystbench.gap.thresholds import ABOVE_NOISE, TIE
+from hystbench.record import Channel, Record
+from tests.gap.small import block, measured, state_of
+
+SIZES = st.floats(-1.0, 1e6)
+SHARES = st.floats(0.0, 1.0)
+
+
+def left(after, before=100.0):
+    return Left(before, after, before, after)
+
+
+@given(SIZES, SIZES, SIZES, SIZES, st.booleans(), st.none() | SHARES)
+def test_every_finding_has_a_word_and_a_reason(before, after, one, other, named, box):
+    found = Left(before, after, one, other)
+    word, reason = judge(found, named, box)
+    assert word in ("named", "no-gap", "unnamed")
+    assert (word == "no-gap") <= (not named)
+    assert reason
+    assert "\n" not in reason
+    assert 0 <= found.loose <= 1
+
+
+@given(st.floats(-1, ABOVE_NOISE), st.none() | SHARES)
+def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
+    assert judge(left(after), False, box)[0] == "no-gap"
+
+
+@given(st.floats(-1, ABOVE_NOISE), SHARES)
+def test_noise_that_stands_in_lone_samples_is_none(after, lone):
+    word, reason = judge(left(after, after), False, 0.0, lone=lone)
+    told = lone * (1 + after) > LONE
+    assert word == ("unnamed" if told else "no-gap")
+    assert ("lone samples" in reason) == told
+
+
+@given(st.floats(0, 40), st.floats(-1, 10))
+def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
+    # As slight as only a wrong shape of the hysteresis leaves it.
+    found = Left(0.0, 0.0, 100.0, after, 1e6)
+    word, reason = judge(found, False, 0.0, unrepeated=differs)
+    told = differs > max(UNREPEATED, SOME * after)
+    assert word == ("unnamed" if told else "no-gap")
+    assert ("one period" in reason) == told
+
+
+@given(st.floats(0, 0.49), st.floats(0.51, 1e5))
+def test_a_wide_gap_is_one_though_reshaping_could_do_all_of_it(beyond, whole):
+    output = 1e5
+    found = Left(beyond, beyond, whole, whole, output)
+    word, reason = judge(found, False, 0.0)
+    assert word == ("no-gap" if whole < WIDE**2 * output else "unnamed")
+    assert (word == "no-gap") == ("% of the output" in reason)
+
+
+def test_names_that_leave_most_of_a_slightly_wrong_shape_are_to_be_taken_back():
+    assert Left(2.0, 2.0, 100.0, 60.0, 1e6).little_named
+    # What they leave is 40 % of the gap, nearly all of it what reshaping could do.
+    assert not Left(20.0, 2.0, 100.0, 40.0, 1e6).little_named
+
+
+@given(SIZES, SIZES, SIZES, SIZES, st.floats(0, 1e6), st.booleans())
+def test_an_upper_bound_of_the_noise_never_shows_that_there_is_no_gap(
+    before, after, one, other, output, retuned
+):
+    """A floor that may hold the whole gap: all else is judged as with a known one."""
+    found = Left(before, after, one, other, output)
+    known = judge(found, False, 0.0, retuned)
+    bound = judge(found, False, 0.0, retuned, bound=True)
+    if known[0] != "no-gap":
+        assert bound == known
+        return
+    assert bound[0] == "unnamed"
+    assert "only an upper bound" in bound[1]
+    for key in ("period_samples", "noise_rms"):
+        assert key in bound[1]
+
+
+def test_a_reason_tells_harm_and_the_unknown_of_the_black_box_as_they_are():
+    reasons = [judge(left(90.0), False, box)[1] for box in (-0.3, None, 0.3, 0.0)]
+    assert "a black box makes it worse on folds of the fit records" in reasons[0]
+    assert "is not known" in reasons[1]
+    assert "takes 30 % of the power of it away on folds" in reasons[2]
+    assert "takes 0 % of the power of it away on folds" in reasons[3]
+
+
+@given(st.floats(1.01 * ABOVE_NOISE, 1e6), st.none() | SHARES)
+def test_a_gap_that_nothing_takes_away_is_unnamed(after, box):
+    assert judge(left(after), False, box)[0] == "unnamed"
+
+
+def test_a_percent_of_the_output_that_reshaping_explains_is_no_gap():
+    """A gap of 3 floors beyond a wrong shape, of 30 in all, at 1 % of the output."""
+    output = 3.0 / (0.9 * SLIGHT) ** 2
+    slight = Left(3.0, 3.0, 30.0, 30.0, output)
+    assert judge(slight, False, 0.9)[0] == "no-gap"
+    # more of the output, or a gap that no reshaping explains, is one to be named
+    large = Left(3.0, 3.0, 30.0, 30.0, 0.5 * output)
+    alien = Left(3.0, 3.0, 4.0, 4.0, output)
+    for other in (large, alien):
+        assert judge(other, False, 0.9)[0] == "unnamed"
+
+
+@given(SHARES, SHARES, SHARES, st.floats(1e-3, 0.5))
+def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest, share):
+    found = Unnamed(follows, changes, rest)
+    word, reason = judge(left(1.0), True, unnamed=found, unnamed_share=share)
+    known = follows > share or changes > CHANGE * share
+    assert word == ("unnamed" if known or follows + rest > LOOSE else "named")
+    assert ("too much stays" in reason) == (not known and follows + rest > LOOSE)
+    assert judge(left(1.0), True, unnamed=Unnamed(0.0))[0] == "named"
+
+
+@pytest.mark.parametrize(("stays", "less"), [(0.05, False), (0.3, True)])
+def test_a_withdrawal_is_less_sure_beside_a_base_that_may_be_wrong(stays, less):
+    found = Left(100.0, 2.0, 100.0, 100.0 * stays, 1e6)
+    word, reason = judge(found, True, unnamed=Unnamed(0.02))
+    assert word == "unnamed"
+    assert ("less sure" in reason) == less
+    # What is structured is none of that.
+    assert "less sure" not in judge(found, True, unnamed=Unnamed(0.28))[1]
+
+
+@given(st.lists(st.floats(0, 200), min_size=1, max_size=6), st.floats(0, 100))
+def test_confidence_is_a_probability_that_rivals_and_rest_take_from(gaps, after):
+    first = Candidate("creep", "mechanics", score=-500.0)
+    state = state_of((block("gain", value=12.0),))
+    others = [
+        Candidate(f"other {k}", "drive", score=-500.0 + g, state=state)
+        for k, g in enumerate(gaps)
+    ]
+    sure = confidence(first, [first, *others], left(after))
+    assert 0 <= sure <= 1
+    assert sure <= confidence(first, [first, *others[1:]], left(after))
+    assert sure <= confidence(first, [first, *others], left(after / 2))
+    refused = Candidate("slew-limit", "drive", declined="too short")
+    assert confidence(first, [first, *others, refused], left(after)) == sure
+    # What was not put to folds has no score that the others' can be held against.
+    no_finalist = Candidate("backlash", "mechanics", score=-600.0)
+    assert confidence(first, [first, *others, no_finalist], left(after)) == sure
+
+
+def test_no_name_is_surer_than_that_its_numbers_are_anything():
+    """Two thirds of a normal distribution lie within one standard error."""
+    one = Candidate("creep", "mechanics", score=-500.0)
+    sure = [confidence(one, [one], left(0.0), e) for e in (0.0, 0.1, 1.0, 3.0, 1e9)]
+    assert sure[:2] == [0.98, 0.98]
+    assert sure[2] == pytest.approx(0.6827, abs=1e-4)
+    assert sure[3] == pytest.approx(0.2611, abs=1e-4)
+    assert sure[4] < 1e-6
+
+
+def number(value, error):
+    return {"value": value, "standard_error": error, "unit": "s"}
+
+
+def test_the_error_of_an_effect_is_that_of_its_size_or_of_its_best_known_number():
+    loose = {"level": number(2.0, 6.0), "sharpness": number(4.0, 8.0)}
+    assert error_of(0.1, loose) == 2.0
+    assert error_of(None, loose) == 2.0
+    # A mode may be told by its frequency; that it is there at all, its size tells.
+    mode = {"frequency_hz": number(60.0, 0.6), "participation": number(0.1, 0.4)}
+    assert error_of(4.0, mode) == 4.0
+    assert error_of(None, mode) == pytest.approx(0.01)
+    many = {"times": number([1.0, -2.0], [3.0, 1.0]), "shape": number("slab", None)}
+    assert error_of(0.2, many) == 0.5
+    assert error_of(None, {"times": number([1.0, 2.0], [None, None])}) == 0.0
+    assert error_of(0.1, {"slope": number(0.0, 1.0)}) == np.inf
+
+
+def test_two_that_score_alike_share_the_confidence():
+    state = state_of((block("gain", value=12.0),))
+    one, other = (
+        Candidate(name, "drive", score=-10.0, state=state) for name in ("a", "b")
+    )
+    both = [confidence(item, [one, other], left(0.0)) for item in (one, other)]
+    assert both[0] == both[1] <= 0.5
+
+
+def test_the_set_of_those_that_cannot_be_told_apart():
+    state = state_of((block("gain", value=12.0),))
+    scores = {"a": 0.0, "b": 0.9 * TIE, "c": 1.1 * TIE}
+    ranking = [Candidate(k, "drive", score=v, state=state) for k, v in scores.items()]
+    ranking.append(Candidate("d", "drive", score=0.1))  # not refitted: no finalist
+    assert near(ranking[0], ranking) == ("b",)
+    assert near(ranking[2], ranking) == ("a", "b")
+
+
+def test_what_is_left_of_a_gap_is_counted_in_floors():
+    noise = 0.05
+    records = measured((block("gain", value=12.0),), noise)
+    there = state_of((block("gain", value=12.0),), records, count=600)
+    wrong = state_of(
+        (block("gain", value=12.0), block("sensor-lag", time_constant_s=0.01)),
+        records,
+        count=600,
+    )
+    found = what_is_left(wrong, there, noise)
+    plain = np.mean(
+        [np.mean(wrong.residual[part] ** 2) for part in wrong.sample.slices]
+    )
+    assert found.all_before == pytest.approx(plain / noise**2 - 1)
+    # A mean of 1200 squares scatters by sqrt(2 / 1200), about 4 %.
+    assert abs(found.all_after) < 0.2
+    assert abs(found.after) < 0.2
+    assert found.before <= found.all_before
+    assert found.loose < 0.05
+
+
+def test_periods_that_are_found_are_what_mends_an_upper_bound():
+    time = np.arange(1000)
+    rng = np.random.default_rng(0)
+
+    def made(name, u):
+        channel = Channel("x", "V")
+        return Record(name, 1e-3, u, u + 1.0, channel, channel, "measured")
+
+    repeats = made("r", np.sin(2 * np.pi * time / 125))
+    noise = made("n", rng.standard_normal(1000))
+    told = what_mends([repeats, noise])
+    assert "'period_samples: 125' of record r" in told
+    assert "record n" not in told
+    assert what_mends([noise]) == GIVE
+    _, reason = judge(Left(0, 0, 0, 0, 1), False, 0.0, bound=True, mends=told)
+    assert reason.endswith(told)

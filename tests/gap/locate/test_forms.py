@@ -1,0 +1,105 @@
+"""Laws of one name: each is found under it, before what can imitate any."""
+
+import pytest
+
+from hystbench.gap.effects import effects
+from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.thresholds import PAYS, SHAPE
+from tests.gap.small import block, hysteresis, measured, records, state_of
+
+NOISE = 0.01
+GAIN = block("gain", value=12.0, offset=0.5)
+LOOP = hysteresis()
+PLAYS = block(
+    "prandtl-ishlinskii", thresholds=[0.05, 0.2, 0.4], weights=[0.06, -0.03, 0.05]
+)
+# What is hidden beside a hysteresis or a gain: the whole chain that makes the data, in
+# laws that are the physics of one name.
+HIDDEN = {
+    "square of the field": (
+        "asymmetry",
+        (LOOP,),
+        (block("asymmetry", coefficient=0.08), LOOP),
+    ),
+    "butterfly": (
+        "asymmetry",
+        (LOOP,),
+        (LOOP, block("butterfly", coefficient=2.0, threshold=0.1)),
+    ),
+    "field": (
+        "saturation",
+        (LOOP,),
+        (block("saturation", level=1.6), LOOP),
+    ),
+    "field, algebraic": (
+        "saturation",
+        (LOOP,),
+        (block("saturation", level=1.0, sharpness=6.0), LOOP),
+    ),
+    "algebraic": (  # Froelich's law
+        "saturation",
+        (LOOP,),
+        (LOOP, block("saturation", level=100.0, sharpness=1.0)),
+    ),
+    "half-space": (
+        "eddy-diffusion",
+        (LOOP,),
+        (block("eddy-diffusion", time_constant_s=1e-4, geometry="half-space"), LOOP),
+    ),
+    "logarithmic": (
+        "creep",
+        (LOOP,),
+        (
+            LOOP,
+            block(
+                "logarithmic-creep",
+                magnitude=0.3,
+                first_time_s=2e-3,
+                last_time_s=10.0,
+            ),
+        ),
+    ),
+    "fractional": (
+        "creep",
+        (LOOP,),
+        (
+            LOOP,
+            block(
+                "logarithmic-creep",
+                magnitude=0.4,
+                first_time_s=2e-3,
+                last_time_s=10.0,
+                power=0.4,
+            ),
+        ),
+    ),
+    "plays": ("hysteresis", (GAIN,), (PLAYS, GAIN)),
+    "acting-field, 0.5": (
+        "rate-dependent-hysteresis",
+        (LOOP,),
+        (
+            LOOP,
+            block(
+                "rate-dependent-hysteresis",
+                coefficient=4e-3,
+                exponent=0.5,
+                form="acting-field",
+            ),
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("form", HIDDEN)
+def test_a_law_is_found_under_its_name(form):
+    name, base, chain = HIDDEN[form]
+    state = state_of(base, measured(chain, NOISE, given=records()))
+    score = make_score(state, NOISE)
+    known = [effects()[item] for item in (name, SHAPE, "backlash", "sensor-lag")]
+    ranking = rank(state, score, known, folds=False)
+    first = ranking[0]
+    told = [f"{item.effect} {item.form} {item.gain:.0f}" for item in ranking]
+    assert (first.effect, first.form) == (name, form), told
+    assert first.gain > PAYS, told
+    gap = state.power(NOISE**2)
+    assert first.state.share(state, NOISE**2, gap) > 0.95, told

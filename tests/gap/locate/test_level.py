@@ -1,0 +1,196 @@
+"""Level by level: classes of oscillators that are known, and a measured aircraft."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hystbench.gap.locate import locate
+from hystbench.gap.locate.level import picture_of, take_levels
+from hystbench.gap.locate.moving import WORDS
+from hystbench.gap.locate.samples import take_samples
+from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.records.floor import noise_floor
+from hystbench.gap.records.residual import Compared
+from hystbench.gap.schema import VIEW
+from hystbench.model import load_model
+from hystbench.record import Channel, Record
+from hystbench.schema import check_against_schema
+from tests.gap.oscillators import DAMPING, DT, HERTZ, LEVELS, PERIOD, simulate
+
+AIRCRAFT = Path(__file__).parents[3].parent / "shared" / "data" / "f16-ground-vibration"
+CLASSES = {
+    "linear": "none",
+    "hardening": "hardening",
+    "softening": "softening",
+    "hysteresis": "micro-slip or hysteresis",
+    "coulomb": "Coulomb friction",
+    "clearance": "clearance",
+    "before": "a static curve before or behind",
+}
+OUTPUTS = {"m": 1, "m/s": 2, "m/s^2": 3}
+
+
+@pytest.fixture(scope="module")
+def oscillators():
+    return simulate()
+
+
+def records(signals, unit="m", noise=1e-3, period=PERIOD, levels=LEVELS):
+    """Records of one oscillator beside a simulation that is nothing."""
+    rng = np.random.default_rng(0)
+    found = []
+    for k, level in enumerate(LEVELS):
+        if level not in levels:
+            continue
+        u, y = signals[0, k], signals[OUTPUTS.get(unit, 1), k]
+        y = y + noise * y.std() * rng.standard_normal(len(y))
+        channels = Channel("force", "N"), Channel("output", unit)
+        about = (f"level-{k}", DT, u.copy(), y, *channels, "measured", "fit", period)
+        found.append(Compared(Record(*about), np.zeros(len(y))))
+    return found
+
+
+def moving(compared):
+    return take_levels(take_samples(compared, noise_floor(compared)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "unit"),
+    [
+        *((kind, "m/s^2") for kind in CLASSES),
+        *(("softening", unit) for unit in ("m", "V")),
+        *((kind, "m") for kind in ("hardening", "clearance")),
+    ],
+)
+def test_what_moves_tells_the_class(oscillators, kind, unit):
+    (mode,) = moving(records(oscillators[kind], unit))
+    assert mode.kind == CLASSES[kind]
+    assert WORDS[mode.kind] in mode.sentence
+
+
+@pytest.mark.parametrize("kind", ["linear", "hysteresis"])
+def test_records_that_start_from_rest_and_noise_change_no_class(oscillators, kind):
+    compared = records(oscillators[kind], "m/s", noise=0.05, period=None)
+    (mode,) = moving(compared)
+    assert mode.kind == CLASSES[kind]
+
+
+def test_numbers_of_a_linear_mode_are_right_within_their_errors(oscillators):
+    (mode,) = moving(records(oscillators["linear"], noise=0.05))
+    # A mass of one: a unit of force accelerates it by one.
+    truth = np.array([HERTZ, DAMPING, DAMPING, 1.0])
+    away = (mode.numbers / truth - 1) / mode.errors
+    assert np.abs(away).max() < 4
+    assert mode.errors[:, 0].max() < 0.01
+
+
+def test_a_curved_spring_takes_no_power(oscillators):
+    """Its peak is wider than the damping makes it; power in is that of the damping."""
+    (mode,) = moving(records(oscillators["hardening"]))
+    third = mode.modes[2]
+    assert third.damping > 2 * DAMPING
+    rate = third.power_damping * third.frequency
+    assert abs(rate / (DAMPING * HERTZ) - 1) < 3 * third.errors[2]
+
+
+def test_coulomb_friction_falls_with_the_motion(oscillators):
+    """The equivalent damper of a force F in a motion v is sqrt(2 / pi) F / rms(v)."""
+    signals = oscillators["coulomb"]
+    (mode,) = moving(records(signals))
+    speed = signals[2, :, PERIOD:].std(axis=1)
+    added = np.sqrt(2 / np.pi) * 25.0 / speed / (2 * 2 * np.pi * HERTZ)
+    assert mode.numbers[:, 2] == pytest.approx(DAMPING + added, rel=0.3)
+
+
+@pytest.mark.parametrize(
+    "compared",
+    [
+        lambda found: records(found["hardening"], levels=LEVELS[:2]),
+        lambda found: [
+            Compared(
+                Record(
+                    f"sine-{size}",
+                    DT,
+                    size * np.sin(2 * np.pi * 4 * DT * np.arange(PERIOD)),
+                    size * np.cos(2 * np.pi * 4 * DT * np.arange(PERIOD)),
+                    Channel("force", "N"),
+                    Channel("output", "m"),
+                    "measured",
+                ),
+                np.zeros(PERIOD),
+            )
+            for size in (1.0, 2.0, 3.0)
+        ],
+    ],
+    ids=["two levels", "sines"],
+)
+def test_where_levels_show_nothing_there_is_no_view(oscillators, compared):
+    found = compared(oscillators)
+    assert moving(found) == ()
+    found = locate(found, noise_floor(found))
+    assert "level" not in {view.view for view in found.views}
+    assert any("modes by level" in line for line in found.not_drawn)
+
+
+def test_levels_that_are_alike_are_one(oscillators):
+    signals = oscillators["hardening"] * np.array([1.0, 1.05, 1.1, 1.15])[:, None]
+    signals[0] *= (LEVELS[0] / np.array(LEVELS))[:, None]
+    assert moving(records(signals)) == ()
+
+
+def test_the_view_is_as_gap_json_has_it(oscillators):
+    compared = records(oscillators["hysteresis"])
+    floor = noise_floor(compared)
+    (view,) = (item for item in locate(compared, floor).views if item.view == "level")
+    check_against_schema(view.to_mapping(), VIEW, "view")
+    assert (view.start, view.end) == pytest.approx((LEVELS[0], LEVELS[-1]))
+    assert view.p_value < 1e-6
+    # The simulation is nothing: all of the motion near the mode is the gap.
+    assert view.share_of_gap_power > 0.7
+    assert "micro-slip" in view.sentence
+    (picture,) = view.pictures
+    json.dumps(picture.to_mapping(), allow_nan=False)
+
+
+def test_a_mode_that_stays_is_no_evidence(oscillators):
+    compared = records(oscillators["linear"])
+    views = locate(compared, noise_floor(compared)).views
+    (view,) = (item for item in views if item.view == "level")
+    assert view.p_value > 0.05
+
+
+def test_the_picture_has_axes_with_units(oscillators):
+    """Frequency, damping and gain, each with the numbers of the mode and errors."""
+    modes = moving(records(oscillators["hysteresis"]))
+    picture = picture_of(modes, "N")
+    axes = [(panel.x.unit, panel.y.name, panel.y.unit) for panel in picture.panels]
+    assert axes == [
+        ("N", "change of frequency", "%"),
+        ("N", "damping ratio", "%"),
+        ("N", "gain over the first", ""),
+    ]
+    frequency, damping, _ = (panel.series for panel in picture.panels)
+    assert frequency[0].label.endswith("Hz: micro-slip or hysteresis")
+    assert damping[0].y == pytest.approx(100 * modes[0].numbers[:, 2], rel=1e-5)
+    errors = 100 * modes[0].errors[:, 2] * modes[0].numbers[:, 2]
+    assert damping[0].error == pytest.approx(errors, rel=1e-5)
+
+
+@pytest.mark.skipif(not AIRCRAFT.is_dir(), reason="the measurements are not here")
+def test_the_bolted_joint_of_an_aircraft_slips():
+    """Published: modes fall by .5 to 3 %, the damping of the first grows fourfold."""
+    evidence = load_evidence(AIRCRAFT, "fit")
+    base = load_model(AIRCRAFT / "modal-at-level-1.yaml")
+    compared = [Compared(item, base.simulate(item.u, item.dt)) for item in evidence.fit]
+    modes = moving(compared)
+    assert {mode.kind for mode in modes} == {"micro-slip or hysteresis"}
+    first = modes[0].numbers
+    assert first[0, 0] == pytest.approx(7.3, abs=0.05)
+    for mode in modes:
+        change = mode.numbers[-1, 0] / mode.numbers[0, 0] - 1
+        assert -0.03 < change < -0.005
+    assert 3 < first[-1, 2] / first[0, 2] < 5

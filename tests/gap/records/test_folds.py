@@ -1,0 +1,96 @@
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hystbench.errors import InputError
+from hystbench.gap.records.folds import chosen, make_folds
+from tests.gap.made import record, sine
+
+
+@given(st.lists(st.integers(100, 400), min_size=1, max_size=12))
+def test_every_sample_judges_once_and_never_where_it_fits(lengths):
+    records = [
+        record(sine(1 + place, count=count), name=f"r{place}")
+        for place, count in enumerate(lengths)
+    ]
+    folds = make_folds(records)
+    assert 3 <= len(folds) <= 5
+    for place, item in enumerate(records):
+        judged = np.sum([fold.validation[place] for fold in folds], axis=0)
+        assert np.array_equal(judged, np.ones(len(item)))
+    for fold in folds:
+        assert any(mask.any() for mask in fold.train)
+        assert any(mask.any() for mask in fold.validation)
+        for train, validation in zip(fold.train, fold.validation, strict=True):
+            assert not np.any(train & validation)
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 9, 11])
+def test_three_records_or_more_are_held_out_whole(count):
+    folds = make_folds([record(sine(1 + place)) for place in range(count)])
+    for fold in folds:
+        for train, validation in zip(fold.train, fold.validation, strict=True):
+            assert train.all() != validation.all()
+            assert train.any() != validation.any()
+
+
+def test_neighbours_in_rate_are_held_out_in_different_folds():
+    frequencies = [40, 1, 20, 5, 10, 80, 2]
+    folds = make_folds([record(sine(each)) for each in frequencies])
+    of = {
+        each: next(k for k, fold in enumerate(folds) if fold.validation[place].all())
+        for place, each in enumerate(frequencies)
+    }
+    ordered = sorted(frequencies)
+    for slower, faster in pairwise(ordered):
+        assert of[slower] != of[faster]
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_blocks_keep_a_guard_gap(count):
+    folds = make_folds([record(sine(3, count=1000))] * count)
+    for fold in folds:
+        for train, validation in zip(fold.train, fold.validation, strict=True):
+            inside = np.flatnonzero(validation)
+            assert np.array_equal(inside, np.arange(inside[0], inside[-1] + 1))
+            gap = np.abs(np.flatnonzero(train)[:, None] - inside[[0, -1]]).min()
+            assert gap > 0.1 * len(inside)
+
+
+def test_blocks_are_whole_periods_where_there_are_as_many():
+    folds = make_folds([record(sine(10, count=950), period_samples=100)])
+    for fold in folds:
+        assert np.flatnonzero(fold.validation[0])[0] % 100 == 0
+
+
+@pytest.mark.parametrize(("count", "length"), [(1, 99), (2, 99), (3, 24)])
+def test_too_short_a_record_is_one_clear_line(count, length):
+    records = [record(sine(3), name=f"long-{k}") for k in range(count - 1)]
+    records.append(record(sine(3, count=length), name="stub"))
+    with pytest.raises(InputError, match=rf"^record stub: {length} samples; .*$"):
+        make_folds(records)
+
+
+def test_blocks_may_be_asked_for_however_many_records():
+    records = [record(sine(1 + place)) for place in range(6)]
+    assert all(
+        mask.any() and not mask.all()
+        for fold in make_folds(records, whole=False)
+        for mask in (*fold.train, *fold.validation)
+    )
+    with pytest.raises(InputError, match=r"^1 fit record; "):
+        make_folds(records[:1], whole=True)
+
+
+def test_no_records_is_one_clear_line():
+    with pytest.raises(InputError, match=r"^no fit records"):
+        make_folds([])
+
+
+def test_chosen_joins_the_masked_samples():
+    masks = (np.array([True, False, True]), np.array([False, True]))
+    values = (np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0]))
+    assert np.array_equal(chosen(values, masks), [1.0, 3.0, 5.0])

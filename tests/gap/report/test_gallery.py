@@ -1,0 +1,68 @@
+"""What a page of several devices shows of each."""
+
+import csv
+
+import pytest
+
+from hystbench.errors import InputError
+from hystbench.gap.report.gallery import write_gallery, write_sentences
+from hystbench.gap.report.words import verdict_text
+from tests.gap.report.test_report import GAP, write_folder
+
+PICTURES = ("model.svg", "model.png", "residual.svg", "residual.png")
+#: SVG that a page can carry several of.
+SMALL = 150_000
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = write_folder(tmp_path_factory.mktemp("gallery"))
+    write_gallery(folder)
+    return folder
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_pictures_are_there_and_small(folder, name):
+    content = (folder / name).read_bytes()
+    if name.endswith("svg"):
+        assert content.startswith(b"<?xml")
+        assert len(content) < SMALL
+    else:
+        assert content.startswith(b"\x89PNG")
+
+
+def test_the_verdict_is_told_with_its_reason(folder):
+    told = (folder / "verdict.md").read_text()
+    assert told == (
+        f"**The simulator lacks resonance and creep.**\n\n{GAP['reason']}\n"
+    )
+
+
+def test_where_there_is_no_gap_the_reason_is_in_the_sentence():
+    gap = {"verdict": "no-gap", "reason": "it is the noise", "effects": []}
+    gap |= {"withdrawn": None, "asked": None}
+    assert verdict_text(gap) == "**There is no gap: it is the noise.**\n"
+
+
+def test_sentences_of_several_stand_in_one_table(tmp_path):
+    write_sentences([GAP, GAP | {"dataset": "other"}], tmp_path / "sentences.csv")
+    with (tmp_path / "sentences.csv").open(newline="") as stream:
+        rows = list(csv.reader(stream))
+    sentence = "The simulator lacks resonance and creep."
+    assert rows[1:] == [["bench", sentence], ["other", sentence]]
+
+
+def test_pictures_of_another_are_not_written_over(tmp_path):
+    (write_folder(tmp_path) / "model.png").write_bytes(b"mine")
+    with pytest.raises(InputError, match=r"model\.png: not written by hystbench"):
+        write_gallery(tmp_path)
+    assert (tmp_path / "model.png").read_bytes() == b"mine"
+
+
+@pytest.mark.parametrize(
+    ("left_out", "told"),
+    [({"model": ""}, r"model\.yaml: no such"), ({"with_tables": False}, "no tables")],
+)
+def test_what_is_missing_is_one_line(tmp_path, left_out, told):
+    with pytest.raises(InputError, match=told):
+        write_gallery(write_folder(tmp_path, **left_out))

@@ -1,0 +1,262 @@
+"""What is said of a verdict beside the word."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.curve import finer
+from hystbench.blocks.simulated_column import SimulatedColumn
+from hystbench.errors import InputError
+from hystbench.gap import decision as decision_module
+from hystbench.gap.decision import decide, find
+from hystbench.gap.effects import effects
+from hystbench.gap.experiment import tell_apart
+from hystbench.gap.experiment.limits import Limits
+from hystbench.gap.experiment.next_experiment import next_experiment
+from hystbench.gap.experiment.separation import Pair
+from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.start import start_state
+from hystbench.gap.judging.verdict import Left
+from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
+from hystbench.model import Model
+from tests.gap.made import CURRENT, DISPLACEMENT
+from tests.gap.small import block, hysteresis, measured
+
+
+def test_what_stays_says_of_what_it_is_a_share():
+    """5 % of what no shape explains stays, and 40 % of the whole residual."""
+    said = Left(before=100.0, after=5.0, all_before=1000.0, all_after=400.0).stays
+    assert "on the fit records 40 % of the gap's power above the noise floor" in said
+    assert "part that no wrong shape of the hysteresis could leave, 5 %" in said
+
+
+def test_one_figure_is_told_where_both_are_alike():
+    assert Left(100.0, 5.0, 1000.0, 60.0).stays.count("%") == 1
+    # The whole may be the lesser share: then it is the one that decides.
+    said = Left(100.0, 50.0, 1000.0, 60.0).stays
+    assert "6 %" in said
+    assert "50 %" not in said
+
+
+def test_noise_alone_is_no_gap_only_where_the_noise_is_known():
+    """The same records, a base that is right: the floor declared, and as a bound."""
+    noise = 0.05
+    chain = (block("gain", value=12.0),)
+    base = Model("base", CURRENT, DISPLACEMENT, chain)
+    given = measured(chain, noise)
+    content = find("made", given, base, declared=noise).content
+    assert content["verdict"] == "no-gap"
+    content = find("made", given, base).content
+    assert content["verdict"] == "unnamed"
+    assert "only an upper bound" in content["reason"]
+
+
+def with_named(state, effect, **values):
+    variant = next(iter(effects()[effect].variants(state.simulation)))
+    return with_effect(state, variant, values)
+
+
+@pytest.fixture(scope="module")
+def alike():
+    """A lag before or behind a plain gain: no record can tell."""
+    chain = (block("gain", value=12.0),)
+    base = Model("base", CURRENT, DISPLACEMENT, chain)
+    lagged = (*chain, block("sensor-lag", time_constant_s=0.004))
+    start, floor = start_state(measured(lagged, 0.02), base, declared=0.02)
+    found = {
+        name: with_named(start, name, time_constant_s=0.004)
+        for name in ("drive-lag", "sensor-lag")
+    }
+    found["mains-pickup"] = with_named(start, "mains-pickup", frequency_hz=50.0)
+    return base, start, floor, found
+
+
+def candidates_of(found, *names):
+    return tuple(
+        Candidate(name, "drive", score=-100.0 + k, gain=90.0, state=found[name])
+        for k, name in enumerate(names)
+    )
+
+
+def rounds_of(start, found, *names):
+    """One round, that took the first."""
+    ranking = candidates_of(found, *names)
+    return Named(found[names[0]], (Round(start, 0.0, ranking, True),))
+
+
+def decided(alike, *names, base=None, limits=None):
+    plain, start, floor, found = alike
+    named = rounds_of(start, found, *names)
+    base = plain if base is None else base
+    return decide("made", base, start, floor, named, limits=limits)
+
+
+def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
+    _, start, _, _ = alike
+    asked = {"low": 0.1, "high": 0.3, "rate": 20.0}
+    limits = Limits.within(start.records, asked)
+    own = Limits.of(start.records)
+    assert (limits.dt, limits.bandwidth_hz) == (own.dt, own.bandwidth_hz)
+    names = ("drive-lag", "sensor-lag")
+    inputs = []
+    for given in (None, limits):
+        decision = decided(alike, *names, limits=given)
+        assert "no_experiment" not in decision.content
+        made = decision.experiment.excitation
+        inputs.append((made.u, np.abs(np.diff(made.u)).max() / made.dt))
+    (u, rate), (within, slow) = inputs
+    assert within.min() > 0.1 - 1e-6
+    assert within.max() < 0.3 + 1e-6
+    assert slow < 20.0 * (1 + 1e-5)
+    # The records go beyond all of that, and so does what is taken from them.
+    assert u.min() < 0.1
+    assert u.max() > 0.3
+    assert rate > 20.0
+
+
+def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypatch):
+    base, start, _, _ = alike
+    monkeypatch.setattr(decision_module, "name", lambda *given: pytest.fail("searched"))
+    with pytest.raises(InputError, match="expected low < high"):
+        find("made", start.records, base, asked={"low": 1.0, "high": 0.5})
+
+
+def too_narrow(alike, names, monkeypatch):
+    """No excitation keeps within the limits."""
+
+    def refuse(*given):
+        return next_experiment(*given, excitations=())
+
+    with monkeypatch.context() as patched:
+        patched.setattr(tell_apart, "next_experiment", refuse)
+        return decided(alike, *names)
+
+
+def test_why_there_is_no_experiment_is_told(alike, monkeypatch):
+    base, start, _, _ = alike
+    names = ("drive-lag", "sensor-lag")
+    column = SimulatedColumn(column="y_um", records=start.records)
+    elsewhere = replace(base, chain=(column,))
+
+    for decision, word in (
+        (decided(alike, *names, base=elsewhere), "ran elsewhere"),
+        (decided(alike, "drive-lag", "mains-pickup"), "new in every record"),
+        (too_narrow(alike, names, monkeypatch), "expected wider limits"),
+    ):
+        assert decision.content["effects"][0]["cannot_be_told_from"]
+        assert decision.content["next_experiment"] is None
+        assert word in decision.content["no_experiment"]
+    alone = decided(alike, "drive-lag").content
+    assert alone["next_experiment"] is None
+    assert "no_experiment" not in alone
+
+
+def test_what_is_new_in_every_record_is_left_out_by_name(alike):
+    content = decided(alike, "drive-lag", "mains-pickup", "sensor-lag").content
+    found = content["next_experiment"]
+    (pair,) = found["pairs"]
+    assert (pair["of"], pair["names"]) == ("drive-lag", ["drive-lag", "sensor-lag"])
+    assert found["left_out"] == [{"of": "drive-lag", "name": "mains-pickup"}]
+    assert "mains-pickup is new in every record" in found["sentence"]
+    assert "no_experiment" not in content
+    # Where none is left for another reason too, both are told.
+    words = decided(alike, "drive-lag", "mains-pickup").content["no_experiment"]
+    assert words.startswith("mains-pickup is new in every record")
+
+
+def test_rivals_beside_what_is_new_in_every_record_are_told_apart_without_it(alike):
+    """The mains are in both models; of another record nobody knows their phase."""
+    base, start, floor, found = alike
+    lags = {
+        name: with_named(found["mains-pickup"], name, time_constant_s=0.004)
+        for name in ("drive-lag", "sensor-lag")
+    }
+    named = rounds_of(start, lags, "drive-lag", "sensor-lag")
+    beside = decide("made", base, start, floor, named).experiment
+    plain = decided(alike, "drive-lag", "sensor-lag").experiment
+    assert beside.left_out == ()
+    assert beside.excitation.words == plain.excitation.words
+    assert beside.pairs == pytest.approx(plain.pairs, abs=1e-6)
+
+
+def test_all_members_of_all_sets_are_told_apart_by_one_excitation(alike, monkeypatch):
+    """A second look at the lag: the model that is there is then in both sets."""
+    base, start, floor, found = alike
+    lag = found["drive-lag"]
+    whole = with_named(lag, "asymmetry", coefficient=1e-3)
+    other = with_named(found["sensor-lag"], "asymmetry", coefficient=1e-3)
+    curves = {
+        "asymmetry": whole,
+        "saturation": with_named(lag, "saturation", level=40.0, sharpness=2.0),
+        "calibration-error": with_named(lag, "calibration-error", gain=1.01),
+    }
+    lags = {"drive-lag": whole, "sensor-lag": other}
+    look = SecondLook(
+        "drive-lag", ("asymmetry",), candidates_of(lags, *lags), "drive-lag"
+    )
+    rounds = (
+        Round(start, 0.0, candidates_of(found, *lags), True),
+        Round(lag, 0.0, candidates_of(curves, *curves), True, (look,)),
+    )
+    model = augmented(base, whole)
+    runs = []
+    simulate = Model.simulate
+
+    def counted(self, u, dt):
+        if self == model:
+            runs.append(id(u))
+        return simulate(self, u, dt)
+
+    monkeypatch.setattr(Model, "simulate", counted)
+    experiment, why = tell_apart.tell_apart(
+        base, Named(whole, rounds), start.records, floor.rms, None
+    )
+    assert not why
+    assert list(experiment.pairs) == [
+        Pair("drive-lag", ("drive-lag", "sensor-lag")),
+        Pair("asymmetry", ("asymmetry", "saturation")),
+        Pair("asymmetry", ("asymmetry", "calibration-error")),
+        Pair("asymmetry", ("saturation", "calibration-error")),
+    ]
+    assert [runs.count(id(record.u)) for record in start.records] == [1, 1]
+
+
+def test_what_the_simulation_misses_by_its_steps_is_measured():
+    """Far more steps of the loop than ours tell it independently."""
+    chain = (hysteresis(),)
+    base = Model("rig", CURRENT, DISPLACEMENT, chain)
+    start, floor = start_state(measured(chain, 0.02), base, "band-limited", 0.02)
+    found = decide("made", base, start, floor, Named(start)).content["fit"]
+    missed = []
+    for one in start.records:
+        fine = finer(one.u, 64)
+        exact = chain[0].simulate(fine, fine, one.dt / 64)[::64]
+        missed.append(chain[0].simulate(one.u, one.u, one.dt) - exact)
+    size = float(np.sqrt(np.mean(np.concatenate(missed) ** 2)))
+    assert found["step_error"] == pytest.approx(size, rel=0.2)
+    gain = (block("gain", value=12.0),)
+    base = Model("rig", CURRENT, DISPLACEMENT, gain)
+    start, floor = start_state(measured(gain, 0.02), base, "band-limited", 0.02)
+    found = decide("made", base, start, floor, Named(start)).content["fit"]
+    assert found["step_error"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_ranking_tells_of_every_place_and_form():
+    lag = block("sensor-lag", time_constant_s=4e-3)
+    chain = (hysteresis(), lag)
+    base = Model("rig", CURRENT, DISPLACEMENT, chain)
+    curve = block("sensor-nonlinearity", quadratic=0.03, cubic=0.0)
+    given = measured((hysteresis(), curve, lag), 0.02)
+    content = find("made", given, base, declared=0.02).content
+    rows = {row["name"]: row for row in content["ranking"] if row["round"] == 1}
+    tried = rows["sensor-nonlinearity"]["variants"]
+    # The square, the cube and both, behind the lag and before it.
+    ways = {(one["form"], one["position"]) for one in tried}
+    assert ways == {(f, k) for f in ("square", "cube", "both") for k in (1, 2)}
+    scores = [one["score"] for one in tried]
+    assert scores == sorted(scores)
+    beside = rows["mains-pickup"].get("variants", [])
+    assert all(one["position"] is None for one in beside)
