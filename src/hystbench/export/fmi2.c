@@ -16,10 +16,11 @@ typedef struct {
     char name[]; /* the caller's string may be gone after the call */
 } Instance;
 
+/* The logger takes a format, but not all importers fill it: give it whole words. */
 static fmi2Status refuse(const Instance *self, const char *why)
 {
     if (self->log)
-        self->log(self->environment, self->name, fmi2Error, "logStatusError", "%s", why);
+        self->log(self->environment, self->name, fmi2Error, "logStatusError", why);
     return fmi2Error;
 }
 
