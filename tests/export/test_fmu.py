@@ -146,6 +146,10 @@ class Unit:
         self.kept = self.raw.getFMUstate if is_2 else self.raw.getFMUState
         self.back = self.raw.setFMUstate if is_2 else self.raw.setFMUState
         self.free = self.raw.freeFMUstate if is_2 else self.raw.freeFMUState
+        self.other_types = [
+            (getattr(self.raw, f"get{name}"), getattr(self.raw, f"set{name}"))
+            for name in ("Integer" if is_2 else "Int32", "Boolean", "String")
+        ]
         self.is_2 = is_2
         self.begin()
 
@@ -203,6 +207,15 @@ def test_only_the_input_can_be_set_and_only_variables_got(units, reference, capf
     with pytest.raises(Exception, match="failed with status 3"):
         unit.get([reference, 3])
     assert "no such variable" in capfd.readouterr().out
+
+
+def test_of_other_types_there_is_no_variable(units, capfd):
+    for get, put in units[0]().other_types:
+        assert list(get([])) == []
+        put([], [])
+        with pytest.raises(Exception, match="failed with status 3"):
+            get([1])
+        assert ": all variables are of " in capfd.readouterr().out
 
 
 def test_instances_know_nothing_of_each_other(units):
@@ -335,7 +348,7 @@ BROKEN = {
     "input as an output": ('<Unknown index="3"', '<Unknown index="2"'),
     "same file twice": ('"fmi2.c"/>', '"fmi2.c"/><File name="fmi2.c"/>'),
 }
-#: What either checker does not look at.
+#: Of those, what FMPy does not look at.
 UNSEEN_BY_FMPY = {"same file twice"}
 
 

@@ -159,6 +159,39 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
     return fmi3OK;
 }
 
+/* Some importers ask for no variable of a type: that much there is. */
+#define NO_VARIABLES(name, type)                                                      \
+    fmi3Status name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                    size_t nValueReferences, type values[], size_t nValues)           \
+    {                                                                                 \
+        return nValueReferences == 0                                                  \
+                   ? fmi3OK                                                           \
+                   : refuse(instance, #name ": all variables are of Float64");        \
+    }
+
+NO_VARIABLES(fmi3GetFloat32, fmi3Float32)
+NO_VARIABLES(fmi3GetInt8, fmi3Int8)
+NO_VARIABLES(fmi3GetUInt8, fmi3UInt8)
+NO_VARIABLES(fmi3GetInt16, fmi3Int16)
+NO_VARIABLES(fmi3GetUInt16, fmi3UInt16)
+NO_VARIABLES(fmi3GetInt32, fmi3Int32)
+NO_VARIABLES(fmi3GetUInt32, fmi3UInt32)
+NO_VARIABLES(fmi3GetInt64, fmi3Int64)
+NO_VARIABLES(fmi3GetUInt64, fmi3UInt64)
+NO_VARIABLES(fmi3GetBoolean, fmi3Boolean)
+NO_VARIABLES(fmi3GetString, fmi3String)
+NO_VARIABLES(fmi3SetFloat32, const fmi3Float32)
+NO_VARIABLES(fmi3SetInt8, const fmi3Int8)
+NO_VARIABLES(fmi3SetUInt8, const fmi3UInt8)
+NO_VARIABLES(fmi3SetInt16, const fmi3Int16)
+NO_VARIABLES(fmi3SetUInt16, const fmi3UInt16)
+NO_VARIABLES(fmi3SetInt32, const fmi3Int32)
+NO_VARIABLES(fmi3SetUInt32, const fmi3UInt32)
+NO_VARIABLES(fmi3SetInt64, const fmi3Int64)
+NO_VARIABLES(fmi3SetUInt64, const fmi3UInt64)
+NO_VARIABLES(fmi3SetBoolean, const fmi3Boolean)
+NO_VARIABLES(fmi3SetString, const fmi3String)
+
 /* What an FMU must have, and this one has no use for. */
 #define ABSENT(name, ...)                                             \
     fmi3Status name(__VA_ARGS__)                                      \
@@ -166,57 +199,11 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
         return refuse(instance, #name " is not part of this model");  \
     }
 
-ABSENT(fmi3GetFloat32, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, fmi3Float32 values[], size_t nValues)
-ABSENT(fmi3GetInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int8 values[], size_t nValues)
-ABSENT(fmi3GetUInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt8 values[], size_t nValues)
-ABSENT(fmi3GetInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int16 values[], size_t nValues)
-ABSENT(fmi3GetUInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt16 values[], size_t nValues)
-ABSENT(fmi3GetInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int32 values[], size_t nValues)
-ABSENT(fmi3GetUInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt32 values[], size_t nValues)
-ABSENT(fmi3GetInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int64 values[], size_t nValues)
-ABSENT(fmi3GetUInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt64 values[], size_t nValues)
-ABSENT(fmi3GetBoolean, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, fmi3Boolean values[], size_t nValues)
-ABSENT(fmi3GetString, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3String values[], size_t nValues)
 ABSENT(fmi3GetBinary, fmi3Instance instance, const fmi3ValueReference valueReferences[],
        size_t nValueReferences, size_t valueSizes[], fmi3Binary values[], size_t
        nValues)
 ABSENT(fmi3GetClock, fmi3Instance instance, const fmi3ValueReference valueReferences[],
        size_t nValueReferences, fmi3Clock values[])
-ABSENT(fmi3SetFloat32, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, const fmi3Float32 values[], size_t
-       nValues)
-ABSENT(fmi3SetInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int8 values[], size_t nValues)
-ABSENT(fmi3SetUInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt8 values[], size_t nValues)
-ABSENT(fmi3SetInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int16 values[], size_t nValues)
-ABSENT(fmi3SetUInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt16 values[], size_t nValues)
-ABSENT(fmi3SetInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int32 values[], size_t nValues)
-ABSENT(fmi3SetUInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt32 values[], size_t nValues)
-ABSENT(fmi3SetInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int64 values[], size_t nValues)
-ABSENT(fmi3SetUInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt64 values[], size_t nValues)
-ABSENT(fmi3SetBoolean, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, const fmi3Boolean values[], size_t
-       nValues)
-ABSENT(fmi3SetString, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3String values[], size_t nValues)
 ABSENT(fmi3SetBinary, fmi3Instance instance, const fmi3ValueReference valueReferences[],
        size_t nValueReferences, const size_t valueSizes[], const fmi3Binary values[],
        size_t nValues)
