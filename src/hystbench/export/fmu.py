@@ -86,7 +86,7 @@ DESCRIPTIONS: dict[Version, str] = {
 """,
 }
 
-#: How the sources are built; FMI 2.0.4 took this file over from FMI 3.0 as it is.
+#: How the sources are built; later releases of FMI 2.0 have this file of FMI 3.0 too.
 BUILD = """\
 <?xml version="1.0" encoding="UTF-8"?>
 <fmiBuildDescription fmiVersion="3.0">
