@@ -1,14 +1,12 @@
-"""The twin and models as `hystbench gap` writes them, exported to all three forms."""
+"""The twin and models as `hystbench gap` writes them, as C and Python."""
 
 import ast
 import importlib.util
 import shutil
 import subprocess
 import sys
-import zipfile
 from dataclasses import replace
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -16,7 +14,6 @@ import pytest
 from hystbench.blocks.step import Sampling
 from hystbench.export import c, python
 from hystbench.export.described import describe, identifier
-from hystbench.export.fmu import contents
 from hystbench.model import Model, load_model
 from tests.conftest import ROOT, run_hystbench
 
@@ -155,107 +152,6 @@ def test_c_compiles_as_cpp_would_use_it(augmented, tmp_path):
     subprocess.run(["./run"], cwd=tmp_path / "c", check=True)
 
 
-@pytest.fixture
-def fmpy(monkeypatch):
-    found = pytest.importorskip(
-        "fmpy", reason="FMPy is not installed (pip install fmpy)"
-    )
-    scripts = str(Path(sys.executable).parent)  # where FMPy's own CMake is
-    monkeypatch.setenv("PATH", f"{scripts}:/usr/bin:/bin")
-    return found
-
-
-def built(fmpy, file, tmp_path):
-    """Check a unit as FMPy does, also how it is to be built, and build it."""
-    from fmpy.build import build_platform_binary
-    from fmpy.validation import validate_fmu
-    from lxml import etree
-
-    assert validate_fmu(str(file)) == []
-    folder, room = tmp_path / "unpacked", tmp_path / "built"
-    room.mkdir()
-    with zipfile.ZipFile(file) as archive:
-        archive.extractall(folder)
-    schemas = Path(fmpy.__file__).parent / "schema" / "fmi3"
-    schema = etree.XMLSchema(etree.parse(schemas / "fmi3BuildDescription.xsd"))
-    schema.assertValid(etree.parse(folder / "sources" / "buildDescription.xml"))
-    build_platform_binary(folder, build_dir=room)
-    return folder
-
-
-def seen(fmpy, folder, u):
-    """Give what an importer sees: the output of a step at its end."""
-    given = np.array(
-        list(zip(TIME, u, strict=True)), [("time", float), ("current", float)]
-    )
-    found = fmpy.simulate_fmu(
-        str(folder),
-        stop_time=TIME[-1],
-        output_interval=DT,
-        input=given,
-        output=["displacement"],
-    )
-    assert len(found) == len(TIME)
-    return found["displacement"][1:]
-
-
-def test_the_fmu_is_accepted_and_fmpy_runs_it(augmented, tmp_path, fmpy):
-    exported(tmp_path, augmented, "fmu")
-    file = tmp_path / "fmu" / "gpi_of_the_slow_loop_augmented.fmu"
-    y = seen(fmpy, built(fmpy, file, tmp_path), SINE)
-    wanted = load_model(augmented).simulate(SINE, DT)
-    assert np.abs(y - wanted[:-1])[6:].max() <= BEHIND * np.ptp(wanted)
-
-
-#: Plays that a record has passed, and forces in balance with the first sample.
-SETTLED = """
-name: settled
-input: {name: current, unit: A}
-output: {name: displacement, unit: um}
-chain:
-- gpi:
-    envelope: {a0: 1.3, a1: 0.36, a2: 0.6, a3: -0.67, a4: 0.32, a5: 1.2, a6: 0.11,
-      a7: -0.025}
-    thresholds: [0.0, 0.05, 0.1]
-    weights: [1.0, 0.5, 0.25]
-    start: settled
-- mechanism: {mass: 0.002, damping: 0.2, stiffness: 100.0, bias: 30.0, start: settled}
-- stiffness: {quadratic: 0.0, cubic: 1000.0}
-- friction-force: {coulomb: 1.0, presliding_distance: 0.001}
-"""
-
-
-def test_a_unit_starts_as_the_record_that_it_was_exported_with(tmp_path, fmpy):
-    file, record = tmp_path / "model.yaml", tmp_path / "record.csv"
-    file.write_text(SETTLED)
-    u = 0.2 + SINE
-    rows = np.column_stack([TIME, u])
-    np.savetxt(record, rows, "%.17g", ",", header="time_s,current_A", comments="")
-    exported(tmp_path, file, "fmu", "--past", record)
-    folder = built(fmpy, tmp_path / "fmu" / "settled.fmu", tmp_path)
-    wanted = load_model(file).simulate(u, DT)
-    y = seen(fmpy, folder, u)
-    assert np.abs(y - wanted[:-1]).max() <= 1e-9 * np.ptp(wanted)
-
-
-def test_the_fmu_tells_its_units_and_what_its_steps_do_otherwise(augmented):
-    files = contents(describe(load_model(augmented), Sampling(DT)))
-    about = files["modelDescription.xml"]
-    assert 'unit="A"' in about
-    assert 'unit="um"' in about
-    assert "polynomial through the newest 6" in about
-    assert "@" not in files["sources/fmi3.c"]
-
-
-def test_names_of_channels_that_clash_are_told_apart():
-    mapping = load_model(PLANTS / "gma.yaml").to_mapping()
-    mapping["input"]["name"] = mapping["output"]["name"] = "time & motion"
-    model = Model.from_mapping(mapping, "here")
-    about = contents(describe(model, Sampling(DT)))["modelDescription.xml"]
-    assert 'name="input time &amp; motion"' in about
-    assert 'name="output time &amp; motion"' in about
-
-
 @pytest.mark.parametrize(
     ("name", "wanted"),
     [
@@ -265,6 +161,7 @@ def test_names_of_channels_that_clash_are_told_apart():
         ("math", "math_model"),
         ("NumPy", "numpy_model"),
         ("fmi3", "fmi3_model"),
+        ("fmi2Functions", "fmi2functions_model"),
         ("stdint", "stdint_model"),
         ("switch", "switch_model"),
         ("aux", "aux_model"),
@@ -287,10 +184,6 @@ NASTY = [
     'a <b a="1"> & \x01\u2028\n*/ int injected; \\N{dash} \\x',
     "word " * 14 + "twelve more \\ and more */ to come",
 ]
-
-
-def parsed(text):
-    return ElementTree.fromstring(text)  # noqa: S314 - our own
 
 
 def nasty(text):
@@ -331,19 +224,6 @@ def test_no_name_gets_into_the_c_code(tmp_path):
     assert "injected" not in seen
     assert seen.count("_step(") == len(models)
     Compiled(models, tmp_path)
-
-
-@pytest.mark.parametrize("text", NASTY)
-def test_no_name_gets_into_the_unit(text):
-    model = nasty(text)
-    files = contents(model)
-    about = parsed(files["modelDescription.xml"])
-    assert about.get("modelName") == model.title
-    assert [item.get("name") for item in about.iter("Float64")] == [
-        "time", model.input.name, model.output.name,
-    ]  # fmt: skip
-    assert parsed(files["sources/buildDescription.xml"]) is not None
-    assert text not in files["sources/fmi3.c"]
 
 
 def test_a_model_called_math_lets_numpy_be(tmp_path):

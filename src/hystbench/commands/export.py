@@ -52,7 +52,13 @@ EXACT = "exact"
     "--to",
     type=click.Choice(["c", "python", "fmu"]),
     required=True,
-    help="C99 source and header, a Python module, or a source FMU of FMI 3.0.",
+    help="C99 source and header, a Python module, or a source FMU.",
+)
+@click.option(
+    "--fmi",
+    type=click.Choice(list(fmu.VERSIONS)),
+    help="Version of FMI: 2.0 or 3.0 (the default), with --to fmu; some tools read 2.0 "
+    "alone.",
 )
 @click.option("--dt", type=float, required=True, help="Sampling interval in seconds.")
 @click.option(
@@ -108,6 +114,7 @@ EXACT = "exact"
 def export(
     model: Path,
     to: str,
+    fmi: str | None,
     dt: float,
     points: int,
     delay: int | None,
@@ -126,6 +133,8 @@ def export(
     The files in OUT are named after the model. What its steps do otherwise than a
     simulation of a whole record is printed, and stands in the code.
     """
+    if fmi is not None and to != "fmu":
+        raise InputError("--fmi: expected it with --to fmu alone")
     system = load_model(model)
     if hold is not None:
         system = system.with_hold(hold)
@@ -181,7 +190,7 @@ def export(
             write_text(fresh / names[0], python.module(described))
         else:
             with atomic_path(fresh / names[0]) as unit:
-                fmu.write_fmu(described, unit)
+                fmu.write_fmu(described, unit, fmu.VERSIONS[fmi or "3"])
     made = ", ".join(f"{out / file}" for file in names)
     click.echo(f"{made}: {described.about}")
     for line in told:

@@ -41,9 +41,10 @@ stdnoreturn string tgmath threads time uchar wchar wctype
 DEVICES = {"aux", "con", "nul", "prn"} | {
     f"{port}{number}" for port in ("com", "lpt") for number in range(1, 10)
 }
-#: fmi3.c stands beside a unit's sources; the copied functions of C begin with hb.
+#: So begin functions of C that are copied, and what stands beside a unit's sources.
+OPENINGS = ("hb_", "fmi")
 TAKEN = (
-    {*keyword.kwlist, *C_WORDS.split(), "numpy", "fmi3", "hb"}
+    {*keyword.kwlist, *C_WORDS.split(), "numpy", "hb"}
     | {name.lower() for name in sys.stdlib_module_names}
     | DEVICES
 )
@@ -387,7 +388,7 @@ def identifier(name: str) -> str:
     would stand in the way of Python's own.
     """
     plain = _plain(name)
-    return f"{plain}_model" if plain in TAKEN or plain.startswith("hb_") else plain
+    return f"{plain}_model" if plain in TAKEN or plain.startswith(OPENINGS) else plain
 
 
 def one_line(text: str) -> str:

@@ -1,28 +1,11 @@
 /* A model of hystbench as an FMU of FMI 3.0 for co-simulation.
  *
- * The model takes a step wherever a multiple of its own interval is passed: with the
- * input that was set before, so that its output is that of the step's first sample.
  * The FMI headers are the importing tool's.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define FMI3_FUNCTION_PREFIX @name@_
 #include "fmi3Functions.h"
-#include "@name@.h"
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
-
-enum { TIME, INPUT, OUTPUT };
-
-typedef struct {
-    double start, time, input, output;
-    double count; /* steps since the start */
-    @name@_state state;
-} Values;
+#include "hb_unit.h"
 
 typedef struct {
     Values now;
@@ -36,12 +19,6 @@ static fmi3Status refuse(const Instance *self, const char *why)
     return fmi3Error;
 }
 
-static void begin(Values *now)
-{
-    memset(now, 0, sizeof *now);
-    @name@_init(&now->state);
-}
-
 const char *fmi3GetVersion(void) { return fmi3Version; }
 
 fmi3Instance fmi3InstantiateCoSimulation(
@@ -53,7 +30,7 @@ fmi3Instance fmi3InstantiateCoSimulation(
     fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
 {
     Instance *self;
-    if (!instantiationToken || strcmp(instantiationToken, "@token@") != 0) {
+    if (!instantiationToken || strcmp(instantiationToken, TOKEN) != 0) {
         if (logMessage)
             logMessage(instanceEnvironment, fmi3Error, "logStatusError",
                        "the instantiation token is that of another model");
@@ -125,12 +102,9 @@ fmi3Status fmi3GetFloat64(fmi3Instance instance,
     const Instance *self = instance;
     if (nValues != nValueReferences) return refuse(self, "one value a reference");
     for (size_t i = 0; i < nValueReferences; i++) {
-        switch (valueReferences[i]) {
-        case TIME: values[i] = self->now.time; break;
-        case INPUT: values[i] = self->now.input; break;
-        case OUTPUT: values[i] = self->now.output; break;
-        default: return refuse(self, "no such variable");
-        }
+        const double *place = variable(&self->now, valueReferences[i]);
+        if (!place) return refuse(self, "no such variable");
+        values[i] = *place;
     }
     return fmi3OK;
 }
@@ -156,13 +130,8 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
                       fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime)
 {
     Instance *self = instance;
-    Values *now = &self->now;
     const double end = currentCommunicationPoint + communicationStepSize;
-    /* times are sums, which are a little off */
-    const double due = floor((end - now->start) / @NAME@_DT + 1e-6);
-    for (; now->count < due; now->count++)
-        now->output = @name@_step(&now->state, now->input);
-    now->time = end;
+    advance(&self->now, end);
     *eventHandlingNeeded = fmi3False;
     *terminateSimulation = fmi3False;
     *earlyReturn = fmi3False;
@@ -173,10 +142,7 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
 fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
 {
     const Instance *self = instance;
-    if (!*FMUState) *FMUState = malloc(sizeof(Values));
-    if (!*FMUState) return refuse(self, "out of memory");
-    memcpy(*FMUState, &self->now, sizeof(Values));
-    return fmi3OK;
+    return keep(&self->now, FMUState) ? fmi3OK : refuse(self, "out of memory");
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)
@@ -193,6 +159,39 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
     return fmi3OK;
 }
 
+/* Some importers ask for no variable of a type: that much there is. */
+#define NO_VARIABLES(name, type)                                                      \
+    fmi3Status name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                    size_t nValueReferences, type values[], size_t nValues)           \
+    {                                                                                 \
+        return nValueReferences == 0                                                  \
+                   ? fmi3OK                                                           \
+                   : refuse(instance, #name ": all variables are of Float64");        \
+    }
+
+NO_VARIABLES(fmi3GetFloat32, fmi3Float32)
+NO_VARIABLES(fmi3GetInt8, fmi3Int8)
+NO_VARIABLES(fmi3GetUInt8, fmi3UInt8)
+NO_VARIABLES(fmi3GetInt16, fmi3Int16)
+NO_VARIABLES(fmi3GetUInt16, fmi3UInt16)
+NO_VARIABLES(fmi3GetInt32, fmi3Int32)
+NO_VARIABLES(fmi3GetUInt32, fmi3UInt32)
+NO_VARIABLES(fmi3GetInt64, fmi3Int64)
+NO_VARIABLES(fmi3GetUInt64, fmi3UInt64)
+NO_VARIABLES(fmi3GetBoolean, fmi3Boolean)
+NO_VARIABLES(fmi3GetString, fmi3String)
+NO_VARIABLES(fmi3SetFloat32, const fmi3Float32)
+NO_VARIABLES(fmi3SetInt8, const fmi3Int8)
+NO_VARIABLES(fmi3SetUInt8, const fmi3UInt8)
+NO_VARIABLES(fmi3SetInt16, const fmi3Int16)
+NO_VARIABLES(fmi3SetUInt16, const fmi3UInt16)
+NO_VARIABLES(fmi3SetInt32, const fmi3Int32)
+NO_VARIABLES(fmi3SetUInt32, const fmi3UInt32)
+NO_VARIABLES(fmi3SetInt64, const fmi3Int64)
+NO_VARIABLES(fmi3SetUInt64, const fmi3UInt64)
+NO_VARIABLES(fmi3SetBoolean, const fmi3Boolean)
+NO_VARIABLES(fmi3SetString, const fmi3String)
+
 /* What an FMU must have, and this one has no use for. */
 #define ABSENT(name, ...)                                             \
     fmi3Status name(__VA_ARGS__)                                      \
@@ -200,57 +199,11 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
         return refuse(instance, #name " is not part of this model");  \
     }
 
-ABSENT(fmi3GetFloat32, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, fmi3Float32 values[], size_t nValues)
-ABSENT(fmi3GetInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int8 values[], size_t nValues)
-ABSENT(fmi3GetUInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt8 values[], size_t nValues)
-ABSENT(fmi3GetInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int16 values[], size_t nValues)
-ABSENT(fmi3GetUInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt16 values[], size_t nValues)
-ABSENT(fmi3GetInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int32 values[], size_t nValues)
-ABSENT(fmi3GetUInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt32 values[], size_t nValues)
-ABSENT(fmi3GetInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3Int64 values[], size_t nValues)
-ABSENT(fmi3GetUInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3UInt64 values[], size_t nValues)
-ABSENT(fmi3GetBoolean, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, fmi3Boolean values[], size_t nValues)
-ABSENT(fmi3GetString, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, fmi3String values[], size_t nValues)
 ABSENT(fmi3GetBinary, fmi3Instance instance, const fmi3ValueReference valueReferences[],
        size_t nValueReferences, size_t valueSizes[], fmi3Binary values[], size_t
        nValues)
 ABSENT(fmi3GetClock, fmi3Instance instance, const fmi3ValueReference valueReferences[],
        size_t nValueReferences, fmi3Clock values[])
-ABSENT(fmi3SetFloat32, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, const fmi3Float32 values[], size_t
-       nValues)
-ABSENT(fmi3SetInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int8 values[], size_t nValues)
-ABSENT(fmi3SetUInt8, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt8 values[], size_t nValues)
-ABSENT(fmi3SetInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int16 values[], size_t nValues)
-ABSENT(fmi3SetUInt16, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt16 values[], size_t nValues)
-ABSENT(fmi3SetInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int32 values[], size_t nValues)
-ABSENT(fmi3SetUInt32, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt32 values[], size_t nValues)
-ABSENT(fmi3SetInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3Int64 values[], size_t nValues)
-ABSENT(fmi3SetUInt64, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3UInt64 values[], size_t nValues)
-ABSENT(fmi3SetBoolean, fmi3Instance instance, const fmi3ValueReference
-       valueReferences[], size_t nValueReferences, const fmi3Boolean values[], size_t
-       nValues)
-ABSENT(fmi3SetString, fmi3Instance instance, const fmi3ValueReference valueReferences[],
-       size_t nValueReferences, const fmi3String values[], size_t nValues)
 ABSENT(fmi3SetBinary, fmi3Instance instance, const fmi3ValueReference valueReferences[],
        size_t nValueReferences, const size_t valueSizes[], const fmi3Binary values[],
        size_t nValues)
