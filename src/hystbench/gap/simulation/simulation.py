@@ -13,6 +13,9 @@ from hystbench.blocks.attached import AttachedBlock, attached
 from hystbench.blocks.base import Block
 from hystbench.blocks.curve import finer
 from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.stiffness_hardening import StiffnessHardening
+from hystbench.blocks.store import Store
 from hystbench.blocks.wrapping import Hysteresis, Wrapped, WrappingBlock
 from hystbench.errors import InputError
 from hystbench.record import FloatArray, Record
@@ -215,13 +218,17 @@ class _Known:
 
 @lru_cache(maxsize=1024)
 def _quick(block: Block) -> Block:
-    # The drive's blocks are the first: what they miss would pass for an effect.
-    if not isinstance(block, HeldBlock) or block.place == "drive" or not block.smooths:
+    # The drive's blocks are the first: what they miss would pass for an effect. A mode
+    # that is not linear answers to it in ways that no correction makes up for.
+    if not isinstance(block, HeldBlock) or isinstance(block, NOT_LINEAR):
+        return block
+    if block.place == "drive" or not block.smooths:
         return block
     return replace(block, hold="linear") if block.holding == LIMITED else block
 
 
 LIMITED = "band-limited"
+NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
 FINER = 8
 """Steps through the hysteresis in a sampling interval, where exact."""
 QUICK = 2
