@@ -1,4 +1,5 @@
 # What all rules share: checked settings, and the source files that a job depends on.
+import inspect
 import json
 import os
 import re
@@ -11,6 +12,7 @@ import grimp
 import hystbench
 from hystbench.errors import InputError
 from hystbench.figures import module_of
+from hystbench.filters import filter_class, registry
 from hystbench.settings import read_settings
 from hystbench.written import check_replaceable, claim_logs
 
@@ -138,6 +140,17 @@ def code(*modules):
     return [str(file) for file in files]
 
 
+def code_with(found, *modules):
+    """Files of modules and of classes that are found by name, outside hystbench too.
+
+    No import tells of them. Of an installed package the file of the class is taken.
+    """
+    inside = [each.__module__ for each in found]
+    outside = [name for name in inside if not name.startswith("hystbench.")]
+    files = [os.path.relpath(inspect.getfile(sys.modules[name])) for name in outside]
+    return code(*modules, *{*inside} - {*outside}) + sorted({*files})
+
+
 def settings_text(settings):
     """Settings of a job as one word for the shell, the same for the same settings."""
     return json.dumps(settings, sort_keys=True)
@@ -164,7 +177,8 @@ def runs(suffix="json"):
 
 def identified(wildcards):
     """The identified envelope functions, for the filter that uses them."""
-    if wildcards.filter == "gpo" and SETTINGS.envelopes == "identified":
+    takes = filter_class(wildcards.filter).takes_envelopes
+    if takes and SETTINGS.envelopes == "identified":
         return rules.identify.output
     return []
 

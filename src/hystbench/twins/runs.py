@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from hystbench.adaptive import make_filter, step_names
+from hystbench.adaptive import make_filter, steps_of
 from hystbench.compare.evidence import Cell, OrderPoint, Run
 from hystbench.filters import AdaptiveFilter, Result, run_many
 from hystbench.measurement import measure
@@ -86,10 +86,7 @@ def filter_run(adaptive: AdaptiveFilter, record: Record, result: Result) -> Run:
         error_kind="one-step a priori",
         order=adaptive.order,
         weight_count=adaptive.size,
-        step_size={
-            name: getattr(adaptive, own)
-            for name, own in step_names(adaptive.name).items()
-        },
+        step_size=steps_of(adaptive),
         diverged=None if at is None else f"diverged at sample {at}",
     )
 
