@@ -45,12 +45,13 @@ def make_filter(
     chosen = filter_class(model)
     names = chosen.step_sizes
     steps = settings.get("convergence_factor", dict.fromkeys(names, 1.0))
-    adaptive = chosen(
-        order=settings["order"] if order is None else order,
-        x_before=settings["input_before"],
+    options: dict[str, Any] = {
+        "order": settings["order"] if order is None else order,
+        "x_before": settings["input_before"],
         **{own: float(steps[name]) for name, own in names.items()},
         **chosen.options(settings, record, identified),
-    )
+    }
+    adaptive = chosen(**options)
     if settings["constant_tap"]:
         size = settings["constant_tap"] * adaptive.tap_rms(record.u)
         adaptive = replace(adaptive, constant_tap=size)
@@ -72,8 +73,7 @@ def with_fraction_of_bound(
     """Set each step size of a filter to a fraction of its bound for an input."""
     bounds = adaptive.step_bounds(x)
     steps: dict[str, Any] = {
-        own: fractions[name] * bounds[name]
-        for name, own in adaptive.step_sizes.items()
+        own: fractions[name] * bounds[name] for name, own in adaptive.step_sizes.items()
     }
     return replace(adaptive, **steps)
 

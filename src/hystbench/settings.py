@@ -243,12 +243,16 @@ class Settings:
             **section,
             **self.signal_job(section["signal"]),
             "measure": self.measure_job,
-            "filters": self._filter_jobs,
+            "filters": self._paper_filter_jobs,
         }
 
     @property
     def _filter_jobs(self) -> dict[str, Any]:
         return {name: self.filter_job(name) for name in self.filters}
+
+    @property
+    def _paper_filter_jobs(self) -> dict[str, Any]:
+        return {name: self.filter_job(name) for name in self.paper_filters}
 
     @property
     def step_sweep_job(self) -> dict[str, Any]:
@@ -265,7 +269,7 @@ class Settings:
         return {
             "signals": {name: self.signal_job(name) for name in self.signals},
             "measure": self.measure_job,
-            "filters": {name: self.filter_job(name) for name in self.paper_filters},
+            "filters": self._paper_filter_jobs,
             **{key: section[key] for key in ("zero_errors", "constant_taps")},
             **self.compare_job,
         }
@@ -362,7 +366,8 @@ class Settings:
         """Give the settings on which one filter's run depends."""
         filters = self.config["filters"]
         chosen = filter_class(model)
-        job = {name: filters.get(name, k.default) for name, k in keys_of(chosen).items()}
+        keys = keys_of(chosen).items()
+        job = {name: filters.get(name, key.default) for name, key in keys}
         job |= {key: filters[key] for key in ("order", "input_before", "constant_tap")}
         job |= self.error_job
         if chosen.takes_envelopes:

@@ -8,9 +8,9 @@ import pytest
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.errors import InputError
 from hystbench.filters import FILTERS, AdaptiveFilter, many, run_many
-from hystbench.filters.together import CHUNK, run_together
 from hystbench.filters.delayed import DelayedFilter
 from hystbench.filters.gpo import GPOFilter
+from hystbench.filters.together import CHUNK, run_together
 from hystbench.record import FloatArray
 
 OPTIONS = {

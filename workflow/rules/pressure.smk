@@ -13,9 +13,7 @@ if TWIN:
             identified=rules.identify.output,
             rdgpi=rules.rdgpi_identify.output if "rdgpi" in SETTINGS.models else [],
             published=PUBLISHED,
-            code=code_with(
-                map(filter_class, SETTINGS.filters), "hystbench.commands.jobs.random_sum"
-            ),
+            code=code_with(PAPER_FILTERS, "hystbench.commands.jobs.random_sum"),
         output:
             draws=f"{RESULTS}/random-sum/draws.csv",
             readings=f"{RESULTS}/random-sum/readings.csv",
@@ -39,7 +37,8 @@ if TWIN:
             records=[record(signal) for signal in SETTINGS.signals],
             identified=rules.identify.output,
             code=code_with(
-                map(filter_class, SETTINGS.filters), "hystbench.commands.jobs.step_sweep"
+                map(filter_class, SETTINGS.filters),
+                "hystbench.commands.jobs.step_sweep",
             ),
         output:
             edges=f"{RESULTS}/step-sweep/edges.csv",

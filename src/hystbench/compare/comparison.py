@@ -11,7 +11,8 @@ from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.edges import Edge, write_margins
-from hystbench.compare.evidence import Evidence, read_evidence
+from hystbench.compare.evidence import Evidence, Run, read_evidence
+from hystbench.compare.measured import COLUMNS, errors_table
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
@@ -31,6 +32,7 @@ __all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
 WRITTEN = (
     *("cells.csv", "off.csv", "claims.csv", "audit.csv", "summary.json", "margins.csv"),
     *("first.md", "verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
+    *("added.csv", "tables/added.*"),
 )
 """Files of a comparison, as names or patterns."""
 _FIELDS = [field.name for field in fields(ComparedCell)]
@@ -48,6 +50,7 @@ class Comparison:
     tables: tuple[Table, ...]
     edges: tuple[Edge, ...]
     held_out: frozenset[str]
+    added: tuple[Run, ...] = ()
 
     def text(self) -> str:
         """Give the comparison for a terminal."""
@@ -68,6 +71,8 @@ class Comparison:
         write_text(out / "tables.txt", self.text())
         for table in self.tables:
             table.write(out / "tables")
+        if self.added:
+            write_fields(out / "added.csv", COLUMNS, self.added)
 
 
 def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
@@ -82,8 +87,13 @@ def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
 
 
 def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Comparison:
-    """Compare evidence that is already read; ``held_out`` as in ``summarise``."""
+    """Compare evidence that is already read; ``held_out`` as in ``summarise``.
+
+    Models that the paper does not have stand in a table of their own, beside its own
+    models; neither claims nor summary are of them.
+    """
     unseen = set(held_out)
+    whole, evidence = evidence, evidence.of_the_paper
     cells = compare_cells(evidence, unseen)
     claims = judge_all(evidence, unseen)
     return Comparison(
@@ -99,12 +109,26 @@ def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Compar
             edges=evidence.edges,
             constants=evidence.constants,
         ),
-        tables=paper_tables(
-            cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
+        tables=(
+            *paper_tables(
+                cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
+            ),
+            *_added_table(whole),
         ),
-        edges=evidence.edges,
+        edges=whole.edges,
         held_out=frozenset(unseen),
+        added=tuple(run for run in whole.runs.values() if run.model in whole.added),
     )
+
+
+def _added_table(evidence: Evidence) -> list[Table]:
+    """Set models that the paper does not have beside those that it has, if any ran."""
+    if not evidence.added:
+        return []
+    names = ", ".join(evidence.added)
+    why = f"The paper has no numbers for {names}."
+    runs = list(evidence.runs.values())
+    return [errors_table("added", "Our errors of all models that ran.", why, runs)]
 
 
 def compare(
@@ -122,7 +146,8 @@ def compare(
         Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
         ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
         ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
-        (Tables 1-4 as CSV, Markdown and LaTeX).
+        (Tables 1-4 as CSV, Markdown and LaTeX); and where models ran that the paper
+        does not have, for ``added.csv`` and ``tables/added``.
     runs : iterable of paths
         One JSON file for each signal and model.
     records : iterable of paths

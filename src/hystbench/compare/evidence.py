@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,15 @@ from hystbench.compare.rows import finite_or_infinite, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
-from hystbench.published import Metric, Pair, Text, load, load_text
+from hystbench.published import (
+    MODELS,
+    Metric,
+    Pair,
+    Text,
+    in_order,
+    load,
+    load_text,
+)
 from hystbench.record import FloatArray, Record, load_record
 
 Cell = tuple[str, str]
@@ -146,6 +154,24 @@ class Evidence:
     drawn: Mapping[str, Drawn] = field(default_factory=dict)
     edges: tuple[Edge, ...] = ()
     constants: tuple[Row, ...] = ()
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """Models among the runs that the paper does not have."""
+        return tuple(in_order({model for _, model in self.runs} - {*MODELS}))
+
+    @property
+    def of_the_paper(self) -> Evidence:
+        """What there is of the paper's own models: its claims are of no others."""
+        points = (self.order_sweep, self.order_sweep_other)
+        own, other = (tuple(p for p in each if p.model in MODELS) for each in points)
+        return replace(
+            self,
+            runs={cell: run for cell, run in self.runs.items() if cell[1] in MODELS},
+            order_sweep=own,
+            order_sweep_other=other,
+            edges=tuple(edge for edge in self.edges if edge.model in MODELS),
+        )
 
 
 def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:

@@ -14,7 +14,7 @@ from hystbench.filters.bound import Bound as Bound
 from hystbench.filters.many import run_many as run_many
 from hystbench.filters.state import Result as Result
 from hystbench.filters.state import State as State
-from hystbench.published import FILTERS as PUBLISHED
+from hystbench.published import in_order
 from hystbench.registered import classes_in, with_installed
 
 FILTERS: dict[str, type[AdaptiveFilter]] = classes_in(
@@ -33,8 +33,7 @@ def registry() -> dict[str, type[AdaptiveFilter]]:
         If an installed package offers what is no filter, or a name that is taken.
     """
     found = with_installed(FILTERS, "hystbench.filters", AdaptiveFilter)
-    names = [*PUBLISHED, *sorted(set(found) - set(PUBLISHED))]
-    return {name: found[name] for name in names}
+    return {name: found[name] for name in in_order(found)}
 
 
 def filter_class(name: str) -> type[AdaptiveFilter]:
