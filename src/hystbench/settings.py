@@ -16,7 +16,7 @@ from hystbench.errors import InputError, nearest
 from hystbench.filters import filter_class, registry
 from hystbench.filters.keys import keys_of
 from hystbench.plants import model_files
-from hystbench.published import FILTERS
+from hystbench.published import FILTERS, load, signals
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.settings_checks import checked
 from hystbench.signals import highest_hz
@@ -78,9 +78,10 @@ class Settings:
         return [name for name in FILTERS if name in self.models]
 
     @property
-    def added_filters(self) -> list[str]:
-        """Those of them that the paper does not have."""
-        return [name for name in self.filters if name not in FILTERS]
+    def added(self) -> list[str]:
+        """Filters and signals to run that the paper's tables do not have."""
+        known = {*FILTERS, *signals(load())}
+        return [name for name in (*self.filters, *self.signals) if name not in known]
 
     @property
     def identification_signal(self) -> str:

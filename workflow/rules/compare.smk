@@ -1,9 +1,9 @@
 # Ours beside the paper's: cells, claims, audit and tables. A measured dataset has no
 # published numbers, so its errors stand alone.
-# Models that the paper does not have stand in a table of their own.
+# Filters and signals that the paper does not have stand in a table of their own.
 TABLES = [f"table-{number}" for number in (1, 2, 3, 4)]
 ADDED = []
-if SETTINGS.added_filters:
+if SETTINGS.added:
     TABLES.append("added")
     ADDED.append(f"{COMPARE}/added.csv")
 

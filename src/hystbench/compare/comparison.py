@@ -89,8 +89,8 @@ def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
 def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Comparison:
     """Compare evidence that is already read; ``held_out`` as in ``summarise``.
 
-    Models that the paper does not have stand in a table of their own, beside its own
-    models; neither claims nor summary are of them.
+    Models and signals that the paper does not have stand in a table of their own;
+    neither claims nor summary are of such models.
     """
     unseen = set(held_out)
     whole, evidence = evidence, evidence.of_the_paper
@@ -117,18 +117,21 @@ def compare_evidence(evidence: Evidence, held_out: Iterable[str] = ()) -> Compar
         ),
         edges=whole.edges,
         held_out=frozenset(unseen),
-        added=tuple(run for run in whole.runs.values() if run.model in whole.added),
+        added=whole.added,
     )
 
 
 def _added_table(evidence: Evidence) -> list[Table]:
-    """Set models that the paper does not have beside those that it has, if any ran."""
-    if not evidence.added:
+    """Set side by side what ran and is in none of the paper's tables, if there is any.
+
+    Models that the paper does not have stand beside its own.
+    """
+    models, names = evidence.added_models, evidence.added_signals
+    if not models and not names:
         return []
-    names = ", ".join(evidence.added)
-    why = f"The paper has no numbers for {names}."
-    runs = list(evidence.runs.values())
-    return [errors_table("added", "Our errors of all models that ran.", why, runs)]
+    why = f"The paper has no numbers for {', '.join((*models, *names))}."
+    runs = list(evidence.runs.values()) if models else list(evidence.added)
+    return [errors_table("added", "Our errors on the twin.", why, runs)]
 
 
 def compare(
@@ -146,8 +149,8 @@ def compare(
         Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
         ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
         ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
-        (Tables 1-4 as CSV, Markdown and LaTeX); and where models ran that the paper
-        does not have, for ``added.csv`` and ``tables/added``.
+        (Tables 1-4 as CSV, Markdown and LaTeX); and where models or signals ran that
+        the paper does not have, for ``added.csv`` and ``tables/added``.
     runs : iterable of paths
         One JSON file for each signal and model.
     records : iterable of paths

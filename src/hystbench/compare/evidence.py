@@ -26,6 +26,7 @@ from hystbench.published import (
     in_order,
     load,
     load_text,
+    signals,
 )
 from hystbench.record import FloatArray, Record, load_record
 
@@ -156,9 +157,23 @@ class Evidence:
     constants: tuple[Row, ...] = ()
 
     @property
-    def added(self) -> tuple[str, ...]:
+    def added_models(self) -> tuple[str, ...]:
         """Models among the runs that the paper does not have."""
         return tuple(in_order({model for _, model in self.runs} - {*MODELS}))
+
+    @property
+    def added_signals(self) -> tuple[str, ...]:
+        """Signals among the runs that the paper's tables do not have."""
+        known = signals(self.published)
+        told = dict.fromkeys(signal for signal, _ in self.runs)
+        return tuple(signal for signal in told if signal not in known)
+
+    @property
+    def added(self) -> tuple[Run, ...]:
+        """Runs of models or signals that the paper's tables do not have."""
+        models, names = {*self.added_models}, {*self.added_signals}
+        runs = self.runs.values()
+        return tuple(r for r in runs if r.model in models or r.signal in names)
 
     @property
     def of_the_paper(self) -> Evidence:
