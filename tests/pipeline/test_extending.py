@@ -57,6 +57,9 @@ def extended(tmp_path_factory) -> Workflow:
     config = small_config()
     for text in CONFIG.findall(PAGE):
         config = merged(config, yaml.safe_load(text))
+    # The page's own solver alone: those that hystbench has are entered elsewhere.
+    solvers = config["blind"]["solvers"]
+    config["blind"]["solvers"] = {"silent": solvers["silent"]}
     workflow = Workflow(
         tmp_path_factory.mktemp("extended"), {"PYTHONPATH": str(package)}
     )
@@ -112,6 +115,15 @@ def test_they_compute_what_the_page_says(extended):
         errors.append(d - weights @ h)
         weights = weights + 2 * mu * errors[-1] * h
     assert run["mse"] == pytest.approx(np.mean(np.square(errors)), rel=1e-9)
+
+
+def test_the_solver_enters_the_contest_and_names_nothing(extended):
+    assert extended.run("results/blind/summary.json", "--cores", "2")
+    folder = extended.folder / "results" / "blind"
+    cases = rows(folder / "cases.csv")
+    assert len(cases) == 12
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["false_positive"] == 0, summary
 
 
 def test_an_edited_file_of_the_package_runs_its_filter_again(extended):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -21,6 +22,8 @@ class Waveform(ABC):
 
     name: ClassVar[str]
     """Name in config.yaml."""
+    example: ClassVar[Mapping[str, Any]]
+    """Keys as config.yaml could hold them, those with a common value left out."""
     any_sign: ClassVar[tuple[str, ...]] = ()
     """Keys whose numbers may have any sign."""
     may_be_zero: ClassVar[tuple[str, ...]] = ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,6 +15,7 @@ class Chirp(Waveform):
     """A sine whose frequency rises linearly (Table 2, Figure 9)."""
 
     name: ClassVar[str] = "chirp"
+    example: ClassVar[Mapping[str, Any]] = {"from_hz": 1, "to_hz": 100}
     any_sign: ClassVar[tuple[str, ...]] = ("amplitude",)
 
     @staticmethod

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,6 +16,13 @@ class RandomSumOfSines(Waveform):
     """Sines of random phase in a band (Table 3, Figure 12)."""
 
     name: ClassVar[str] = "random-sum-of-sines"
+    example: ClassVar[Mapping[str, Any]] = {
+        "band": [0.0, 0.02],
+        "level": 0.5,
+        "sines": 10,
+        "trials": 10,
+        "seed": 1,
+    }
     any_sign: ClassVar[tuple[str, ...]] = ("gain",)
     may_be_zero: ClassVar[tuple[str, ...]] = ("band", "seed")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,6 +15,7 @@ class Sine(Waveform):
     """A sine (Table 1, Figures 7 and 8)."""
 
     name: ClassVar[str] = "sine"
+    example: ClassVar[Mapping[str, Any]] = {"frequency_hz": 40}
     any_sign: ClassVar[tuple[str, ...]] = ("amplitude",)
 
     @staticmethod

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -16,6 +16,10 @@ class SumOfSines(Waveform):
     """Sines that start at zero phase (Table 3, Figures 10 and 11)."""
 
     name: ClassVar[str] = "sum-of-sines"
+    example: ClassVar[Mapping[str, Any]] = {
+        "frequencies_hz": [10, 30, 50],
+        "amplitudes": [0.1, 0.2, 0.3],
+    }
     any_sign: ClassVar[tuple[str, ...]] = ("amplitudes", "gain")
 
     @staticmethod
