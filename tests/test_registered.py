@@ -140,8 +140,8 @@ def test_a_filters_keys_have_a_meaning_and_refuse_what_they_must(filter_class, r
         wrong += [key.most + 1] if math.isfinite(key.most) else []
         wrong += [key.least - 1] if math.isfinite(key.least) else []
         for value in wrong:
+            settings = job(filter_class, **{name: value})
             with pytest.raises(InputError, match=f"^{key.field}: ") as told:
-                settings = job(filter_class, **{name: value})
                 make_filter(filter_class.name, settings, record)
             assert "\n" not in str(told.value)
 
