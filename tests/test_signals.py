@@ -4,14 +4,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.signals import (
-    chirp,
-    load_signal,
-    make_signal,
-    random_sum_of_sines,
-    sine,
-    sum_of_sines,
-)
+from hystbench.signals import load_signal, make_signal
+from hystbench.waveforms.chirp import Chirp
+from hystbench.waveforms.random_sum_of_sines import RandomSumOfSines
+from hystbench.waveforms.sine import Sine
+from hystbench.waveforms.sum_of_sines import SumOfSines
 
 COMMON = {
     "unit": "A",
@@ -23,13 +20,13 @@ COMMON = {
 
 
 def test_sine_by_hand():
-    u = sine(frequency_hz=1, amplitude=2, duration_s=1, sampling_frequency_hz=4)
+    u = Sine.samples(frequency_hz=1, amplitude=2, duration_s=1, sampling_frequency_hz=4)
     np.testing.assert_allclose(u, [0, 2, 0, -2], atol=1e-15)
 
 
 def test_chirp_has_the_frequency_that_the_paper_reads_off():
     # Section 4: about 63.4 Hz at 1.28 s and 69.7 Hz at 1.41 s.
-    u = chirp(
+    u = Chirp.samples(
         from_hz=1,
         to_hz=100,
         amplitude=1,
@@ -44,7 +41,7 @@ def test_chirp_has_the_frequency_that_the_paper_reads_off():
 
 
 def test_sum_of_sines_has_its_lines_and_no_others():
-    u = sum_of_sines(
+    u = SumOfSines.samples(
         frequencies_hz=[10, 30, 50],
         amplitudes=[0.1, 0.2, 0.3],
         gain=1.264,
@@ -61,7 +58,7 @@ def test_sum_of_sines_has_its_lines_and_no_others():
 
 @given(seed=st.integers(0, 1000), sines=st.integers(2, 40), level=st.floats(0.1, 2))
 def test_random_sum_stays_in_band_and_spans_its_level(seed, sines, level):
-    u = random_sum_of_sines(
+    u = RandomSumOfSines.samples(
         band=[0, 0.02],
         level=level,
         sines=sines,
@@ -91,8 +88,8 @@ def test_random_sum_keeps_the_draw_with_the_least_peak():
         "duration_s": 2,
         "sampling_frequency_hz": 10_000,
     }
-    one = random_sum_of_sines(trials=1, **arguments)
-    ten = random_sum_of_sines(trials=10, **arguments)
+    one = RandomSumOfSines.samples(trials=1, **arguments)
+    ten = RandomSumOfSines.samples(trials=10, **arguments)
     # At equal peaks the draw with the smaller crest has the larger rms.
     assert ten.std() >= one.std()
 
@@ -163,7 +160,7 @@ def test_a_bad_definition_is_told_in_one_line(definition, expected):
 @pytest.mark.parametrize(("count", "highest"), [(40, 1.0), (41, 1.0), (200, 0.1)])
 def test_random_sum_is_the_sum_of_its_sines(count, highest):
     """One draw, added up sine by sine; the highest line may be Nyquist's own."""
-    u = random_sum_of_sines(
+    u = RandomSumOfSines.samples(
         band=(0.0, highest),
         level=0.5,
         sines=5,

@@ -8,23 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope
-from hystbench.errors import InputError, nearest
-from hystbench.filters import FILTERS, AdaptiveFilter, Result
+from hystbench.filters import AdaptiveFilter, Result, filter_class
 from hystbench.record import FloatArray, Record
 from hystbench.results import run_result
-
-#: Step sizes of a filter in settings and results, and the filter's own names.
-_STEP_NAMES = {"mu": "step_size"}
-_VOLTERRA_STEP_NAMES = {
-    "first_order": "step_size",
-    "second_order": "second_order_step",
-}
-
-
-def step_names(model: str) -> dict[str, str]:
-    """Names of a filter's step sizes in settings, and the filter's own for them."""
-    return _VOLTERRA_STEP_NAMES if model == "volterra" else _STEP_NAMES
 
 
 def make_filter(
@@ -56,35 +42,16 @@ def make_filter(
     InputError
         If the filter is unknown, or identified envelopes are asked for but not given.
     """
-    if model not in FILTERS:
-        raise InputError(f"no filter {model!r}; {nearest(model, FILTERS)}")
-    names = step_names(model)
+    chosen = filter_class(model)
+    names = chosen.step_sizes
+    steps = settings.get("convergence_factor", dict.fromkeys(names, 1.0))
     options: dict[str, Any] = {
         "order": settings["order"] if order is None else order,
         "x_before": settings["input_before"],
+        **{own: float(steps[name]) for name, own in names.items()},
+        **chosen.options(settings, record, identified),
     }
-    if model in ("gpo", "backlash"):
-        amplitude = settings.get("amplitude", float(np.abs(record.u).max()))
-        options |= {
-            "amplitude": amplitude,
-            "initial_state": settings["initial_state"],
-        }
-    if model == "gpo":
-        options["form"] = settings["operator_form"]
-        if settings["envelopes"] == "identified":
-            if identified is None:
-                raise InputError(
-                    "envelopes: identified; expected the option --identified FILE"
-                )
-            options["envelope"] = Envelope.from_dict(identified["envelope"])
-            options["amplitude"] = identified["amplitude"]
-        else:
-            options["envelope"] = PUBLISHED_ENVELOPE
-    if model == "backlash":
-        options["structure"] = settings["backlash_structure"]
-    steps = settings.get("convergence_factor", dict.fromkeys(names, 1.0))
-    options |= {own: float(steps[name]) for name, own in names.items()}
-    adaptive = FILTERS[model](**options)
+    adaptive = chosen(**options)
     if settings["constant_tap"]:
         size = settings["constant_tap"] * adaptive.tap_rms(record.u)
         adaptive = replace(adaptive, constant_tap=size)
@@ -95,39 +62,26 @@ def make_filter(
     )
 
 
-def step_bounds(adaptive: AdaptiveFilter, x: FloatArray) -> dict[str, float]:
-    """Bound of Eq. 19, 1 / tr R, on each step size of a filter for an input.
-
-    Each part of the Volterra filter has the bound of its own part of R. Its traces
-    are the means of ``s(k)`` and ``s(k)^2``, where s is the sum of the squared taps.
-    """
-    if adaptive.name != "volterra":
-        return {"mu": adaptive.bound(x).bound}
-    before = np.full(adaptive.taps, adaptive.x_before)
-    total = np.cumsum(np.concatenate([before, x]) ** 2)
-    power = total[adaptive.taps :] - total[: -adaptive.taps]
-    first = power.mean() + adaptive.constant_tap**2
-    traces = {"first_order": first, "second_order": (power**2).mean()}
-    return {name: float(1 / trace) for name, trace in traces.items()}
+def steps_of(adaptive: AdaptiveFilter) -> dict[str, float]:
+    """Give the step sizes of a filter by their names in settings and results."""
+    return {name: getattr(adaptive, own) for name, own in adaptive.step_sizes.items()}
 
 
 def with_fraction_of_bound(
     adaptive: AdaptiveFilter, x: FloatArray, fractions: Mapping[str, float]
 ) -> AdaptiveFilter:
     """Set each step size of a filter to a fraction of its bound for an input."""
-    bounds = step_bounds(adaptive, x)
+    bounds = adaptive.step_bounds(x)
     steps: dict[str, Any] = {
-        own: fractions[name] * bounds[name]
-        for name, own in step_names(adaptive.name).items()
+        own: fractions[name] * bounds[name] for name, own in adaptive.step_sizes.items()
     }
     return replace(adaptive, **steps)
 
 
 def fraction_of_bound(adaptive: AdaptiveFilter, x: FloatArray) -> dict[str, float]:
     """Give each step size of a filter as a fraction of its bound for an input."""
-    bounds = step_bounds(adaptive, x)
-    names = step_names(adaptive.name)
-    return {name: getattr(adaptive, own) / bounds[name] for name, own in names.items()}
+    bounds = adaptive.step_bounds(x)
+    return {name: step / bounds[name] for name, step in steps_of(adaptive).items()}
 
 
 def run_filter(
@@ -147,8 +101,8 @@ def run_filter(
     model = adaptive.name
     result = adaptive.run(record.u, record.y)
     bound = adaptive.bound(record.u)
-    steps = {name: getattr(adaptive, own) for name, own in step_names(model).items()}
-    bounds = step_bounds(adaptive, record.u)
+    steps = steps_of(adaptive)
+    bounds = adaptive.step_bounds(record.u)
     kept = run_result(
         record,
         model,
@@ -196,9 +150,8 @@ def divergence(
     """
     if result.diverged_at is None:
         return None
-    bounds = step_bounds(adaptive, x)
-    names = step_names(adaptive.name)
-    steps = {name: getattr(adaptive, own) for name, own in names.items()}
+    bounds = adaptive.step_bounds(x)
+    steps = steps_of(adaptive)
     told = ", ".join(
         f"{'mu' if name == 'mu' else 'mu of ' + name.replace('_', ' ')} = {step:.4g} "
         f"{'above' if step > bounds[name] else 'below'} 1/tr[R] = {bounds[name]:.4g}"

@@ -164,15 +164,15 @@ def causes_of(effect: str, kind: DeviceKind | None = None) -> tuple[str, ...]:
     Parameters
     ----------
     effect : str
-        One of the table.
     kind : str, optional
 
     Returns
     -------
     tuple of str
-        Empty where such a device cannot have it.
+        Empty where such a device cannot have it, and of an effect that the table does
+        not have.
     """
-    rows = CAUSES[effect].items()
+    rows = CAUSES.get(effect, {}).items()
     return tuple(cause for cause, kinds in rows if kind is None or kind in kinds)
 
 

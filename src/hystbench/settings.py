@@ -13,20 +13,13 @@ from typing import Any
 
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
+from hystbench.filters import filter_class, registry
+from hystbench.filters.keys import keys_of
 from hystbench.plants import model_files
+from hystbench.published import FILTERS, load, signals
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.settings_checks import checked
 from hystbench.signals import highest_hz
-
-#: The four LMS filters, in the order of the paper's tables.
-FILTER_NAMES = ("gpo", "backlash", "volterra", "delayed")
-
-_KEYS_OF_FILTER = {
-    "gpo": ("input_before", "constant_tap", "initial_state", "operator_form"),
-    "backlash": ("input_before", "constant_tap", "initial_state", "backlash_structure"),
-    "volterra": ("input_before", "constant_tap"),
-    "delayed": ("input_before", "constant_tap"),
-}
 
 
 @dataclass(frozen=True)
@@ -76,8 +69,19 @@ class Settings:
 
     @property
     def filters(self) -> list[str]:
-        """Names of the LMS filters to run."""
-        return [name for name in FILTER_NAMES if name in self.models]
+        """Names of the LMS filters to run: the paper's first, as it lists them."""
+        return [name for name in registry() if name in self.models]
+
+    @property
+    def paper_filters(self) -> list[str]:
+        """Those of them that are the paper's: its claims are of no other."""
+        return [name for name in FILTERS if name in self.models]
+
+    @property
+    def added(self) -> list[str]:
+        """Filters and signals to run that the paper's tables do not have."""
+        known = {*FILTERS, *signals(load())}
+        return [name for name in (*self.filters, *self.signals) if name not in known]
 
     @property
     def identification_signal(self) -> str:
@@ -132,7 +136,7 @@ class Settings:
         signals = self.all_records
         if self.dataset is None:
             signals = [*signals, *self.config["excitations"]]
-        models = [*FILTER_NAMES, "rdgpi"]
+        models = [*registry(), "rdgpi"]
         for name, known in ((path.parent.name, signals), (path.stem, models)):
             if name not in known:
                 raise InputError(f"{target}: no {name!r}; {nearest(name, known)}")
@@ -240,12 +244,16 @@ class Settings:
             **section,
             **self.signal_job(section["signal"]),
             "measure": self.measure_job,
-            "filters": self._filter_jobs,
+            "filters": self._paper_filter_jobs,
         }
 
     @property
     def _filter_jobs(self) -> dict[str, Any]:
         return {name: self.filter_job(name) for name in self.filters}
+
+    @property
+    def _paper_filter_jobs(self) -> dict[str, Any]:
+        return {name: self.filter_job(name) for name in self.paper_filters}
 
     @property
     def step_sweep_job(self) -> dict[str, Any]:
@@ -262,7 +270,7 @@ class Settings:
         return {
             "signals": {name: self.signal_job(name) for name in self.signals},
             "measure": self.measure_job,
-            "filters": self._filter_jobs,
+            "filters": self._paper_filter_jobs,
             **{key: section[key] for key in ("zero_errors", "constant_taps")},
             **self.compare_job,
         }
@@ -289,7 +297,7 @@ class Settings:
         unused = {"convergence_factor", *self.error_job}
         filters = {
             name: {k: v for k, v in self.filter_job(name).items() if k not in unused}
-            for name in FILTER_NAMES
+            for name in FILTERS
         }
         filters["gpo"]["envelopes"] = "published"
         return {
@@ -339,12 +347,12 @@ class Settings:
         """Settings of the paper's models on measured devices."""
         measured = self.config["measured"]
         filters = {}
-        for model in self.filters:
+        for model in self.paper_filters:
             job = self.filter_job(model)
             job.pop("convergence_factor", None)
             job.pop("amplitude", None)
             job["fraction_of_bound"] = measured["fraction_of_bound"]
-            if model == "gpo":
+            if "envelopes" in job:
                 job["envelopes"] = measured["envelopes"]
             filters[model] = job
         return {
@@ -358,9 +366,12 @@ class Settings:
     def filter_job(self, model: str) -> dict[str, Any]:
         """Give the settings on which one filter's run depends."""
         filters = self.config["filters"]
-        job = {key: filters[key] for key in _KEYS_OF_FILTER[model]}
-        job |= {"order": filters["order"]} | self.error_job
-        if model == "gpo":
+        chosen = filter_class(model)
+        keys = keys_of(chosen).items()
+        job = {name: filters.get(name, key.default) for name, key in keys}
+        job |= {key: filters[key] for key in ("order", "input_before", "constant_tap")}
+        job |= self.error_job
+        if chosen.takes_envelopes:
             job["envelopes"] = self.envelopes
         if self.dataset is None:
             job["amplitude"] = self.config["excitation"]["amplitude"]

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from hystbench.config_schema import config_schema
 from hystbench.dataset import Dataset, load_dataset
 from hystbench.doubts import doubts
 from hystbench.envelope import fewest_samples
@@ -15,7 +16,6 @@ from hystbench.published import load
 from hystbench.schema import check_against_schema
 from hystbench.signals import Signal, make_signal
 from hystbench.units import plain
-from hystbench.yaml_files import load_yaml
 
 
 def checked(
@@ -40,7 +40,7 @@ def checked(
     InputError
         With the first mistake found.
     """
-    check_against_schema(config, load_yaml(schema_file), place)
+    check_against_schema(config, config_schema(config, schema_file), place)
     # To make all signals costs less than to find out later that one cannot be made.
     excitations = {
         name: make_signal(name, definition, config["excitation"], place)

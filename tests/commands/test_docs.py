@@ -56,12 +56,19 @@ def test_what_is_missing_is_told_and_the_page_kept(folder, line, expected):
     assert page == text
 
 
-def test_a_page_on_records_that_are_not_shipped_is_no_failure(folder):
+@pytest.mark.parametrize(
+    ("source", "maker"),
+    [
+        ("results/devices/tracking.csv", "snakemake devices"),
+        ("results/blind/elsewhere.csv", "hystbench job blind-elsewhere"),
+    ],
+)
+def test_a_page_on_records_that_are_not_shipped_is_no_failure(folder, source, maker):
     """Unless it is named: then somebody wants it filled."""
     (folder / "docs").mkdir()
     block = "<!-- from {} -->\nold\n<!-- end -->\n"
     page = folder / "docs" / "devices.md"
-    page.write_text(block.format("results/devices/tracking.csv"))
+    page.write_text(block.format(source))
     (folder / "README.md").write_text(block.format("t.md"))
     result = run_hystbench("docs", cwd=folder)
     assert (result.returncode, result.stderr) == (0, "")
@@ -69,7 +76,7 @@ def test_a_page_on_records_that_are_not_shipped_is_no_failure(folder):
     assert "new text" in (folder / "README.md").read_text()
     named = run_hystbench("docs", "docs/devices.md", cwd=folder)
     assert named.returncode == 2
-    assert "snakemake devices" in named.stderr
+    assert f"(made by '{maker}')" in named.stderr
 
 
 def test_every_page_that_can_be_filled_is(folder):

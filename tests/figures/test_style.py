@@ -43,7 +43,7 @@ def test_signals_of_the_paper_are_put_in_words(name, title):
 
 
 def test_models_differ_in_colour_line_and_marker():
-    looks = style.LOOKS.values()
+    looks = style.PAPER.values()
     for part in ("label", "color", "dashes", "marker"):
         assert len({getattr(look, part) for look in looks}) == len(looks)
     assert {look.color for look in looks} <= set(style.PALETTE)

@@ -16,7 +16,11 @@ os.sched_setaffinity(0, allowed[: int(sys.argv[1])])
 
 import numpy as np  # noqa: E402
 
-from hystbench import kernels, operators  # noqa: E402
+from hystbench import (  # noqa: E402
+    kernels,
+    operators,
+    published,
+)
 from hystbench.blocks.creep import Creep  # noqa: E402
 from hystbench.blocks.friction_force import FrictionForce  # noqa: E402
 from hystbench.blocks.gravity import Gravity  # noqa: E402
@@ -58,7 +62,7 @@ def signals():
 
 def filters(x, d):
     """Outputs, errors and final weights of every filter, plain and normalized."""
-    assert set(MORE) == set(FILTERS)
+    assert set(MORE) == set(published.FILTERS)
     jobs = [
         (FILTERS[name](order=order, step_size=1e-3, normalized=n, **options), x, d)
         for name, options in MORE.items()

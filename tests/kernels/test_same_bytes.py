@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from hystbench import kernels
-from hystbench.filters import FILTERS
+from hystbench.published import FILTERS
 
 SCRIPT = Path(__file__).with_name("every_kernel.py")
 

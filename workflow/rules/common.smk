@@ -1,4 +1,5 @@
 # What all rules share: checked settings, and the source files that a job depends on.
+import inspect
 import json
 import os
 import re
@@ -11,7 +12,9 @@ import grimp
 import hystbench
 from hystbench.errors import InputError
 from hystbench.figures import module_of
+from hystbench.filters import filter_class, registry
 from hystbench.settings import read_settings
+from hystbench.waveforms import waveforms
 from hystbench.written import check_replaceable, claim_logs
 
 # Jobs call `hystbench`: the one of the interpreter that runs Snakemake.
@@ -120,9 +123,9 @@ def code(*modules):
     As inputs of a rule they make an edited module rerun what depends on it.
     """
     names = set(modules).union(*(GRAPH.find_upstream_modules(name) for name in modules))
-    for package in ("hystbench.blocks", "hystbench.formats"):
+    for package in ("hystbench.blocks", "hystbench.formats", "hystbench.waveforms"):
         if package in names:
-            # Blocks and formats are found by name, so that no import tells of them.
+            # Blocks, formats and waveforms are found by name, so that no import tells of them.
             own = GRAPH.find_children(package)
             names |= own.union(*(GRAPH.find_upstream_modules(name) for name in own))
     files = []
@@ -135,7 +138,28 @@ def code(*modules):
         files.extend(sorted(PACKAGE.glob("compare/*.j2")))
     if "hystbench.kernels" in names:
         files.extend(KERNELS)
+    if "hystbench.waveforms" in names:
+        kinds = [next(iter(each)) for each in config["excitations"].values()]
+        files.extend(files_outside(waveforms(kind)[kind] for kind in kinds))
     return [str(file) for file in files]
+
+
+def files_outside(found):
+    """Files of those classes that are of installed packages."""
+    names = {each.__module__ for each in found if not is_ours(each)}
+    return sorted(os.path.relpath(inspect.getfile(sys.modules[name])) for name in names)
+
+
+def is_ours(found):
+    """Whether a class is hystbench's own."""
+    return found.__module__.startswith("hystbench.")
+
+
+def code_with(found, *modules):
+    """Files of modules and of classes that are found by name, so no import tells."""
+    listed = list(found)
+    own = [each.__module__ for each in listed if is_ours(each)]
+    return code(*modules, *own) + files_outside(listed)
 
 
 def settings_text(settings):
@@ -164,7 +188,8 @@ def runs(suffix="json"):
 
 def identified(wildcards):
     """The identified envelope functions, for the filter that uses them."""
-    if wildcards.filter == "gpo" and SETTINGS.envelopes == "identified":
+    takes = filter_class(wildcards.filter).takes_envelopes
+    if takes and SETTINGS.envelopes == "identified":
         return rules.identify.output
     return []
 

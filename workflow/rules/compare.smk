@@ -1,5 +1,12 @@
 # Ours beside the paper's: cells, claims, audit and tables. A measured dataset has no
 # published numbers, so its errors stand alone.
+# Filters and signals that the paper does not have stand in a table of their own.
+TABLES = [f"table-{number}" for number in (1, 2, 3, 4)]
+ADDED = []
+if SETTINGS.added:
+    TABLES.append("added")
+    ADDED.append(f"{COMPARE}/added.csv")
+
 if TWIN:
 
     rule tables:
@@ -45,14 +52,13 @@ if TWIN:
             margins=f"{COMPARE}/margins.csv",
             text=f"{COMPARE}/tables.txt",
             tables=report(
-                expand(f"{COMPARE}/tables/table-{{number}}.csv", number=[1, 2, 3, 4]),
+                expand(f"{COMPARE}/tables/{{name}}.csv", name=TABLES),
                 caption="../report/tables.rst",
                 category="Tables",
             ),
-            markdown=expand(
-                f"{COMPARE}/tables/table-{{number}}.md", number=[1, 2, 3, 4]
-            ),
-            latex=expand(f"{COMPARE}/tables/table-{{number}}.tex", number=[1, 2, 3, 4]),
+            markdown=expand(f"{COMPARE}/tables/{{name}}.md", name=TABLES),
+            latex=expand(f"{COMPARE}/tables/{{name}}.tex", name=TABLES),
+            added=ADDED,
         log:
             f"{RESULTS}/logs/tables.log",
         benchmark:

@@ -14,10 +14,7 @@ if DEVICE_CASES:
             ],
             gaps=rules.gap_summary.output.summary,
             published=PACKAGE / "published/baselines.csv",
-            code=code(
-                "hystbench.commands.jobs.devices",
-                *[f"hystbench.filters.{name}" for name in SETTINGS.filters],
-            ),
+            code=code_with(PAPER_FILTERS, "hystbench.commands.jobs.devices"),
         output:
             expand(
                 f"{DEVICES}/{{name}}",

@@ -3,8 +3,8 @@ rule filter:
     input:
         record=record("{signal}"),
         identified=identified,
-        code=lambda wildcards: code(
-            "hystbench.commands.jobs.filter", f"hystbench.filters.{wildcards.filter}"
+        code=lambda wildcards: code_with(
+            [filter_class(wildcards.filter)], "hystbench.commands.jobs.filter"
         ),
     output:
         run=run("{signal}", "{filter}"),
@@ -31,9 +31,8 @@ rule order_sweep:
     input:
         record=record(SETTINGS.order_sweep_signal),
         identified=rules.identify.output,
-        code=code(
-            "hystbench.commands.jobs.order_sweep",
-            *[f"hystbench.filters.{name}" for name in SETTINGS.filters],
+        code=code_with(
+            map(filter_class, SETTINGS.filters), "hystbench.commands.jobs.order_sweep"
         ),
     output:
         configured=f"{RESULTS}/order-sweep/errors.csv",

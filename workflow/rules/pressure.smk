@@ -2,8 +2,7 @@
 # One job runs all models on all twins in memory: a file for each run would cost more
 # than the runs.
 PRESSURE = f"{RESULTS}/pressure"
-# The filters are found by name, so that no import tells of them.
-FILTER_MODULES = [f"hystbench.filters.{name}" for name in SETTINGS.filters]
+PAPER_FILTERS = [filter_class(name) for name in SETTINGS.paper_filters]
 
 if TWIN:
 
@@ -14,7 +13,7 @@ if TWIN:
             identified=rules.identify.output,
             rdgpi=rules.rdgpi_identify.output if "rdgpi" in SETTINGS.models else [],
             published=PUBLISHED,
-            code=code("hystbench.commands.jobs.random_sum", *FILTER_MODULES),
+            code=code_with(PAPER_FILTERS, "hystbench.commands.jobs.random_sum"),
         output:
             draws=f"{RESULTS}/random-sum/draws.csv",
             readings=f"{RESULTS}/random-sum/readings.csv",
@@ -37,7 +36,10 @@ if TWIN:
         input:
             records=[record(signal) for signal in SETTINGS.signals],
             identified=rules.identify.output,
-            code=code("hystbench.commands.jobs.step_sweep", *FILTER_MODULES),
+            code=code_with(
+                map(filter_class, SETTINGS.filters),
+                "hystbench.commands.jobs.step_sweep",
+            ),
         output:
             edges=f"{RESULTS}/step-sweep/edges.csv",
             points=f"{RESULTS}/step-sweep/points.csv",
@@ -60,7 +62,7 @@ if TWIN:
             twins=SETTINGS.constants_files,
             identified=rules.identify.output,
             published=PUBLISHED,
-            code=code("hystbench.commands.jobs.constants", *FILTER_MODULES),
+            code=code_with(PAPER_FILTERS, "hystbench.commands.jobs.constants"),
         output:
             f"{PRESSURE}/constants.csv",
         log:
@@ -101,9 +103,8 @@ if TWIN:
         input:
             twins=SETTINGS.twin_files,
             fits=rules.twin_fits.output,
-            code=lambda wildcards: code(
-                "hystbench.commands.jobs.twin_runs",
-                f"hystbench.filters.{wildcards.filter}",
+            code=lambda wildcards: code_with(
+                [filter_class(wildcards.filter)], "hystbench.commands.jobs.twin_runs"
             ),
         output:
             f"{RESULTS}/twins/{{filter}}.json",
@@ -126,7 +127,7 @@ if TWIN:
         input:
             twins=SETTINGS.twin_files,
             fits=rules.twin_fits.output,
-            runs=[f"{RESULTS}/twins/{name}.json" for name in SETTINGS.filters],
+            runs=[f"{RESULTS}/twins/{name}.json" for name in SETTINGS.paper_filters],
             code=code("hystbench.commands.jobs.twins"),
         output:
             errors=f"{RESULTS}/twins/errors.csv",
@@ -150,13 +151,13 @@ if TWIN:
     HYPOTHESES = []
     if {"chirp-1-100hz", "sine-100hz", "sine-150hz", "sine-200hz"} <= {
         *SETTINGS.signals
-    } and len(SETTINGS.filters) == 4:
+    } and len(SETTINGS.paper_filters) == 4:
 
         rule hypotheses:
             input:
                 twin=SETTINGS.model_file,
                 published=PUBLISHED,
-                code=code("hystbench.commands.jobs.hypotheses", *FILTER_MODULES),
+                code=code_with(PAPER_FILTERS, "hystbench.commands.jobs.hypotheses"),
             output:
                 chirp=f"{RESULTS}/hypotheses/chirp.csv",
                 volterra=f"{RESULTS}/hypotheses/volterra.csv",

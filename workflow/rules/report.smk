@@ -3,6 +3,8 @@
 PAGE_TABLES = [*rules.envelopes.output]
 if TWIN and "rdgpi" in SETTINGS.models:
     PAGE_TABLES += rules.rdgpi_published.output
+if TWIN:
+    PAGE_TABLES += ADDED
 # `snakemake --report` takes the same captions.
 CAPTIONS = Path(os.path.relpath(Path(workflow.current_basedir, "../report")))
 

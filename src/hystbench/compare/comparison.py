@@ -11,7 +11,8 @@ from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all, write_claims
 from hystbench.compare.claims.claim import Judgement
 from hystbench.compare.edges import Edge, write_margins
-from hystbench.compare.evidence import ClaimEvidence, read_evidence
+from hystbench.compare.evidence import ClaimEvidence, Run, read_evidence
+from hystbench.compare.measured import COLUMNS, errors_table
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.rows import write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
@@ -31,6 +32,7 @@ __all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
 WRITTEN = (
     *("cells.csv", "off.csv", "claims.csv", "audit.csv", "summary.json", "margins.csv"),
     *("first.md", "verdict.rst", "verdict.md", "tables.txt", "tables/table-*"),
+    *("added.csv", "tables/added.*"),
 )
 """Files of a comparison, as names or patterns."""
 _FIELDS = [field.name for field in fields(ComparedCell)]
@@ -48,6 +50,7 @@ class Comparison:
     tables: tuple[Table, ...]
     edges: tuple[Edge, ...]
     held_out: frozenset[str]
+    added: tuple[Run, ...] = ()
 
     def text(self) -> str:
         """Give the comparison for a terminal."""
@@ -68,6 +71,8 @@ class Comparison:
         write_text(out / "tables.txt", self.text())
         for table in self.tables:
             table.write(out / "tables")
+        if self.added:
+            write_fields(out / "added.csv", COLUMNS, self.added)
 
 
 def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
@@ -84,8 +89,13 @@ def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
 def compare_evidence(
     evidence: ClaimEvidence, held_out: Iterable[str] = ()
 ) -> Comparison:
-    """Compare evidence that is already read; ``held_out`` as in ``summarise``."""
+    """Compare evidence that is already read; ``held_out`` as in ``summarise``.
+
+    Models and signals that the paper does not have stand in a table of their own;
+    neither claims nor summary are of such models.
+    """
     unseen = set(held_out)
+    whole, evidence = evidence, evidence.of_the_paper
     cells = compare_cells(evidence, unseen)
     claims = judge_all(evidence, unseen)
     return Comparison(
@@ -101,12 +111,29 @@ def compare_evidence(
             edges=evidence.edges,
             constants=evidence.constants,
         ),
-        tables=paper_tables(
-            cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
+        tables=(
+            *paper_tables(
+                cells, {name: drawn.count for name, drawn in evidence.drawn.items()}
+            ),
+            *_added_table(whole),
         ),
-        edges=evidence.edges,
+        edges=whole.edges,
         held_out=frozenset(unseen),
+        added=whole.added,
     )
+
+
+def _added_table(evidence: ClaimEvidence) -> list[Table]:
+    """Set side by side what ran and is in none of the paper's tables, if there is any.
+
+    Models that the paper does not have stand beside its own.
+    """
+    models, names = evidence.added_models, evidence.added_signals
+    if not models and not names:
+        return []
+    why = f"The paper has no numbers for {', '.join((*models, *names))}."
+    runs = list(evidence.runs.values()) if models else list(evidence.added)
+    return [errors_table("added", "Our errors on the twin.", why, runs)]
 
 
 def compare(
@@ -124,7 +151,8 @@ def compare(
         Folder for ``cells.csv``, ``off.csv``, ``claims.csv``, ``audit.csv``,
         ``margins.csv``, ``summary.json``, ``verdict.rst``, ``verdict.md``,
         ``first.md`` for the README, ``tables.txt`` for the terminal and ``tables/``
-        (Tables 1-4 as CSV, Markdown and LaTeX).
+        (Tables 1-4 as CSV, Markdown and LaTeX); and where models or signals ran that
+        the paper does not have, for ``added.csv`` and ``tables/added``.
     runs : iterable of paths
         One JSON file for each signal and model.
     records : iterable of paths

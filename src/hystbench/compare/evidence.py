@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,16 @@ from hystbench.compare.rows import finite_or_infinite, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
-from hystbench.published import Metric, Pair, Text, load, load_text
+from hystbench.published import (
+    MODELS,
+    Metric,
+    Pair,
+    Text,
+    in_order,
+    load,
+    load_text,
+    signals,
+)
 from hystbench.record import FloatArray, Record, load_record
 
 Cell = tuple[str, str]
@@ -146,6 +155,38 @@ class ClaimEvidence:
     drawn: Mapping[str, Drawn] = field(default_factory=dict)
     edges: tuple[Edge, ...] = ()
     constants: tuple[Row, ...] = ()
+
+    @property
+    def added_models(self) -> tuple[str, ...]:
+        """Models among the runs that the paper does not have."""
+        return tuple(in_order({model for _, model in self.runs} - {*MODELS}))
+
+    @property
+    def added_signals(self) -> tuple[str, ...]:
+        """Signals among the runs that the paper's tables do not have."""
+        known = signals(self.published)
+        told = dict.fromkeys(signal for signal, _ in self.runs)
+        return tuple(signal for signal in told if signal not in known)
+
+    @property
+    def added(self) -> tuple[Run, ...]:
+        """Runs of models or signals that the paper's tables do not have."""
+        models, names = {*self.added_models}, {*self.added_signals}
+        runs = self.runs.values()
+        return tuple(r for r in runs if r.model in models or r.signal in names)
+
+    @property
+    def of_the_paper(self) -> ClaimEvidence:
+        """What there is of the paper's own models: its claims are of no others."""
+        points = (self.order_sweep, self.order_sweep_other)
+        own, other = (tuple(p for p in each if p.model in MODELS) for each in points)
+        return replace(
+            self,
+            runs={cell: run for cell, run in self.runs.items() if cell[1] in MODELS},
+            order_sweep=own,
+            order_sweep_other=other,
+            edges=tuple(edge for edge in self.edges if edge.model in MODELS),
+        )
 
 
 def _need(content: Mapping[str, Any], key: str, path: str | Path) -> Any:

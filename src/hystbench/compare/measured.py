@@ -11,7 +11,7 @@ from hystbench.compare.evidence import Run, read_run
 from hystbench.compare.rows import write_fields
 from hystbench.compare.tables import Table, error_kind
 from hystbench.files import write_text
-from hystbench.published import MODELS
+from hystbench.published import in_order
 
 #: Columns of errors.csv: one row a record and model.
 COLUMNS = (
@@ -39,7 +39,12 @@ def compare_measured(
     """
     out = Path(out_dir)
     found = [read_run(path) for path in runs]
-    table = errors_table(dataset, found)
+    table = errors_table(
+        "errors",
+        f"Errors on the measured records of {dataset}.",
+        "The paper has no numbers for them.",
+        found,
+    )
     write_fields(out / "errors.csv", COLUMNS, found)
     table.write(out / "tables")
     parts = [table.caption, table.grid("rst"), table.legend, finite_sentence(found)]
@@ -48,27 +53,33 @@ def compare_measured(
     write_text(out / "verdict.rst", text)
 
 
-def errors_table(dataset: str, runs: Sequence[Run]) -> Table:
-    """Set the errors of all models side by side, a row a record and metric."""
+def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> Table:
+    """Set the errors of all models side by side, a row a record and metric.
+
+    Parameters
+    ----------
+    name : str
+        Stem of the table's files.
+    of, why : str
+        First and last sentence of its caption; between them stands the kind of error.
+    runs : sequence of Run
+    """
     by_cell = {(run.signal, run.model): run for run in runs}
     signals = dict.fromkeys(run.signal for run in runs)
-    models = [model for model in MODELS if any(run.model == model for run in runs)]
+    models = in_order(run.model for run in runs)
     units = {run.signal: run.unit for run in runs}
     content = []
     for signal in signals:
-        for metric, name in (("mse", f"MSE ({units[signal]})"), ("re", "RE")):
-            line = {"record": signal, "error": name}
+        for metric, told in (("mse", f"MSE ({units[signal]})"), ("re", "RE")):
+            line = {"record": signal, "error": told}
             for model in models:
                 run = by_cell.get((signal, model))
                 line[model] = _cell(run, metric)
             content.append(line)
     diverged = [run for run in runs if run.diverged is not None]
     return Table(
-        name="errors",
-        caption=(
-            f"Errors on the measured records of {dataset}. {error_kind(models)}. "
-            "The paper has no numbers for them."
-        ),
+        name=name,
+        caption=f"{of} {error_kind(models)}. {why}",
         legend="; ".join(
             f"{run.signal}, {run.model}: {run.diverged}" for run in diverged
         ),

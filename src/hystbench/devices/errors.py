@@ -18,8 +18,6 @@ import numpy as np
 
 from hystbench.adaptive import (
     make_filter,
-    step_bounds,
-    step_names,
     with_fraction_of_bound,
 )
 from hystbench.dataset import Dataset
@@ -158,13 +156,13 @@ def best_fractions(
         for all: those of the least geometric mean of the MSE over the fit records, each
         begun with zero weights.
     """
-    names = step_names(adaptive.name)
+    names = adaptive.step_sizes
     grid = product(sorted(fractions), repeat=len(names))
     choices = [dict(zip(names, parts, strict=True)) for parts in grid]
     steady = np.ones(len(choices), dtype=bool)
     errors = []
     for place, record in enumerate((*fit, *held)):
-        bounds = step_bounds(adaptive, record.u)
+        bounds = adaptive.step_bounds(record.u)
         power = adaptive.largest_power(record.u)
         filters = []
         for parts in choices:

@@ -71,7 +71,7 @@ def draw_shares(figures: Mapping[str, str], *, table: Path) -> Figure:
         style.name_rows(axes, effects)
     panels[0].set_ylabel("effect")
     style.letter(list(panels))
-    style.legend_above(drawn, _handles(rows, "none"))
+    style.legend_above(drawn, _handles(rows, families, "none"))
     return drawn
 
 
@@ -84,15 +84,17 @@ def draw_power(*, table: Path) -> Figure:
         ``effect, family, ratio_db, share, low, high, cases``.
     """
     rows = _read(table)
+    families = _families(rows)
     effects = list(dict.fromkeys(row["effect"] for row in rows))
     lines = ceil(len(effects) / _ACROSS)
     figure = Figure(figsize=(style.PAGE, 0.8 + 1.25 * lines))
     panels = figure.subplots(lines, _ACROSS, sharex=True, sharey=True, squeeze=False)
     for axes, effect in zip(panels.flat, effects, strict=False):
         axes.set_title("all effects" if effect == "all" else effect, fontsize=7)
-        for family in _families(rows):
+        for place, (family, (_, color, marker)) in enumerate(families.items()):
             mine = [r for r in rows if (r["effect"], r["family"]) == (effect, family)]
-            _curve(axes, mine, family)
+            # side by side where intervals would hide each other
+            _curve(axes, mine, color, marker, 0.5 * (place - 1))
     for axes in panels.flat[len(effects) :]:
         axes.set_visible(False)
     for axes in panels[-2, len(effects) % _ACROSS or _ACROSS :] if lines > 1 else []:
@@ -102,15 +104,13 @@ def draw_power(*, table: Path) -> Figure:
     panels[0, 0].set_ylim(-5.0, 105.0)
     figure.supxlabel("gap over noise (dB)", fontsize=8)
     figure.supylabel("cases in which it is named (%)", fontsize=8)
-    style.legend_above(figure, _handles(rows, "-"))
+    style.legend_above(figure, _handles(rows, families, "-"))
     return figure
 
 
-def _curve(axes: Axes, rows: list[dict[str, str]], family: str) -> None:
-    families = MACHINES if family in MACHINES else FAMILIES
-    _, color, marker = families[family]
-    # side by side where intervals would hide each other
-    shift = 0.5 * (list(families).index(family) - 1)
+def _curve(
+    axes: Axes, rows: list[dict[str, str]], color: str, marker: str, shift: float
+) -> None:
     x = [float(row["ratio_db"]) + shift for row in rows]
     for place, row in zip(x, rows, strict=True):
         low, _, high = _percent(row)
@@ -172,11 +172,15 @@ def _percent(row: Mapping[str, str]) -> tuple[float, float, float]:
     return low, share, high
 
 
-def _handles(rows: Sequence[Mapping[str, str]], line: str) -> list[Line2D]:
+def _handles(
+    rows: Sequence[Mapping[str, str]],
+    families: Mapping[str, tuple[str, str, str]],
+    line: str,
+) -> list[Line2D]:
     """Make the legend of the families that are there."""
     there = {row["family"] for row in rows}
     return [
         style.key(label, color=color, marker=marker, linestyle=line)
-        for family, (label, color, marker) in _families(rows).items()
+        for family, (label, color, marker) in families.items()
         if family in there
     ]

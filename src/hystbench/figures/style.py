@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, ScalarFormatter
 from numpy.typing import ArrayLike
 
+from hystbench import published
 from hystbench.errors import InputError, nearest
 from hystbench.files import atomic_path
 from hystbench.record import Channel
@@ -34,7 +37,8 @@ GREEN = "#009E73"
 BLUE = "#0072B2"
 VERMILION = "#D55E00"
 PURPLE = "#CC79A7"
-PALETTE = (BLACK, GREY, ORANGE, GREEN, BLUE, VERMILION, PURPLE)
+SKY = "#56B4E9"
+PALETTE = (BLACK, GREY, ORANGE, GREEN, BLUE, VERMILION, PURPLE, SKY)
 
 _STYLE = Path(__file__).with_name("hystbench.mplstyle")
 _METADATA: dict[str, dict[str, None]] = {
@@ -63,14 +67,20 @@ class Look:
         return {**self.line, "marker": self.marker}
 
 
-#: In the order of the paper's tables.
-LOOKS = {
+#: The paper's models, in the order of its tables.
+PAPER = {
     "gpo": Look("GPO filter", BLUE, "-", "o"),
     "backlash": Look("backlash filter", ORANGE, (0, (5, 1.5)), "s"),
     "volterra": Look("Volterra filter", GREEN, (0, (5, 1.5, 1, 1.5)), "^"),
     "delayed": Look("delayed filter", VERMILION, (0, (1, 1.2)), "D"),
     "rdgpi": Look("RDGPI model", PURPLE, (0, (3, 1.2, 1, 1.2, 1, 1.2)), "v"),
 }
+
+#: What the other filters take in turn. Seven colours and eight markers: no two of the
+#: first 56 look the same, and no marker is one of the paper's models.
+_COLORS = (SKY, BLACK, PURPLE, GREEN, ORANGE, VERMILION, BLUE)
+_MARKERS = ("P", "X", "<", ">", "*", "p", "h", "d")
+_DASHES = ((0, (7, 2)), (0, (2, 2)), (0, (7, 2, 2, 2)))
 
 #: A record lies behind the models' lines, so that what they miss stands out.
 BEHIND: dict[str, Any] = {"color": GREY, "linewidth": 2.6, "linestyle": "-"}
@@ -154,6 +164,19 @@ def signal_title(name: str) -> str:
     return name
 
 
+@cache
+def looks() -> dict[str, Look]:
+    """Give the look of every model: the paper's first, then the others by name."""
+    from hystbench.filters import registry  # late: most figures show the paper's alone
+
+    found = dict(PAPER)
+    added = {name: item for name, item in registry().items() if name not in PAPER}
+    turns = zip(added.items(), cycle(_COLORS), cycle(_DASHES), cycle(_MARKERS))
+    for (name, item), color, dashes, marker in turns:
+        found[name] = Look(item.label, color, dashes, marker)
+    return found
+
+
 def look(model: str) -> Look:
     """Give the look of a model.
 
@@ -162,17 +185,18 @@ def look(model: str) -> Look:
     InputError
         If there is no such model.
     """
-    if model not in LOOKS:
-        raise InputError(f"no model {model!r}; {nearest(model, LOOKS)}")
-    return LOOKS[model]
+    known = PAPER if model in PAPER else looks()
+    if model not in known:
+        raise InputError(f"no model {model!r}; {nearest(model, known)}")
+    return known[model]
 
 
 def in_order(models: Iterable[str]) -> list[str]:
-    """Put models in the order of the paper's tables, each once."""
-    there = set(models)
+    """Put models in the order of the paper's tables, others by name, each once."""
+    there = published.in_order(models)
     for model in there:
         look(model)
-    return [model for model in LOOKS if model in there]
+    return there
 
 
 def handles(

@@ -1,17 +1,51 @@
-"""Adaptive filters: each file beside this one adds its own to the registry."""
+"""Adaptive filters: each file beside this one adds its own to the registry.
+
+An installed package adds one by an entry point of the group ``hystbench.filters``.
+"""
 
 from __future__ import annotations
 
-from importlib import import_module
-from pkgutil import iter_modules
+from functools import cache
 
-from hystbench.filters.base import FILTERS as FILTERS
+from hystbench.errors import InputError, nearest
 from hystbench.filters.base import MOST_CORRECTION as MOST_CORRECTION
 from hystbench.filters.base import AdaptiveFilter as AdaptiveFilter
-from hystbench.filters.base import Result as Result
-from hystbench.filters.base import State as State
 from hystbench.filters.bound import Bound as Bound
 from hystbench.filters.many import run_many as run_many
+from hystbench.filters.state import Result as Result
+from hystbench.filters.state import State as State
+from hystbench.published import in_order
+from hystbench.registered import classes_in, with_installed
 
-for _module in iter_modules(__path__):
-    import_module(f"{__name__}.{_module.name}")
+FILTERS: dict[str, type[AdaptiveFilter]] = classes_in(
+    __name__, __path__, AdaptiveFilter
+)
+"""Every filter of hystbench itself, by its name."""
+
+
+@cache
+def registry() -> dict[str, type[AdaptiveFilter]]:
+    """Give every filter by its name: the paper's as it lists them, then the others.
+
+    Raises
+    ------
+    InputError
+        If an installed package offers what is no filter, or a name that is taken.
+    """
+    found = with_installed(FILTERS, "hystbench.filters", AdaptiveFilter)
+    return {name: found[name] for name in in_order(found)}
+
+
+def filter_class(name: str) -> type[AdaptiveFilter]:
+    """Give a filter by its name.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name.
+    """
+    # What is installed is asked last: it takes longer than to make a filter.
+    known = FILTERS if name in FILTERS else registry()
+    if name not in known:
+        raise InputError(f"no filter {name!r}; {nearest(name, known)}")
+    return known[name]

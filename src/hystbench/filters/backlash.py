@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, get_args
 
 from hystbench.envelope import play_thresholds
-from hystbench.errors import InputError, nearest
+from hystbench.filters.keys import choice
 from hystbench.filters.plays import PlayFilter
 from hystbench.record import FloatArray
 
@@ -32,18 +32,14 @@ class BacklashFilter(PlayFilter):
     """
 
     name: ClassVar[str] = "backlash"
+    label: ClassVar[str] = "backlash filter"
 
-    structure: Structure = "delay-line"
-
-    def __post_init__(self) -> None:
-        """Refuse parameters out of range."""
-        super().__post_init__()
-        known = ("delay-line", "current-input")
-        if self.structure not in known:
-            raise InputError(
-                f"structure: {self.structure!r} unknown; "
-                f"{nearest(self.structure, known)}"
-            )
+    structure: Structure = choice(
+        "input on which the operators act",
+        get_args(Structure),
+        default="delay-line",
+        key="backlash_structure",
+    )
 
     @property
     def along_line(self) -> bool:

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike
 from hystbench import kernels
 from hystbench.errors import InputError
 from hystbench.filters.bound import Bound, eigenvalue_bound
-from hystbench.record import FloatArray
-
-CHUNK = 32000
-"""Samples filtered at a time: what is made of them stays in the processor's cache."""
+from hystbench.filters.keys import keys_of
+from hystbench.filters.state import End, Result, State, finite, positive
+from hystbench.filters.together import run_together
+from hystbench.record import FloatArray, Record
 
 ROWS = 2048
 """Samples whose regressors are held at a time."""
@@ -39,72 +39,15 @@ Beyond 2 the LMS of Eq. 18 is unstable while its regressor moves little; see
 instability. 1.7 leaves 15 %.
 """
 
-FILTERS: dict[str, type[AdaptiveFilter]] = {}
-"""Every filter by its name."""
-
-
-@dataclass(frozen=True)
-class State:
-    """What a filter carries from one chunk of a signal to the next.
-
-    Parameters
-    ----------
-    weights : ndarray
-        Weights after the last update.
-    past : ndarray, shape (history,)
-        The last inputs, oldest first: as many as the filter looks back on.
-    operators : ndarray
-        Outputs of the play operators, by tap; empty for filters without.
-    limit : float or None
-        Error beyond which the filter has diverged; None for a million times
-        ``largest``.
-    largest : float
-        Largest ``|d|`` so far.
-    diverged : bool
-        Whether it has; then it cannot go on.
-    """
-
-    weights: FloatArray
-    past: FloatArray
-    operators: FloatArray
-    limit: float | None = None
-    largest: float = 0.0
-    diverged: bool = False
-
-
-End = tuple[FloatArray, FloatArray]
-"""Weights and outputs of the operators after a chunk."""
-
-
-@dataclass(frozen=True)
-class Result:
-    """What an adaptive filter made of a record.
-
-    Parameters
-    ----------
-    output, error : ndarray, shape (n,)
-        Prediction y and a priori error ``e = d - y`` at each sample. They end before
-        the sample at which the filter diverged.
-    weights : ndarray
-        Weights after the last sample; after divergence of no use, but finite.
-    diverged_at : int or None
-        First sample whose error was beyond the limit or not a number.
-    state : State
-        Where to go on with the next chunk.
-    """
-
-    output: FloatArray
-    error: FloatArray
-    weights: FloatArray
-    diverged_at: int | None
-    state: State
-
 
 @dataclass(frozen=True, kw_only=True)
 class AdaptiveFilter(ABC):
     """An adaptive filter with LMS weights.
 
-    A subclass that is not abstract is in :data:`FILTERS` under its ``name``.
+    A subclass that is not abstract is a filter that config.yaml can name: inside
+    hystbench by its file, outside by an entry point. A field of it that is declared
+    with :func:`hystbench.filters.keys.number` or :func:`hystbench.filters.keys.choice`
+    is a key of config.yaml.
 
     Parameters
     ----------
@@ -129,6 +72,13 @@ class AdaptiveFilter(ABC):
     """
 
     name: ClassVar[str]
+    """Name in config.yaml and in every result."""
+    label: ClassVar[str]
+    """What figures and tables call it."""
+    step_sizes: ClassVar[Mapping[str, str]] = {"mu": "step_size"}
+    """Step sizes by their names in config.yaml and results, each with its field."""
+    takes_envelopes: ClassVar[bool] = False
+    """Whether it has envelope functions, which Algorithm 1 may have identified."""
 
     order: int
     step_size: float
@@ -136,11 +86,6 @@ class AdaptiveFilter(ABC):
     regularization: float = 1e-6
     x_before: float = 0.0
     constant_tap: float = 0.0
-
-    def __init_subclass__(cls) -> None:
-        """Enter the filter in the registry."""
-        if "name" in cls.__dict__:
-            FILTERS[cls.name] = cls
 
     def __post_init__(self) -> None:
         """Refuse parameters out of range."""
@@ -154,6 +99,34 @@ class AdaptiveFilter(ABC):
             raise InputError(
                 f"constant_tap: {self.constant_tap} given, zero or more expected"
             )
+        for key in keys_of(type(self)).values():
+            key.check(key.field, getattr(self, key.field))
+
+    @classmethod
+    def options(
+        cls,
+        settings: Mapping[str, Any],
+        record: Record,
+        identified: Mapping[str, Any] | None,
+    ) -> dict[str, Any]:
+        """Give what the filter itself needs beside order, step sizes and input before.
+
+        Parameters
+        ----------
+        settings : mapping
+            Those of the job; they hold the filter's own keys.
+        record : Record
+            The record that is to be filtered.
+        identified : mapping or None
+            Result of Algorithm 1, where it is asked for.
+
+        Returns
+        -------
+        dict
+            By field: of each of the filter's own keys the value that is set.
+        """
+        keys = keys_of(cls).items()
+        return {key.field: settings[name] for name, key in keys}
 
     @property
     def taps(self) -> int:
@@ -229,7 +202,7 @@ class AdaptiveFilter(ABC):
             w[:] = given
         past = np.empty(self.history)
         past.fill(self.x_before)
-        return State(w, past, self._first_operators())
+        return State(w, past, self.first_operators())
 
     def run(
         self,
@@ -279,6 +252,13 @@ class AdaptiveFilter(ABC):
         """
         return eigenvalue_bound(self._correlation(x), self.size)
 
+    def step_bounds(self, x: ArrayLike) -> dict[str, float]:
+        """Bound of Eq. 19, 1 / tr R, on each step size for an input, by its name.
+
+        A filter with several step sizes says what bounds each of them.
+        """
+        return {"mu": self.bound(x).bound}
+
     def largest_power(self, x: ArrayLike) -> float:
         """Largest ``H'H`` over an input; what :meth:`correction` takes.
 
@@ -294,7 +274,7 @@ class AdaptiveFilter(ABC):
 
     def tap_rms(self, x: ArrayLike) -> float:
         """RMS over an input of the taps, the constant one aside."""
-        total, count, operators = 0.0, 0, self._first_operators()
+        total, count, operators = 0.0, 0, self.first_operators()
         for line in self._chunks(x):
             rows, operators = self.regressor(line, operators)
             taps = rows[:, : self.taps]
@@ -314,7 +294,7 @@ class AdaptiveFilter(ABC):
         -------
         iterator of ndarray, shape (samples, size)
         """
-        operators = self._first_operators()
+        operators = self.first_operators()
         for line in self._chunks(x):
             rows, operators = self.whole_regressor(line, operators)
             yield rows
@@ -335,18 +315,19 @@ class AdaptiveFilter(ABC):
         """
         return 2 * self.step_size * power
 
-    def _windows(self, line: FloatArray) -> FloatArray:
+    def windows(self, line: FloatArray) -> FloatArray:
         """Taps at each sample, newest first, as a view of the line."""
         start = 1 + self.history - self.taps
         view = np.lib.stride_tricks.sliding_window_view(line[start:], self.taps)
         return view[:, ::-1]
 
-    def _first_operators(self) -> FloatArray:
+    def first_operators(self) -> FloatArray:
+        """Outputs of the operators before the first sample; none by default."""
         return np.zeros(0)
 
     def _chunks(self, x: ArrayLike) -> Iterator[FloatArray]:
         """Delay line of chunk after chunk of an input: past inputs, then its own."""
-        x, _ = _finite("x", x)
+        x, _ = finite("x", x)
         if len(x) == 0:
             raise InputError("x: no samples")
         line = np.concatenate((np.full(self.history, self.x_before), x))
@@ -448,137 +429,3 @@ class AdaptiveFilter(ABC):
     def _kernel_regularization(self) -> float:
         # the kernels take a negative one for the plain LMS
         return self.regularization if self.normalized else -1.0
-
-
-def run_together(
-    filters: Sequence[AdaptiveFilter],
-    x: ArrayLike,
-    d: ArrayLike,
-    state: State | None = None,
-    limit: float | None = None,
-) -> list[Result]:
-    """Run filters that differ in step size alone, each as it would run by itself.
-
-    Filters of play operators go through one call of the kernel a chunk; once some
-    have diverged, neighbours that have not stay together.
-
-    Parameters
-    ----------
-    filters : sequence of AdaptiveFilter
-        At least one.
-    x, d, state, limit
-        As for :meth:`AdaptiveFilter.run`.
-
-    Returns
-    -------
-    list of Result
-        Their outputs and errors are rows of one array each.
-
-    Raises
-    ------
-    InputError
-        If there is no filter, if they differ in more than the step size, and as for
-        :meth:`AdaptiveFilter.run`.
-    """
-    if not filters:
-        raise InputError("filters: none given, at least one expected")
-    first = filters[0]
-    if len(filters) > 1:
-        _refuse_unlike(filters)
-    x, _ = _finite("x", x)
-    d, largest = _finite("d", d)
-    if len(x) != len(d):
-        raise InputError(f"d: {len(d)} samples given, x has {len(x)}")
-    state = state or first.start()
-    if state.diverged:
-        raise InputError("state: the filter has diverged; expected one that goes on")
-    largest = max(largest, state.largest)
-    kept = state.limit if limit is None else limit
-    limit = 1e6 * (largest or 1.0) if kept is None else kept
-    positive("limit", limit)
-    count, past = len(filters), state.past
-    output, error = np.empty((count, len(d))), np.empty((count, len(d)))
-    ends: list[End] = [(state.weights, state.operators)] * count
-    pasts, done = [past] * count, [0] * count
-    for start in range(0, len(d), CHUNK):
-        part = slice(start, start + CHUNK)
-        line = np.concatenate((past, x[part]))
-        past = line[-first.history :].copy()
-        for row in _neighbours([samples == start for samples in done]):
-            own = range(count)[row]
-            signals = (output[row], error[row], start)
-            found = first._adapt_all(
-                filters[row], line, d[part], ends[row], limit, *signals
-            )
-            for k, (taken, end) in zip(own, found, strict=True):
-                done[k] += taken
-                ends[k], pasts[k] = end, past
-    whole = math.isfinite(kernels.largest(np.concatenate([w for w, _ in ends])))
-    results = []
-    for k, (weights, operators) in enumerate(ends):
-        diverged_at = done[k] if done[k] < len(d) else None
-        if not whole and not np.isfinite(weights).all():
-            # overflow in the last update of all: the next prediction would show it
-            diverged_at = done[k]
-            weights = np.nan_to_num(weights)
-        diverged = diverged_at is not None
-        end_state = State(weights, pasts[k], operators, kept, largest, diverged)
-        used = slice(done[k])
-        results.append(
-            Result(output[k, used], error[k, used], weights, diverged_at, end_state)
-        )
-    return results
-
-
-def but_step_size(item: AdaptiveFilter) -> dict[str, object]:
-    """Give what must be the same of filters that are run together.
-
-    Settings count by value; those without a hash, as arrays, by identity.
-    """
-    values = {key: value for key, value in vars(item).items() if key != "step_size"}
-    return {"filter": type(item)} | {key: _hashed(v) for key, v in values.items()}
-
-
-def _hashed(value: object) -> object:
-    try:
-        hash(value)
-    except TypeError:
-        return id(value)
-    return value
-
-
-def _refuse_unlike(filters: Sequence[AdaptiveFilter]) -> None:
-    one = but_step_size(filters[0])
-    for number, item in enumerate(filters[1:], 1):
-        other = but_step_size(item)
-        if one != other:
-            keys = (key for key in one | other if one.get(key) != other.get(key))
-            raise InputError(
-                f"filters: number {number} has another {next(keys)} than number 0; "
-                "run together, they may differ in step_size alone"
-            )
-
-
-def _neighbours(going: Sequence[bool]) -> list[slice]:
-    """Give the runs of neighbours that are all going."""
-    bounded = [False, *going, False]
-    edges = [k for k in range(len(going) + 1) if bounded[k] != bounded[k + 1]]
-    return [slice(*pair) for pair in zip(edges[::2], edges[1::2], strict=True)]
-
-
-def positive(name: str, value: float) -> None:
-    """Refuse a parameter that is not a positive finite number."""
-    if not 0 < value < np.inf:
-        raise InputError(f"{name}: {value} given, a positive number expected")
-
-
-def _finite(name: str, values: ArrayLike) -> tuple[FloatArray, float]:
-    """Give a vector of finite numbers, as the kernels want it, and the largest."""
-    array = np.asarray(values, dtype=np.float64, order="C")
-    if array.ndim != 1:
-        raise InputError(f"{name}: {array.ndim} dimensions given, 1 expected")
-    largest = kernels.largest(array)
-    if not math.isfinite(largest):
-        place = int(np.flatnonzero(~np.isfinite(array))[0])
-        raise InputError(f"{name}: sample {place} is {array[place]}")
-    return array, largest

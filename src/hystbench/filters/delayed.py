@@ -8,7 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.filters.base import AdaptiveFilter, End
+from hystbench.filters.base import AdaptiveFilter
+from hystbench.filters.state import End
 from hystbench.record import FloatArray
 
 
@@ -24,12 +25,13 @@ class DelayedFilter(AdaptiveFilter):
     """
 
     name: ClassVar[str] = "delayed"
+    label: ClassVar[str] = "delayed filter"
 
     def regressor(
         self, line: FloatArray, operators: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Give the delay line at each sample, newest first."""
-        return self._windows(line), operators
+        return self.windows(line), operators
 
     def _adapt(
         self,

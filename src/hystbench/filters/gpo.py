@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, thresholds
+from hystbench.errors import InputError
+from hystbench.filters.keys import choice
 from hystbench.filters.plays import PlayFilter
-from hystbench.record import FloatArray
+from hystbench.operators import FORMS, Form
+from hystbench.record import FloatArray, Record
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,8 +33,42 @@ class GPOFilter(PlayFilter):
     """
 
     name: ClassVar[str] = "gpo"
+    label: ClassVar[str] = "GPO filter"
+    takes_envelopes: ClassVar[bool] = True
 
+    form: Form = choice(
+        "equation by which the operators move",
+        FORMS,
+        default="eq12",
+        key="operator_form",
+    )
     envelope: Envelope = PUBLISHED_ENVELOPE
+
+    @classmethod
+    def options(
+        cls,
+        settings: Mapping[str, Any],
+        record: Record,
+        identified: Mapping[str, Any] | None,
+    ) -> dict[str, Any]:
+        """Give its own keys, the amplitude, and the envelopes that are asked for.
+
+        Raises
+        ------
+        InputError
+            If identified envelopes are asked for but not given.
+        """
+        own = super().options(settings, record, identified)
+        if settings["envelopes"] != "identified":
+            return own
+        if identified is None:
+            raise InputError(
+                "envelopes: identified; expected the option --identified FILE"
+            )
+        return own | {
+            "envelope": Envelope.from_dict(identified["envelope"]),
+            "amplitude": identified["amplitude"],
+        }
 
     @property
     def thresholds(self) -> FloatArray:

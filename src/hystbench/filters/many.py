@@ -8,7 +8,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 from numpy.typing import ArrayLike
 
-from hystbench.filters.base import AdaptiveFilter, Result, but_step_size, run_together
+from hystbench.filters.base import AdaptiveFilter
+from hystbench.filters.state import Result
+from hystbench.filters.together import but_step_size, run_together
 
 Job = tuple[AdaptiveFilter, ArrayLike, ArrayLike]
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from hystbench import kernels
 from hystbench.errors import InputError, nearest
-from hystbench.filters.base import AdaptiveFilter, End, positive
+from hystbench.filters.base import AdaptiveFilter
+from hystbench.filters.keys import choice
+from hystbench.filters.state import End, positive
 from hystbench.operators import FORMS, Form, follow_direction
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
 InitialState = Literal["zero", "settled"]
 
@@ -35,7 +37,23 @@ class PlayFilter(AdaptiveFilter):
 
     amplitude: float
     form: Form = "eq12"
-    initial_state: InitialState = "zero"
+    initial_state: InitialState = choice(
+        "outputs of the operators before the first sample",
+        get_args(InitialState),
+        default="zero",
+    )
+
+    @classmethod
+    def options(
+        cls,
+        settings: Mapping[str, Any],
+        record: Record,
+        identified: Mapping[str, Any] | None,
+    ) -> dict[str, Any]:
+        """Give its own keys, and the amplitude: that of the record if none is set."""
+        amplitude = settings.get("amplitude", float(np.abs(record.u).max()))
+        own = super().options(settings, record, identified)
+        return own | {"amplitude": amplitude}
 
     def __post_init__(self) -> None:
         """Refuse parameters out of range."""
@@ -44,12 +62,6 @@ class PlayFilter(AdaptiveFilter):
         if self.form not in FORMS:
             raise InputError(
                 f"form: {self.form!r} unknown; {nearest(self.form, FORMS)}"
-            )
-        known = ("zero", "settled")
-        if self.initial_state not in known:
-            raise InputError(
-                f"initial_state: {self.initial_state!r} unknown; "
-                f"{nearest(self.initial_state, known)}"
             )
 
     @property
@@ -77,7 +89,8 @@ class PlayFilter(AdaptiveFilter):
         kernels.call("hb_play_rows", count, vectors, *envelopes, r, state, rows)
         return rows[:, ::-1][:, : self.taps], state[::-1][: self.taps].copy()
 
-    def _first_operators(self) -> FloatArray:
+    def first_operators(self) -> FloatArray:
+        """Outputs of the operators before the first sample, by tap."""
         zero = np.zeros(self.taps)
         if self.initial_state == "zero":
             return zero

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
@@ -11,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hystbench import kernels
-from hystbench.filters.base import AdaptiveFilter, End, positive
+from hystbench.filters.base import AdaptiveFilter
 from hystbench.filters.bound import Bound, eigenvalue_bound
+from hystbench.filters.state import End, positive
 from hystbench.record import FloatArray
 
 TILE = 4  # the kernel keeps tiles of 4 x 4 second-order weights
@@ -63,6 +65,11 @@ class VolterraFilter(AdaptiveFilter):
     """
 
     name: ClassVar[str] = "volterra"
+    label: ClassVar[str] = "Volterra filter"
+    step_sizes: ClassVar[Mapping[str, str]] = {
+        "first_order": "step_size",
+        "second_order": "second_order_step",
+    }
 
     second_order_step: float
 
@@ -87,7 +94,7 @@ class VolterraFilter(AdaptiveFilter):
         self, line: FloatArray, operators: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Give taps and all their products at each sample."""
-        x = self._windows(line)
+        x = self.windows(line)
         products = x[:, :, None] * x[:, None, :]
         return np.hstack((x, products.reshape(len(x), -1))), operators
 
@@ -104,7 +111,7 @@ class VolterraFilter(AdaptiveFilter):
         size = self.taps + len(rows) + len(constant)
         total, count = np.zeros((size, size)), 0
         for line in self._chunks(x):
-            taps = self._windows(line)
+            taps = self.windows(line)
             products = scale * taps[:, rows] * taps[:, columns]
             h = np.hstack((taps, products, np.tile(constant, (len(taps), 1))))
             total += h.T @ h
@@ -117,17 +124,30 @@ class VolterraFilter(AdaptiveFilter):
             second_order=float(power[self.taps :][: len(rows)].sum()),
         )
 
+    def step_bounds(self, x: ArrayLike) -> dict[str, float]:
+        """Bound on the step size of each part, 1 over the trace of its own part of R.
+
+        The traces are the means of ``s(k)`` and ``s(k)^2``, where s is the sum of the
+        squared taps.
+        """
+        before = np.full(self.taps, self.x_before)
+        total = np.cumsum(np.concatenate([before, np.asarray(x)]) ** 2)
+        power = total[self.taps :] - total[: -self.taps]
+        first = power.mean() + self.constant_tap**2
+        traces = {"first_order": first, "second_order": (power**2).mean()}
+        return {name: float(1 / trace) for name, trace in traces.items()}
+
     def largest_power(self, x: ArrayLike) -> float:
         """Largest ``H'H`` of the taps x(k-i); that of their products is its square."""
         largest = 0.0
         for line in self._chunks(x):
-            taps = self._windows(line)
+            taps = self.windows(line)
             largest = max(largest, float(np.einsum("ij,ij->i", taps, taps).max()))
         return largest
 
     def tap_rms(self, x: ArrayLike) -> float:
         """RMS over an input of the taps x(k-i)."""
-        chunks = [self._windows(line) for line in self._chunks(x)]
+        chunks = [self.windows(line) for line in self._chunks(x)]
         total = sum(float(np.einsum("ij,ij->", taps, taps)) for taps in chunks)
         return math.sqrt(total / sum(taps.size for taps in chunks))
 

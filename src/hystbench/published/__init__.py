@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
@@ -171,6 +172,13 @@ def load_text() -> Text:
         random_band_of_nyquist=(low, high),
         random_level=random["level"],
     )
+
+
+def in_order(models: Iterable[str]) -> list[str]:
+    """Put models in the order of the paper's tables, others behind them by name."""
+    there = set(models)
+    own = [model for model in MODELS if model in there]
+    return own + sorted(there.difference(own))
 
 
 def signals(pairs: tuple[Pair, ...]) -> tuple[str, ...]:

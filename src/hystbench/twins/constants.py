@@ -91,11 +91,12 @@ def as_published(
 ) -> tuple[int, int]:
     """Count pairs of filters under one of some signals in the paper's order, and all.
 
-    A pair with the same MSE, as where both diverged, has no order.
+    Pairs that the paper does not print are left out. A pair with the same MSE, as
+    where both diverged, has no order.
     """
     pairs = [
         pair
-        for pair in combinations(mse, 2)
+        for pair in combinations([cell for cell in mse if cell in published], 2)
         if pair[0][0] == pair[1][0] and pair[0][0] in signals
     ]
     agree = [

@@ -11,7 +11,7 @@ from hystbench.errors import InputError
 from hystbench.model import Model
 from hystbench.published import load_text
 from hystbench.record import FloatArray
-from hystbench.signals import chirp
+from hystbench.waveforms.chirp import Chirp
 
 SLACK_S = 0.02
 """How far from the printed times the chirp may turn: little over a period at 65 Hz."""
@@ -48,7 +48,7 @@ def turns(model: Model) -> Turns:
     slope = (text.chirp_to_hz - text.chirp_from_hz) / DURATION_S
     phase = 2 * np.pi * (text.chirp_from_hz * time + slope * time**2 / 2)
     pair = []
-    for part in (chirp(**sweep), np.cos(phase)):
+    for part in (Chirp.samples(**sweep), np.cos(phase)):
         for block in model.chain:
             if isinstance(block, LinearBlock):
                 part = block.simulate(part, part, 1 / SAMPLING_HZ)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.adaptive import make_filter, step_bounds, step_names
+from hystbench.adaptive import make_filter, steps_of
 from hystbench.compare.edges import Edge
 from hystbench.filters import AdaptiveFilter, run_many
 from hystbench.metrics import (
@@ -82,7 +82,7 @@ def sweep(
 def _run(
     adaptive: AdaptiveFilter, record: Record, steps: Sequence[float], job: Settings
 ) -> list[Point]:
-    own = step_names(adaptive.name).values()
+    own = adaptive.step_sizes.values()
     found: list[Point] = []
     for start in range(0, len(steps), BATCH):
         batch = steps[start : start + BATCH]
@@ -130,10 +130,9 @@ def _trend(points: Sequence[Point]) -> float | None:
 
 def _edge(adaptive: AdaptiveFilter, record: Record, points: Sequence[Point]) -> Edge:
     beyond = [point for point in points if point.re >= 1]
-    bounds = step_bounds(adaptive, record.u)
-    names = step_names(adaptive.name)
+    bounds = adaptive.step_bounds(record.u)
     # As a share of Eq. 19's bound, all parts of R together: mu1 tr R1 + mu2 tr R2.
-    share = sum(getattr(adaptive, own) / bounds[key] for key, own in names.items())
+    share = sum(step / bounds[key] for key, step in steps_of(adaptive).items())
     correction = adaptive.correction(adaptive.largest_power(record.u))
     edge = beyond[0].mu if beyond else None
     below = [p for p in points if edge is not None and p.mu <= WELL_BELOW * edge]

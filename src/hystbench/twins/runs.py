@@ -10,13 +10,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from hystbench.adaptive import make_filter, step_names
+from hystbench.adaptive import make_filter, steps_of
 from hystbench.compare.evidence import Cell, OrderPoint, Run
 from hystbench.filters import AdaptiveFilter, Result, run_many
 from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error, relative_error
 from hystbench.order_errors import order_errors
-from hystbench.published import FILTERS
+from hystbench.published import in_order
 from hystbench.record import Record
 from hystbench.signals import Signal, make_signal
 from hystbench.twins.read import Twin
@@ -45,7 +45,8 @@ def measure_twin(
 
 def filter_jobs(settings: Settings) -> dict[str, Settings]:
     """Give the settings of each filter, in the order of the paper's tables."""
-    return {m: settings["filters"][m] for m in FILTERS if m in settings["filters"]}
+    jobs = settings["filters"]
+    return {model: jobs[model] for model in in_order(jobs)}
 
 
 def scaled(job: Settings, factor: float) -> dict[str, Any]:
@@ -86,10 +87,7 @@ def filter_run(adaptive: AdaptiveFilter, record: Record, result: Result) -> Run:
         error_kind="one-step a priori",
         order=adaptive.order,
         weight_count=adaptive.size,
-        step_size={
-            name: getattr(adaptive, own)
-            for name, own in step_names(adaptive.name).items()
-        },
+        step_size=steps_of(adaptive),
         diverged=None if at is None else f"diverged at sample {at}",
     )
 

@@ -1,34 +1,30 @@
 """The effects that can be named, one a module, in the order of the signal's way.
 
-A new effect is a new module in this package; it is found by its class's ``name``.
+A new effect is a new module in this package; it is found by its class's ``name``. An
+installed package adds one by an entry point of the group ``hystbench.effects``.
 """
 
 from __future__ import annotations
 
-import importlib
-import inspect
-import pkgutil
 from collections.abc import Iterable
 from functools import cache
 
 from hystbench.gap.effects.base import Effect
+from hystbench.registered import classes_in, with_installed
 
 
 @cache
 def effects() -> dict[str, Effect]:
-    """Give one of each effect, by name."""
-    found: dict[str, Effect] = {}
-    for module_info in pkgutil.iter_modules(__path__):
-        module = importlib.import_module(f"{__name__}.{module_info.name}")
-        for item in vars(module).values():
-            if (
-                inspect.isclass(item)
-                and issubclass(item, Effect)
-                and hasattr(item, "name")  # else it is a kind of effects
-                and item.__module__ == module.__name__
-            ):
-                found[item.name] = item()
-    return dict(sorted(found.items()))
+    """Give one of each effect, by name.
+
+    Raises
+    ------
+    InputError
+        If an installed package offers what is no effect, or a name that is taken.
+    """
+    inside = classes_in(__name__, __path__, Effect)
+    found = with_installed(inside, "hystbench.effects", Effect)
+    return {name: found[name]() for name in sorted(found)}
 
 
 def among(names: Iterable[str] | None) -> dict[str, Effect]:

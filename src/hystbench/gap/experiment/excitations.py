@@ -9,10 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from hystbench import signals
 from hystbench.files import atomic_path
 from hystbench.gap.experiment.limits import Limits
 from hystbench.record import Channel, FloatArray
+from hystbench.signals import Signal
+from hystbench.waveforms.chirp import Chirp
+from hystbench.waveforms.sine import Sine
+from hystbench.waveforms.sum_of_sines import SumOfSines
 
 #: Samples of a candidate: enough to tell two models apart.
 LONGEST = 20_000
@@ -101,9 +104,7 @@ def write_experiment(
         Written whole or not at all.
     """
     if Path(path).suffix == ".npz":
-        made = signals.Signal(
-            "next-experiment", excitation.dt, excitation.u, channel.unit
-        )
+        made = Signal("next-experiment", excitation.dt, excitation.u, channel.unit)
         made.save(path)
         return
     unit = channel.unit.replace("/", "_per_")
@@ -155,7 +156,7 @@ def _sines(limits: Limits, unit: str) -> Iterator[Excitation]:
         most = min(half, limits.rate / (2 * np.pi * frequency))
         for part in AMPLITUDES:
             amplitude = part * most
-            u = middle + signals.sine(
+            u = middle + Sine.samples(
                 frequency_hz=frequency, amplitude=amplitude, **common
             )
             about: Parameters = {
@@ -183,7 +184,7 @@ def _minor_loops(
     common = _common(limits)
     count = round(common["duration_s"] / limits.dt)
     path = _through(levels, count, limits, part=0.5)
-    loops = signals.sine(frequency_hz=frequency_hz, amplitude=1.0, **common)
+    loops = Sine.samples(frequency_hz=frequency_hz, amplitude=1.0, **common)
     return np.asarray(path + amplitude * loops[: len(path)])
 
 
@@ -209,10 +210,10 @@ def _wide_bands(limits: Limits, unit: str) -> Iterator[Excitation]:
     low, high = float(frequencies[0]), float(frequencies[-1])
     amplitude = min(half, limits.rate / (2 * np.pi * high))
     about: Parameters = {"from_hz": (low, "Hz"), "to_hz": (high, "Hz")}
-    u = signals.chirp(from_hz=low, to_hz=high, amplitude=amplitude, **common)
+    u = Chirp.samples(from_hz=low, to_hz=high, amplitude=amplitude, **common)
     about |= {"amplitude": (amplitude, unit), "bias": (middle, unit)}
     yield _made("chirp", about, limits, middle + u)
-    raw = signals.sum_of_sines(
+    raw = SumOfSines.samples(
         frequencies_hz=frequencies.tolist(),
         amplitudes=[1.0] * len(frequencies),
         gain=1.0,

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import FACTOR, nearness
 from hystbench.compare.tables import LEGEND, MARKS, METRIC_NAMES
-from hystbench.figures.style import LOOKS, signal_title, unit_text
-from hystbench.published import FILTERS, METRICS, MODELS
+from hystbench.figures.style import look, signal_title, unit_text
+from hystbench.published import FILTERS, METRICS, MODELS, in_order
 from hystbench.report.markup import inline
 from hystbench.report.picture import Link
 from hystbench.report.reproduction.read import Row, Shown
@@ -42,7 +42,7 @@ def headline_table(cells: Sequence[ComparedCell], half: str) -> Table:
     models = [m for m in FILTERS if any(c.ran for c in half_cells if c.model == m)]
     columns = [Column("signal")]
     for model in models:
-        group = LOOKS[model].label
+        group = look(model).label
         columns += [Column("paper", True, group), Column("ours", True, group)]
     rows = []
     for signal in signals:
@@ -95,7 +95,7 @@ def nearness_table(cells: Sequence[ComparedCell]) -> Table:
     for half in HALVES:
         chosen = [c for c in cells if c.metric == "mse" and c.half == half]
         parts = [("all four filters", [c for c in chosen if c.model in FILTERS])]
-        parts += [(LOOKS[m].label, [c for c in chosen if c.model == m]) for m in MODELS]
+        parts += [(look(m).label, [c for c in chosen if c.model == m]) for m in MODELS]
         rows = [_near(name, part) for name, part in parts if part]
         heading = {
             "held-out": "Held-out signals: the twin was not fitted to them",
@@ -137,7 +137,7 @@ def paper_table(shown: Shown, halves: Mapping[str, str]) -> Table:
     columns = [Column("signal"), Column("twin")]
     for key in given:
         model, _, whose = key.partition(" ")
-        label = LOOKS[model].label if model in LOOKS else model
+        label = look(model).label if model in MODELS else model
         columns.append(Column(whose or key, True, label if whose else ""))
     bodies = []
     for metric in METRICS:
@@ -205,7 +205,7 @@ def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> Table:
         [
             words(HALF_WORDS[cell.half]),
             words(signal_title(cell.signal)),
-            words(LOOKS[cell.model].label),
+            words(look(cell.model).label),
             words(cell.metric.upper()),
             number(float(cell.published), cell.published),
             number(cell.ours, "" if cell.ours is not None else "none"),
@@ -244,7 +244,7 @@ def off_table(off: Sequence[Row], caption: str, file: Link) -> Table:
         [
             words(HALF_WORDS.get(row["half"], row["half"])),
             words(signal_title(row["signal"])),
-            words(LOOKS[row["model"]].label),
+            words(look(row["model"]).label),
             number(float(row["published"]), row["published"]),
             number(float(row["ours"])) if row["ours"] else number(math.inf),
             number(float(row["ratio"])) if row["ratio"] else number(math.inf),
@@ -274,7 +274,7 @@ def measured_table(
     rows = [
         [
             words(row["signal"]),
-            words(LOOKS[row["model"]].label),
+            words(look(row["model"]).label),
             words(row["error_kind"]),
             _error(row["re"]),
             _error(row["mse"]),
@@ -296,7 +296,7 @@ def measured_table(
 
 def measured_headline(errors: Sequence[Row]) -> Table:
     """Set the relative errors of all models side by side, a row a record."""
-    models = [model for model in MODELS if any(r["model"] == model for r in errors)]
+    models = in_order(row["model"] for row in errors)
     by_key = {(row["signal"], row["model"]): row for row in errors}
     signals = dict.fromkeys(row["signal"] for row in errors)
     rows = [
@@ -311,7 +311,7 @@ def measured_headline(errors: Sequence[Row]) -> Table:
         ]
         for signal in signals
     ]
-    columns = [Column("record"), *(Column(LOOKS[m].label, True) for m in models)]
+    columns = [Column("record"), *(Column(look(m).label, True) for m in models)]
     return Table(
         "by-record",
         "Relative error of every model on every measured record. The filters' errors "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hystbench.figures.style import LOOKS, signal_title
+from hystbench.figures.style import look, looks, signal_title
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import inline, one_micro, paragraphs
 from hystbench.report.picture import Link, Picture
@@ -114,8 +114,8 @@ def _as_it_is(shown: Shown) -> Table:
             return number(float(text)) if text else number(None)
         if key == "signal":
             return text_cell(signal_title(text))
-        if key == "model" and text in LOOKS:
-            return text_cell(LOOKS[text].label)
+        if key == "model" and text in looks():
+            return text_cell(look(text).label)
         return text_cell(text)
 
     columns = [

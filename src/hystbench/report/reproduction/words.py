@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import nearness
-from hystbench.figures.style import LOOKS
+from hystbench.figures.style import look
 from hystbench.published import FILTERS
 from hystbench.report.reproduction.errors import filter_cells, within
 from hystbench.report.reproduction.read import Measured, Reproduction, Row
@@ -98,7 +98,7 @@ def _of_measured(found: Measured) -> list[str]:
     if best:
         model, often = best.most_common(1)[0]
         said = (
-            f"Of the filters, the {LOOKS[model].label} has the smallest relative error "
+            f"Of the filters, the {look(model).label} has the smallest relative error "
             f"on {often} of the {count} of {found.name}."
         )
     else:
@@ -106,7 +106,7 @@ def _of_measured(found: Measured) -> list[str]:
     lost = dict.fromkeys(row["model"] for row in found.errors if not row["re"])
     if not lost:
         return [said, f"{_all(len(models))} finite on every record."]
-    names = listed([LOOKS[model].label for model in lost])
+    names = listed([look(model).label for model in lost])
     return [said, f"{len(lost)} of {len(models)} models diverged on a record: {names}."]
 
 

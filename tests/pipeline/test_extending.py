@@ -1,0 +1,184 @@
+"""The package that docs/extending.md walks through: installed, and run."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from hystbench.challenge.contest.plan import plan
+from tests.docs.pages import ROOT
+
+from .conftest import Workflow, small_config
+
+PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
+#: A file of the page: its name, and what stands in the fence below.
+FILE = re.compile(r"^`([\w./]+)`:\n\n```\w+\n(.*?)^```", re.MULTILINE | re.DOTALL)
+CONFIG = re.compile(r"^```yaml\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+FIGURES = [
+    f"results/figures/{name}.svg"
+    for name in ("figure-07-order", "learning-curves", "step-edges")
+]
+TARGETS = ["tables", *FIGURES]
+
+
+def merged(one: dict, other: dict) -> dict:
+    """Put the keys of a config into another, at any depth."""
+    both = dict(one)
+    for key, value in other.items():
+        inner = isinstance(value, dict) and isinstance(both.get(key), dict)
+        both[key] = merged(both[key], value) if inner else value
+    return both
+
+
+def install(folder: Path, files: dict[str, str]) -> None:
+    """Lay files out as an installed package, with the entry points they declare."""
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content, encoding="utf-8")
+    project = tomllib.loads(files["pyproject.toml"])["project"]
+    told = folder / f"{project['name']}-{project['version']}.dist-info"
+    told.mkdir()
+    (told / "METADATA").write_text(
+        f"Metadata-Version: 2.1\nName: {project['name']}\n"
+        f"Version: {project['version']}\n"
+    )
+    lines = []
+    for group, points in project["entry-points"].items():
+        lines += [f"[{group}]", *(f"{name} = {to}" for name, to in points.items())]
+    (told / "entry_points.txt").write_text("\n".join(lines) + "\n")
+
+
+@pytest.fixture(scope="module")
+def configured(tmp_path_factory) -> Workflow:
+    """A folder with the page's config, in which the page's package is installed."""
+    package = tmp_path_factory.mktemp("installed")
+    install(package, dict(FILE.findall(PAGE)))
+    config = small_config()
+    for text in CONFIG.findall(PAGE):
+        config = merged(config, yaml.safe_load(text))
+    # The page's own solver alone: those that hystbench has are entered elsewhere.
+    solvers = config["blind"]["solvers"]
+    config["blind"]["solvers"] = {"silent": solvers["silent"]}
+    config["blind"]["only"] = ["saturation"]
+    workflow = Workflow(
+        tmp_path_factory.mktemp("extended"), {"PYTHONPATH": str(package)}
+    )
+    workflow.configure(config)
+    return workflow
+
+
+@pytest.fixture(scope="module")
+def extended(configured) -> Workflow:
+    """The folder in which the config has run."""
+    assert configured.run(*TARGETS)
+    return configured
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open() as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_the_filter_and_the_signal_are_in_tables_and_figures(extended):
+    results = extended.folder / "results"
+    found = {
+        (row["signal"], row["model"]) for row in rows(results / "compare" / "added.csv")
+    }
+    assert found == {
+        ("sine-100hz", "power"),
+        *(("triangle-050hz", model) for model in ("delayed", "power")),
+    }
+    by_order = rows(results / "order-sweep" / "errors.csv")
+    assert "power" in {row["model"] for row in by_order}
+    edges = rows(results / "step-sweep" / "edges.csv")
+    assert "power" in {row["model"] for row in edges}
+    for name in FIGURES:
+        assert "power filter" in (extended.folder / name).read_text(), name
+    printed = (results / "compare" / "tables.txt").read_text()
+    assert "The paper has no numbers for power, triangle-050hz." in printed
+
+
+def test_they_compute_what_the_page_says(extended):
+    """From the definitions alone, sample by sample."""
+    results = extended.folder / "results"
+    u = np.load(results / "signals" / "triangle-050hz.npz")["u"]
+    # A quarter of a period of 20 ms after the start it is at its top.
+    assert u[0] == 0
+    assert np.argmax(u[:200]) == 50
+    assert u.max() == pytest.approx(0.632)
+    np.testing.assert_allclose(np.diff(u[:50], 2), 0, atol=1e-12)
+    record = np.load(results / "records" / "triangle-050hz.npz")
+    run = json.loads((results / "filters/triangle-050hz/power.json").read_text())
+    order, mu = run["order"], run["step_size"]["mu"]
+    assert mu == 0.02
+    line = np.concatenate((np.zeros(order), record["u"]))
+    weights, errors = np.zeros(order + 1), []
+    for k, d in enumerate(record["y"]):
+        taps = line[k : k + order + 1][::-1]
+        h = np.sign(taps) * np.abs(taps) ** 1.5
+        errors.append(d - weights @ h)
+        weights = weights + 2 * mu * errors[-1] * h
+    assert run["mse"] == pytest.approx(np.mean(np.square(errors)), rel=1e-9)
+
+
+def test_the_solver_enters_the_contest_and_names_nothing(configured):
+    assert configured.run("results/blind/summary.json")
+    folder = configured.folder / "results" / "blind"
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["cases"] == len(plan("small", only=["saturation"])) > 0
+    assert summary["lost"] == 0
+    (case,) = rows(folder / "cases.csv")
+    assert (case["truth"], case["verdict"], case["named"]) == (
+        *("saturation", "no-gap", ""),
+    )
+
+
+def test_an_edited_file_of_the_package_runs_its_filter_again(extended):
+    (file,) = Path(extended.environment["PYTHONPATH"]).glob("extra/power.py")
+    assert extended.would_run(*TARGETS) == {}
+    file.write_text(file.read_text() + "\n# edited\n")
+    planned = extended.would_run(*TARGETS, "--rerun-triggers", "mtime")
+    assert planned["filter"] == 2
+    assert "signal" not in planned
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        (
+            "models",
+            ["delayed", "powr"],
+            "models: 1: 'powr' is unknown; did you mean 'power'?",
+        ),
+        ("filters", {"power_exponent": 99}, "power_exponent: 99; expected a number of"),
+        (
+            "filters",
+            {"power_exponnt": 2.0},
+            "unknown key 'power_exponnt'; did you mean 'power_exponent'?",
+        ),
+        (
+            "excitations",
+            {"other": {"triangel": {"frequency_hz": 50}}},
+            "unknown kind 'triangel'; did you mean 'triangle'?",
+        ),
+    ],
+)
+def test_a_mistake_is_one_line_with_the_nearest_name(extended, key, value, said):
+    config = yaml.safe_load((extended.folder / "config.yaml").read_text())
+    (extended.folder / "wrong.yaml").write_text(
+        yaml.safe_dump(merged(config, {key: value}))
+    )
+    result = extended.snakemake("-n", "--configfile", "wrong.yaml")
+    assert result.returncode != 0
+    (line,) = (
+        line for line in result.stderr.splitlines() if line.startswith("hystbench: ")
+    )
+    assert said in line
