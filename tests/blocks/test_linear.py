@@ -12,17 +12,12 @@ from hystbench.blocks.creep import Creep
 from hystbench.blocks.curve import finer
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.eddy_diffusion import EddyDiffusion
-from hystbench.blocks.linear import (
-    LinearBlock,
-    StateSpace,
-    discretise,
-    discretise_modes,
-    respond,
-)
+from hystbench.blocks.linear import LinearBlock, respond
 from hystbench.blocks.logarithmic_creep import LogarithmicCreep
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
 from hystbench.blocks.sensor_lag import SensorLag
+from hystbench.blocks.state_space import StateSpace, discretise, discretise_modes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 

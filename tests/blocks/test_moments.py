@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from hystbench.blocks.linear import StateSpace, curve_drive, moments_of
+from hystbench.blocks.state_space import StateSpace, curve_drive, moments_of
 
 POINTS = 32
 SYSTEMS = {

@@ -7,8 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import numbers
+from hystbench.blocks.state_space import StateSpace
 from hystbench.errors import InputError
 
 

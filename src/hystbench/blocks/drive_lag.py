@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hystbench.blocks.linear import LinearBlock, StateSpace, lag
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
+from hystbench.blocks.state_space import StateSpace, lag
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.state_space import StateSpace
 from hystbench.record import FloatArray
 
 MODES = 24

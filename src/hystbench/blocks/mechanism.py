@@ -13,8 +13,8 @@ from hystbench import kernels
 from hystbench.blocks.curve import AHEAD, held_lines
 from hystbench.blocks.force import Force, Motion, exported, rows
 from hystbench.blocks.held import HeldBlock
-from hystbench.blocks.linear import StateSpace, discretise
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.step import TURNED, Sampling, Step, line_corners, smooth_curve
 from hystbench.blocks.transfer_function import STARTS, path_from
 from hystbench.errors import InputError

@@ -7,8 +7,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.linear import LinearBlock, StateSpace
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import number
+from hystbench.blocks.state_space import StateSpace
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hystbench.blocks.linear import LinearBlock, StateSpace, lag, linear_step
+from hystbench.blocks.linear import LinearBlock, linear_step
 from hystbench.blocks.parameter import choice, number
+from hystbench.blocks.state_space import StateSpace, lag
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.transfer_function import path_from
 from hystbench.record import FloatArray

@@ -8,8 +8,9 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.linear import discretise_modes, lag, respond
+from hystbench.blocks.linear import respond
 from hystbench.blocks.parameter import HUGE, number
+from hystbench.blocks.state_space import discretise_modes, lag
 from hystbench.blocks.step import Sampling, Step
 from hystbench.record import FloatArray
 

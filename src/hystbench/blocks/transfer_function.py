@@ -8,8 +8,9 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from hystbench.blocks.base import Place
-from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
+from hystbench.blocks.linear import LinearBlock, linear_step
 from hystbench.blocks.parameter import HUGE, choice, numbers
+from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.step import TURNED, Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray

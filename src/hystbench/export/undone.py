@@ -12,9 +12,10 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.curve import AHEAD, through_samples
 from hystbench.blocks.force import Force
 from hystbench.blocks.impedance import Impedance
-from hystbench.blocks.linear import LinearBlock, StateSpace, linear_step
+from hystbench.blocks.linear import LinearBlock, linear_step
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
+from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.blocks.wrapping import Hysteresis
 from hystbench.record import FloatArray
