@@ -14,7 +14,7 @@ from hystbench.filters import MOST_CORRECTION
 from hystbench.model import load_model
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.settings import read_settings
-from hystbench.signals import Signal, chirp, make_signal, sine
+from hystbench.signals import Signal, make_signal
 from hystbench.twins import calibrate as fitting
 from hystbench.twins.calibrate import calibrate, nearest_twin
 from hystbench.twins.constraints import check_stroke, turns, violations
@@ -30,6 +30,8 @@ from hystbench.twins.plant import (
 )
 from hystbench.twins.search import Fit, to_point, to_values
 from hystbench.twins.targets import Target, targets
+from hystbench.waveforms.chirp import Chirp
+from hystbench.waveforms.sine import Sine
 from tests.conftest import ROOT
 
 START = {item.name: item.start for item in UNKNOWNS} | {"gpo step": 1.5}
@@ -69,7 +71,7 @@ def objective(names=("sine-040hz", "sine-100hz"), duration_s=0.1):
         name: Signal(
             name,
             1e-4,
-            sine(
+            Sine.samples(
                 frequency_hz=float(name[5:8]),
                 amplitude=0.632,
                 duration_s=duration_s,
@@ -145,7 +147,7 @@ def test_a_small_residual_is_the_deviation_and_a_large_one_grows_less():
 def test_turns_are_those_of_the_peak_to_peak_displacement():
     model = make_twin({**START, "participation": -0.05, "damping": 0.03})
     dt = 1e-4
-    u = chirp(
+    u = Chirp.samples(
         from_hz=1,
         to_hz=100,
         amplitude=0.632,

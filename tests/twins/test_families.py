@@ -13,10 +13,11 @@ from hystbench.cli import COMMANDS
 from hystbench.errors import InputError
 from hystbench.group import group
 from hystbench.model import load_model
-from hystbench.signals import Signal, sine
+from hystbench.signals import Signal
 from hystbench.twins.families import ASYMMETRY, FAMILIES, OFFSET, FamilyTask, scaled
 from hystbench.twins.family_fit import fit_family
 from hystbench.twins.search import Unknown
+from hystbench.waveforms.sine import Sine
 
 PLANTS = Path(__file__).parents[2] / "src" / "hystbench" / "plants"
 GMA = load_model(PLANTS / "gma.yaml")
@@ -24,7 +25,7 @@ SAMPLING_HZ = 4000.0
 
 
 def made(name, frequency_hz, amplitude=0.632):
-    u = sine(
+    u = Sine.samples(
         frequency_hz=frequency_hz,
         amplitude=amplitude,
         duration_s=2.0,
