@@ -13,7 +13,8 @@ import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.export import c, python
-from hystbench.export.described import describe, identifier
+from hystbench.export.described import describe
+from hystbench.export.names import identifier
 from hystbench.model import Model, load_model
 from tests.conftest import ROOT, run_hystbench
 
