@@ -1,8 +1,9 @@
 """What a block does at one sample, for code that runs elsewhere.
 
 A block of the vocabulary says its step as the name of a function and what that
-function takes: constants, and states that are all zero at the start. The functions are
-written twice, in C and in Python, in :mod:`hystbench.export`.
+function takes: constants, and states that are all zero at the start, unless
+:mod:`hystbench.export.past` gives others. The functions are written twice, in C and in
+Python, in :mod:`hystbench.export`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How code starts that stands for what came before a record.
+"""Start exported code as if a given record had come before.
 
 ``start: settled`` of play operators, and ``start: moving``, are about samples to come:
 a record that passes twice, or one that is turned about its first sample. Code that runs

@@ -1,4 +1,4 @@
-"""The last two stages as jobs: decide on the fit records, show on the hold-out ones."""
+"""``hystbench gap`` as two jobs: decide on fit records, then show on those held out."""
 
 from __future__ import annotations
 

@@ -124,8 +124,8 @@ def closed_gap(
     decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
-    # From here on the hold-out records are read: they choose nothing, and may take
-    # back what was named.
+    # From here on models are compared with hold-out records: these choose nothing, and
+    # may take back what was named.
     shown = outcome(decision, decision.content, evidence)
     shown = as_asked(shown, decision, evidence, vocabulary, built_in)
     decision = replace(decision, model=shown.model, content=shown.content)

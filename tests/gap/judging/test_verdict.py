@@ -89,7 +89,7 @@ def test_an_upper_bound_of_the_noise_never_shows_that_there_is_no_gap(
     """A floor that may hold the whole gap: all else is judged as with a known one."""
     found = Left(before, after, one, other, output)
     known = judge(found, False, 0.0, retuned)
-    bound = judge(found, False, 0.0, retuned, bound=True)
+    bound = judge(found, False, 0.0, retuned, floor_is_upper_bound=True)
     if known[0] != "no-gap":
         assert bound == known
         return
@@ -244,5 +244,7 @@ def test_periods_that_are_found_are_what_mends_an_upper_bound():
     assert "'period_samples: 125' of record r" in told
     assert "record n" not in told
     assert what_mends([noise]) == GIVE
-    _, reason = judge(Left(0, 0, 0, 0, 1), False, 0.0, bound=True, mends=told)
+    _, reason = judge(
+        Left(0, 0, 0, 0, 1), False, 0.0, floor_is_upper_bound=True, mends=told
+    )
     assert reason.endswith(told)

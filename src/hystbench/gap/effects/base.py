@@ -83,7 +83,7 @@ class Variant:
         Added to the output of the chain, which stays as it is.
     charge : float, optional
         Parameters to be charged, where it is not the number of those searched.
-    inside : tuple of str
+    not_at_an_end : tuple of str
         Searched parameters that at an end of their range make another thing of the
         effect: there it is not accepted.
     replaces : bool
@@ -107,7 +107,7 @@ class Variant:
     free: tuple[str, ...] = ()
     beside: Beside | None = None
     charge: float | None = None
-    inside: tuple[str, ...] = ()
+    not_at_an_end: tuple[str, ...] = ()
     replaces: bool = False
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
     neutral: bool = True
@@ -169,7 +169,7 @@ class Effect(ABC):
         unit: dict[str, float] | None = None,
         positive: tuple[str, ...] = (),
         free: tuple[str, ...] = (),
-        inside: tuple[str, ...] = (),
+        not_at_an_end: tuple[str, ...] = (),
         limits: dict[str, tuple[float, float]] | None = None,
         neutral: bool = True,
         zero: dict[str, float] | None = None,
@@ -204,7 +204,7 @@ class Effect(ABC):
             unit or {},
             positive,
             free or (*(grids or {}), *(unit or {})),
-            inside=inside,
+            not_at_an_end=not_at_an_end,
             limits=limits or {},
             neutral=neutral,
             zero=zero,

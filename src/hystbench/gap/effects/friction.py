@@ -34,7 +34,7 @@ class Friction(Effect):
                     1e-4 * simulation.fastest(), simulation.fastest() / 5, 2
                 )
             },
-            inside=("velocity_scale",),
+            not_at_an_end=("velocity_scale",),
             unit={"coulomb": 1e-3 * simulation.largest(end)},
         )
 

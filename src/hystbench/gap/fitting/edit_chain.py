@@ -141,7 +141,7 @@ def at_end(state: ModelState, variant: Variant) -> str:
     """Name a parameter of the effect added last that lies at an end of its range."""
     own = state.added[-1].blocks
     for free in state.free:
-        if free.block in own and free.parameter in variant.inside:
+        if free.block in own and free.parameter in variant.not_at_an_end:
             value, width = state.value(free), np.log(free.high / free.low)
             if not 0.02 < np.log(value / free.low) / width < 0.98:
                 return f"{free.parameter} = {value:.3g}"

@@ -1,4 +1,7 @@
-"""Naming effects inside the dynamics, beside what was named in the chain."""
+"""Naming effects inside the dynamics, before effects in the chain are searched.
+
+Whether they do better than those in the chain is asked afterwards (:func:`beats`).
+"""
 
 from __future__ import annotations
 

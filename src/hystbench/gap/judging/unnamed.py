@@ -21,7 +21,7 @@ from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.record import FloatArray
 
 CHANGE = 0.2
-"""Of that share, what may go if an effect's numbers may differ in time."""
+"""Of `UNNAMED_SHARE`, what may go if an effect's numbers may differ in time."""
 LOOSE = 0.25
 """Share of the power of the gap that may stay in all: half of its rms."""
 RELATED = 0.1

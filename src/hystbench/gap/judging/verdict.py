@@ -26,7 +26,7 @@ SLIGHT = 0.015
 """RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
 WIDE = 0.045
 """The same of all that is left, most of which reshaping could do."""
-INSIDE = 0.3
+RESHAPABLE = 0.3
 """Share of the gap that then has to lie in what a wrong shape of it could do."""
 HALF = 0.5
 """The same, where what stays is no more than a slightly wrong shape leaves."""
@@ -94,7 +94,7 @@ class Left:
         if whole >= WIDE**2 * self.output:
             return False
         small = beyond < SLIGHT**2 * self.output
-        return beyond <= ABOVE_NOISE or (small and beyond < (1 - INSIDE) * whole)
+        return beyond <= ABOVE_NOISE or (small and beyond < (1 - RESHAPABLE) * whole)
 
     @property
     def little_named(self) -> bool:
@@ -167,7 +167,7 @@ def judge(
     named: bool,
     explained_by_box: float | None = None,
     retuned: bool = False,
-    bound: bool = False,
+    floor_is_upper_bound: bool = False,
     lone: float = 0.0,
     unrepeated: float | None = None,
     unnamed: Unnamed = NOTHING,
@@ -186,7 +186,7 @@ def judge(
         folds of the fit records; said where nothing is named.
     retuned : bool
         Whether the base had numbers of its own to re-tune.
-    bound : bool
+    floor_is_upper_bound : bool
         Whether the noise floor is only an upper bound: it may hold the whole gap, so
         that there is none cannot be claimed from it.
     lone : float
@@ -210,7 +210,7 @@ def judge(
                 "re-tuning the base within what is free is enough, and no effect pays "
                 f"beside it: {left.stays}"
             )
-        if left.slight and bound:
+        if left.slight and floor_is_upper_bound:
             return "unnamed", (
                 "no effect pays; the floor is only an upper bound, so that there is "
                 f"no gap cannot be claimed: {mends}"

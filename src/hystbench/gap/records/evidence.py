@@ -29,7 +29,7 @@ class Evidence:
     fit : tuple of Record
         What models are fitted to; folds of these decide what pays.
     hold_out : tuple of Record
-        Read once, after everything is decided.
+        Checked with the others; compared with a model only after all is decided.
     hold : {"zero-order", "linear", "band-limited"}
         How the input moves between samples.
     noise_rms : float, optional
