@@ -57,8 +57,7 @@ EXACT = "exact"
 @click.option(
     "--fmi",
     type=click.Choice(list(fmu.VERSIONS)),
-    help="Version of FMI: 2.0 or 3.0 (the default), with --to fmu; some tools read 2.0 "
-    "alone.",
+    help="Version of FMI, with --to fmu: 3 unless you say 2, which more tools read.",
 )
 @click.option("--dt", type=float, required=True, help="Sampling interval in seconds.")
 @click.option(

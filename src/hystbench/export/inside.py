@@ -184,7 +184,8 @@ def way_near(miss, alone):
 def way_of(count, forces, memory, q, alone, gives, h):
     """Find the way from q whose mean force leaves it.
 
-    By Chandrupatla's method where the secant method does not find it.
+    By Chandrupatla's method where a force falls with the velocity, or where the secant
+    method does not find it.
     """
 
     def miss(way):
@@ -197,7 +198,9 @@ def way_of(count, forces, memory, q, alone, gives, h):
                 total += inner_force(f, q + way, 0.0, memory[i])
         return way - alone + gives * total
 
-    near_by = way_near(miss, alone)
+    laws = [forces[6 * i : 6 * i + 3] for i in range(count)]
+    falls = any(int(kind) == 3 and excess > 0 for kind, _, excess in laws)
+    near_by = math.nan if falls else way_near(miss, alone)
     if near_by == near_by:
         return near_by
     a, b = 0.0, alone

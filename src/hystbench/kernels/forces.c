@@ -225,16 +225,27 @@ static double hb_way_near(int count, const double *forces, const double *memory,
     return NAN;
 }
 
-/* The way of a part, by Chandrupatla's method where the one above does not find it; NaN
- * where there is none.  The miss grows with the way at least as fast where no force
+/* Whether a force falls where the motion is faster: sticking and sliding may then both
+ * fulfil a step, and the way that begins at rest is the first. */
+static int hb_falls(int count, const double *forces)
+{
+    for (int i = 0; i < count; i++)
+        if ((int)forces[6 * i] == 3 && forces[6 * i + 2] > 0) return 1;
+    return 0;
+}
+
+/* The way of a part, by Chandrupatla's method where a force falls, or where the one above
+ * does not find it; NaN where there is none.  The miss grows with the way at least as fast where no force
  * falls: between zero and the way without forces, or the one with the force of the
  * beginning, there is then one root. */
 static double hb_way_of(int count, const double *forces, const double *memory, double q,
                         double alone, double gives, double h)
 {
 #define HB_MISS(way) hb_miss(count, forces, memory, q, alone, gives, h, way)
-    const double near_by = hb_way_near(count, forces, memory, q, alone, gives, h);
-    if (near_by == near_by) return near_by;
+    if (!hb_falls(count, forces)) {
+        const double near_by = hb_way_near(count, forces, memory, q, alone, gives, h);
+        if (near_by == near_by) return near_by;
+    }
     double a = 0, at_a = HB_MISS(0), b = alone, at_b = HB_MISS(b);
     if (at_a == 0) return 0;
     if (at_b == 0) return b;

@@ -2,13 +2,14 @@
 
 A simulation runs over whole records, and a fit simulates them some hundred times. Which
 of many laws is likely is seen on less: each record up to where a quarter of what the
-host leaves of it has passed. Records that move alike from end to end become four times
+host leaves of it has passed, and a quarter of the record. Records that move alike from end to end become four times
 as short; one that is driven harder and harder keeps most of its length.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from hystbench.gap.records.sample import Sample
 from hystbench.record import Record
 
 PART = 0.25
-"""Share of a record's residual power that its beginning holds."""
+"""Share of a record's residual power, and of its samples, that its beginning holds."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,7 @@ class Beginnings:
         ):
             passed = np.cumsum(np.nan_to_num(state.residual[part]) ** 2)
             count = int(np.searchsorted(passed, PART * passed[-1])) + 1
+            count = max(count, ceil(PART * len(places)))
             end = len(record) if count == len(places) else int(places[count - 1]) + 1
             records.append(_until(record, end))
             positions.append(places[:count])
