@@ -1,9 +1,9 @@
 """The beginnings of records, on which many laws are compared roughly.
 
 A simulation runs over whole records, and a fit simulates them some hundred times. Which
-of many laws is likely is seen on less: each record up to where a quarter of what the
-host leaves of it has passed, and a quarter of the record. Records that move alike from end to end become four times
-as short; one that is driven harder and harder keeps most of its length.
+of many laws is likely is seen on less: a quarter of each record, and as much as holds a
+quarter of what the host leaves of it. Records that move alike from end to end become
+four times as short; one that is driven harder and harder keeps most of its length.
 """
 
 from __future__ import annotations
