@@ -86,7 +86,9 @@ def verdict(names, family):
     left = what_is_left(start, state, floor.rms)
     bound = floor.method == "upper-bound"
     unnamed = what_is_unnamed(start, state, floor.rms)
-    word, _ = judge(left, bool(state.added), bound=bound, unnamed=unnamed)
+    word, _ = judge(
+        left, bool(state.added), floor_is_upper_bound=bound, unnamed=unnamed
+    )
     return word, {item.effect for item in state.added}
 
 
