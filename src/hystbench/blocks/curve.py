@@ -12,7 +12,6 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial.polynomial import polyfromroots
 
 from hystbench import kernels
 from hystbench.record import FloatArray
@@ -53,17 +52,35 @@ def through_samples(
 def _basis(points: int, origin: float) -> FloatArray:
     """Give the polynomials that are one at a sample and zero at the others."""
     places = -np.arange(points) - origin
-    basis = np.empty((points, points))
-    for k, place in enumerate(places):
-        others = np.delete(places, k)
-        basis[k] = polyfromroots(others) / np.prod(place - others)
+    basis = np.zeros((points, points))
+    basis[:, 0] = 1.0
+    # The nearest zeros first: so the coefficients grow step by step.
+    for j in np.argsort(np.abs(places), kind="stable"):
+        others = np.arange(points) != j
+        rows = basis[others]
+        basis[others, 1:] = rows[:, :-1]
+        basis[others, 0] = 0.0
+        basis[others] -= places[j] * rows
+    basis /= _distances(points)[:, None]
     basis.setflags(write=False)
     return basis
 
 
+@lru_cache(maxsize=8)
+def _distances(points: int) -> FloatArray:
+    """Give the product of each sample's distances to the others, with their signs."""
+    apart = np.subtract.outer(-np.arange(points), -np.arange(points)).astype(float)
+    np.fill_diagonal(apart, 1.0)
+    products: FloatArray = apart.prod(axis=1)
+    return products
+
+
 def value_at(points: int, place: float) -> FloatArray:
     """Weights of the samples for the curve's value at a time, the newest at 0."""
-    return through_samples(points, lambda m: float(m == 0), place)
+    away = np.tile(place + np.arange(points), (points, 1))
+    np.fill_diagonal(away, 1.0)
+    weights: FloatArray = away.prod(axis=1) / _distances(points)
+    return weights
 
 
 def central_difference(points: int, place: float, half_width: float) -> FloatArray:
