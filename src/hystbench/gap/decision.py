@@ -194,7 +194,7 @@ def decide(
     after = compared if state is start else compare(state)
     lone = lone_share([item.residual for item in after])
     differs = unrepeated(after, floor.rms)
-    unnamed = what_is_unnamed(start, state, floor.rms)
+    unnamed = what_is_unnamed(start, state, floor.rms, unnamed_share)
     verdict, reason = judge(
         left,
         bool(state.added),

@@ -19,7 +19,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import fft
 
+from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
 from hystbench.blocks.held import Hold
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.gap.fitting.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
@@ -310,14 +312,17 @@ ROUNDING = 1e-12
 
 
 def late(signal: FloatArray, samples: float) -> FloatArray:
-    """Move a signal to later samples; it rests at its ends. Cubic splines between."""
+    """Move a signal to later samples along its curve; it rests at its ends."""
     whole = round(samples)
     if whole == samples:
-        places = np.clip(np.arange(len(signal)) - whole, 0, len(signal) - 1)
-        return signal[places] if whole else signal
-    from scipy.ndimage import shift  # late: it takes long to load
-
-    return np.asarray(shift(signal, samples, order=3, mode="nearest"))
+        between = signal
+    else:
+        taps = value_at(POINTS, whole - samples - AHEAD)
+        between = weighed(signal, taps[np.newaxis])[0]
+    if not whole:
+        return between
+    places = np.clip(np.arange(len(signal)) - whole, 0, len(signal) - 1)
+    return np.asarray(between[places])
 
 
 def _squares(
@@ -332,15 +337,23 @@ def _squares(
         signal, y = signal - signal.mean(), y - y.mean()
     rested = np.pad(signal, reach, mode="edge")
     at = reach - shifts
-    products = np.correlate(rested, y, "valid")[at]
-    powers = np.correlate(rested**2, np.ones(count), "valid")[at]
+    size = fft.next_fast_len(len(rested), real=True)
+    across = fft.rfft(rested, size) * fft.rfft(y, size).conj()
+    products = fft.irfft(across, size)[at]
+    powers = _running(rested**2, count)[at]
     if "offset" in kinds:
-        powers = powers - np.correlate(rested, np.ones(count), "valid")[at] ** 2 / count
+        powers = powers - _running(rested, count)[at] ** 2 / count
     gain = np.ones(len(shifts))
     if "gain" in kinds:
         np.divide(products, powers, out=gain, where=(powers > 0) & (products > 0))
     squares = y @ y - 2 * gain * products + gain**2 * powers
     return np.asarray(np.maximum(squares, 0) / count)
+
+
+def _running(values: FloatArray, count: int) -> FloatArray:
+    """Sum so many values in a row, from each on."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    return sums[count:] - sums[:-count]
 
 
 def _scaled(x: FloatArray, y: FloatArray, kinds: Sequence[str]) -> tuple[float, float]:

@@ -8,7 +8,7 @@ follows known signals speaks against it, however small beside the gap.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -63,7 +63,7 @@ class Unnamed:
         What follows no known signal.
     gains : mapping of str to float
         By how much each group of known signals, alone, raises the evidence, in natural
-        logarithms.
+        logarithms; empty where so little stays that no sort is said.
     factors : tuple of float
         The effects' strength in each record, as a multiple of what it is in all of
         them; empty where no effect acts on the input.
@@ -83,6 +83,10 @@ class Unnamed:
     def too_much(self, share: float = UNNAMED_SHARE) -> bool:
         """Tell whether more stays unnamed than may."""
         return self._excess > share
+
+    def told(self, share: float = UNNAMED_SHARE) -> bool:
+        """Tell whether so much stays that its sort is said."""
+        return self.too_much(share) or self.stays > LOOSE
 
     def trust(self, share: float = UNNAMED_SHARE) -> float:
         """Give the factor on a name's confidence: one where no more stays than may."""
@@ -118,8 +122,7 @@ class Unnamed:
 
     def mapping(self, share: float = UNNAMED_SHARE) -> dict[str, Any]:
         """Give what gap.json holds: no sort where no more stays than may."""
-        told = self.too_much(share) or self.stays > LOOSE
-        sort = self.sort(share) if told else None
+        sort = self.sort(share) if self.told(share) else None
         return {
             "allowed": share,
             "structured": self.structured,
@@ -135,7 +138,12 @@ NOTHING = Unnamed(0.0)
 """Where everything is owned."""
 
 
-def what_is_unnamed(base: ModelState, state: ModelState, floor_rms: float) -> Unnamed:
+def what_is_unnamed(
+    base: ModelState,
+    state: ModelState,
+    floor_rms: float,
+    share: float = UNNAMED_SHARE,
+) -> Unnamed:
     """Measure what the effects of a model cannot own of what they leave.
 
     Three variances of noise are found by evidence (:mod:`grouped_evidence`): ``s0``
@@ -150,6 +158,8 @@ def what_is_unnamed(base: ModelState, state: ModelState, floor_rms: float) -> Un
         Without and with the effects.
     floor_rms : float
         RMS of the noise. A gap of less power than the noise counts as one of as much.
+    share : float
+        What may stay: of what sort it is, is looked for where more does.
     """
     floor = floor_rms**2
     power = max(base.power(floor), floor)
@@ -171,18 +181,20 @@ def what_is_unnamed(base: ModelState, state: ModelState, floor_rms: float) -> Un
         table.explained([at[name] for name in (*own, *more)])
         for more in ((), generic, changing)
     )
+    found = Unnamed(
+        max(alone.noise - with_generic.noise, 0.0) / power,
+        max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
+        max(with_generic.noise - floor, 0.0) / power,
+        factors=_factors(state, increment) if changing else (),
+    )
+    if not found.told(share):
+        return found
     gains = {
         name: table.explained([*(at[k] for k in own), at[name]]).evidence
         - alone.evidence
         for name in generic
     }
-    return Unnamed(
-        max(alone.noise - with_generic.noise, 0.0) / power,
-        max(alone.noise - with_changing.noise, 0.0) / power if changing else None,
-        max(with_generic.noise - floor, 0.0) / power,
-        gains,
-        _factors(state, increment) if changing else (),
-    )
+    return replace(found, gains=gains)
 
 
 def owned(state: ModelState) -> dict[str, FloatArray]:

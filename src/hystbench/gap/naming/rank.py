@@ -127,8 +127,9 @@ def rank(
     )
     if not folds:
         return (*beyond_an_offset(candidates, state, score), *declined)
-    candidates = [on_folds(item, state, score) for item in candidates]
-    judged = [_not_cut_short(item, state) for item in candidates]
+    judged = [
+        _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
+    ]
     declined += [item for item in judged if item.declined]
     candidates = in_order(item for item in judged if not item.declined)
     # Folds may put one first that was not simulated exactly.
@@ -226,6 +227,24 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     except CallsUsedUp as error:
         return Candidate(item.effect, item.place, declined=str(error))
     return replace(item, state=after, score=value, gain=now - value)
+
+
+def first_on_folds(
+    candidates: Sequence[Candidate], before: ModelState, score: Score
+) -> list[Candidate]:
+    """Judge candidates on records held back, best first, while one may be the first.
+
+    A candidate can only lose there. So one that scores worse than the best judged so
+    far, beyond doubt, need not be judged.
+    """
+    best, found = np.inf, []
+    for item in candidates:
+        if item.score < best + CERTAIN:
+            item = on_folds(item, before, score)
+        if item.state is not None and not item.declined:
+            best = min(best, item.score)
+        found.append(item)
+    return found
 
 
 def on_folds(item: Candidate, before: ModelState, score: Score) -> Candidate:

@@ -60,6 +60,8 @@ def named_apart(
     found = (start, named, NONE)
     least = score_of(named.state, score)
     least -= 0.0 if any(not values for _, values in named.state.beside) else PAYS
+    if least <= score.least(start.freedom + 1):
+        return found  # noise alone, and what is their own charged, scores no less
     models = dict.fromkeys((named.state, without_shared(named.state), start))
     likely = _likely(start, tuple(models), score)
     for _ in range(ROUNDS):
