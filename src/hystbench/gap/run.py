@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.behaviour import say_in_words
 from hystbench.gap.decision import Decision, find
@@ -182,8 +180,9 @@ def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> 
 def _write_hold_out(
     path: Path, record: Record, before: FloatArray, after: FloatArray
 ) -> None:
-    table = np.column_stack([record.time, record.y, before, after])
-    rows = ([f"{value:.9g}" for value in row] for row in table.tolist())
+    signals = (record.time, record.y, before, after)
+    columns = [map("{:.9g}".format, signal.tolist()) for signal in signals]
+    rows = zip(*columns, strict=True)
     write_csv(path, ["time_s", "measured", "before", "after"], rows)
 
 

@@ -353,7 +353,7 @@ def _squares(
 def _running(values: FloatArray, count: int) -> FloatArray:
     """Sum so many values in a row, from each on."""
     sums = np.concatenate([[0.0], np.cumsum(values)])
-    return sums[count:] - sums[:-count]
+    return np.asarray(sums[count:] - sums[:-count])
 
 
 def _scaled(x: FloatArray, y: FloatArray, kinds: Sequence[str]) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Beside, Values
 from hystbench.gap.records.sample import Sample
-from hystbench.gap.simulation.reshape import reshapings
+from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.record import FloatArray, Record
 
@@ -180,6 +180,11 @@ class ModelState:
     def reshapings(self) -> FloatArray:
         """What reshaping the hysteresis could do, shape (scored samples, k)."""
         return reshapings(self.simulation, self.sample)
+
+    @cached_property
+    def wrong_shape(self) -> FloatArray:
+        """An orthonormal basis of :attr:`reshapings`."""
+        return orthonormal(self.reshapings)
 
     @cached_property
     def stiffness(self) -> FloatArray:

@@ -147,8 +147,7 @@ class BlackBox:
         ndarray, shape (n,)
             In the unit of the output.
         """
-        table = self.columns.table(Compared(record, simulated), slice(None))
-        return np.asarray(table @ self.weights)
+        return self.columns.weighed(Compared(record, simulated), self.weights)
 
     def outside(self, record: Record) -> tuple[str, ...]:
         """Tell in what a record lies outside the records that were fitted.

@@ -196,10 +196,21 @@ class Columns:
         columns = cls(regressors, landmarks, scale, (*families, "plain"))
         return columns, scale(raw)
 
-    def table(self, compared: Compared, rows: Rows) -> FloatArray:
-        """Standardised columns and a constant one, shape (rows, m)."""
-        parts = _parts(self.regressors, self.landmarks, compared, rows)
-        return self.scale(np.hstack(list(parts.values())))
+    def weighed(self, compared: Compared, weights: FloatArray) -> FloatArray:
+        """Sum the standardised columns and a constant one, by weights of shape (m,).
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        parts = _parts(self.regressors, self.landmarks, compared, slice(None))
+        of_raw = weights[:-1] / self.scale.spread
+        total = np.full(len(compared.record), weights[-1] - of_raw @ self.scale.middle)
+        start = 0
+        for part in parts.values():
+            total += part @ of_raw[start : start + part.shape[1]]
+            start += part.shape[1]
+        return total
 
 
 def _parts(

@@ -206,7 +206,7 @@ def owned(state: ModelState) -> dict[str, FloatArray]:
     rows = len(state.sample)
     simulated = state.measured - state.residual
     return {
-        "shape": orthonormal(state.reshapings),
+        "shape": state.wrong_shape,
         "mixed shape": orthonormal(products(state.simulation, state.sample)),
         "numbers": state.tangents,
         "forms": state.other_forms,

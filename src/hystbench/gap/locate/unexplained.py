@@ -166,10 +166,11 @@ def find_line(samples: ViewSamples) -> tuple[float | None, float]:
 def _level(power: FloatArray) -> FloatArray:
     """Give the mean level of noise around each bin, by medians of blocks."""
     blocks = max(1, len(power) // NEIGHBOURS)
-    parts = np.array_split(power, blocks)
-    medians = np.array([np.median(part) for part in parts])
+    size = -(-len(power) // blocks)
+    first = np.linspace(0, len(power) - size, blocks).round().astype(int)
+    medians = np.median(power[first[:, None] + np.arange(size)], axis=1)
     levels = np.log(np.maximum(medians / np.log(2), 1e-300))
-    centres = (np.arange(blocks) + 0.5) * len(power) / blocks
+    centres = first + size / 2
     return cast(FloatArray, np.exp(np.interp(np.arange(len(power)), centres, levels)))
 
 

@@ -45,8 +45,10 @@ def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score
         Whether the added effects may be of another form too; not when their own
         numbers are to be found.
     """
-    wrong = [state.reshapings] + ([state.other_forms] if forms else [])
-    return Score(state.sample, orthonormal(np.hstack(wrong)), floor_rms**2)
+    wrong = state.wrong_shape
+    if forms and state.other_forms.shape[1]:
+        wrong = orthonormal(np.hstack([wrong, state.other_forms]))
+    return Score(state.sample, wrong, floor_rms**2)
 
 
 def rank(

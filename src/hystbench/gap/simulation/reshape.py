@@ -105,7 +105,7 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     basis = columns @ (vectors[:, keep] / np.sqrt(values[keep]))
     # A second pass makes what rounding has left orthonormal too.
     triangle = np.linalg.cholesky(basis.T @ basis)
-    return np.ascontiguousarray(np.linalg.solve(triangle, basis.T).T)
+    return np.asarray(basis @ np.linalg.inv(triangle).T)
 
 
 def _ways(simulation: Simulation, sample: Sample | None) -> list[Signals]:
