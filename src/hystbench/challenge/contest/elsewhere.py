@@ -1,114 +1,204 @@
-"""The score of cases that another plant made, each in a folder of its own."""
+"""Cases that another plant made, judged as the contest's own."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from hystbench.challenge.contest.score import Row, judge
+from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, of
+from hystbench.challenge.contest.tables import calibration_error, middle
 from hystbench.challenge.contest.wilson import wilson
-from hystbench.errors import InputError
 from hystbench.files import read_json
+from hystbench.gap.schema import SCHEMA
 from hystbench.yaml_files import load_yaml
 
 OURS = {"gain-error": "calibration-error", "offset": "calibration-error"}
 """The vocabulary's words for what such a plant may call otherwise."""
-SHAPE = "hysteresis-shape"
-SURE = 0.8
-COLUMNS = [
-    *("kind", "base", "ratio_db", "cases", "right", "low", "high", "exact"),
-    "confidently_wrong",
-]
+FAMILY = {"gpi": "gpi", "preisach": "preisach", "ja": "jiles-atherton"}
+"""The contest's family of plants, by a word that the other plant's has in its name."""
+FORM = "of another plant"
+"""Its parameters are not compared: they are of another parametrisation."""
+NO_VIEW: tuple[Any, ...] = ()
+COLUMNS = (
+    *("figure", "asked", "own", "own_cases"),
+    *("elsewhere", "low", "high", "elsewhere_cases"),
+)
 
 
-def told(case: Path) -> dict[str, Any]:
-    """Judge one case: a row.
+def told(case: Path) -> Row:
+    """Judge one case.
 
     Parameters
     ----------
     case : Path
-        A folder with ``truth.yaml`` (``kind``, ``family``, ``gnr_asked_db``, null with
-        nothing hidden, and ``effects``, each with its ``name``) and
-        ``result/gap.json``. Where that is missing the case is lost. A plant of a family
-        with ``gpi`` in its name has an exact base.
-
-    Returns
-    -------
-    dict
-        ``right``: of a single effect, whether it is named first; of a pair, whether
-        both are named; with nothing hidden, whether nothing is named; of an effect
-        that is not in the vocabulary, the same. ``exact``: whether nothing else is
-        named. Beside a base of another family than the plant's a wrong shape of the
-        loop is neither required nor wrong.
+        A folder with ``truth.yaml`` (``seed``, ``kind``, ``family``, ``gnr_asked_db``,
+        null with nothing hidden, ``noise_rms``, ``model_error_rms_holdout``,
+        ``gap_rms_holdout`` and ``effects``, each with its ``name``) and
+        ``result/gap.json``. Where that is missing the case is lost.
     """
     truth = load_yaml(case / "truth.yaml")
-    exactly = "gpi" in str(truth["family"])
-    hidden = {OURS.get(item["name"], item["name"]) for item in truth["effects"]}
-    file = case / "result" / "gap.json"
-    gap: Mapping[str, Any] = read_json(file) if file.exists() else {}
+    name = str(truth["family"])
+    family = next((ours for word, ours in FAMILY.items() if word in name), name)
     effects = [
-        (item["name"], float(item["confidence"]))
-        for item in gap.get("effects", ())
-        if gap["verdict"] == "named" and (exactly or item["name"] != SHAPE)
+        {
+            "name": OURS.get(item["name"], item["name"]),
+            "form": FORM,
+            "where": NO_VIEW,
+            "ratio_retuned_db": None,
+        }
+        for item in truth["effects"]
     ]
-    named = [name for name, _ in effects]
-    kind = str(truth["kind"])
-    wanted = hidden if kind in ("single", "pair") else set()
-    first = bool(named) and named[0] in wanted
-    right = first if kind == "single" else {*named} >= wanted
-    if not wanted:
-        right = bool(gap) and not named
-    return {
-        "kind": kind,
-        "base": "exact" if exactly else "foreign",
+    ours = {
+        "seed": truth["seed"],
+        "kind": truth["kind"],
+        "family": family,
         "ratio_db": truth["gnr_asked_db"],
-        "right": right,
-        "exact": right and {*named} == wanted,
-        "confidently_wrong": any(
-            sure > SURE and name not in wanted for name, sure in effects
-        ),
+        "noise_rms": truth["noise_rms"],
+        "hold_out": {
+            "base_error_rms": truth["model_error_rms_holdout"],
+            "explainable_rms": truth["gap_rms_holdout"],
+        },
+        "effects": effects,
     }
+    file = case / "result" / "gap.json"
+    there = file.exists()
+    answer = {
+        "status": "answered" if there else "no gap.json",
+        "gap": read_json(file) if there else None,
+        "seconds": None,
+        "cpu_seconds": None,
+    }
+    told = f"{case.parent.name}/{case.name}"
+    return judge("gap", told, ours, answer, SCHEMA, lambda members: members)
 
 
-def score(cases: Sequence[Path]) -> pd.DataFrame:
-    """Score cases by kind, base and ratio of gap to noise.
+def rows(cases: Sequence[Path]) -> list[Row]:
+    """Judge cases, folders as for :func:`told`."""
+    return [told(case) for case in cases]
+
+
+@dataclass(frozen=True)
+class Shared:
+    """A figure that both plants have: a share of some cases.
 
     Parameters
     ----------
-    cases : sequence of Path
-        As for :func:`told`.
+    name : str
+    column : str
+        Of :func:`_with_names`, true or false; empty for all cases.
+    asked : str
+    kind, family : str
+        Empty for all; a family of ``summary.FAMILIES``.
+    ratio_db : float or None
+        None for all.
+    """
+
+    name: str
+    column: str
+    asked: str = ""
+    kind: str = ""
+    family: str = ""
+    ratio_db: float | None = None
+
+    def among(self, cases: pd.DataFrame) -> pd.DataFrame:
+        """Give the cases that it is about."""
+        chosen = pd.Series(data=True, index=cases.index)
+        if self.kind:
+            chosen &= cases["kind"] == self.kind
+        if self.family:
+            chosen &= cases["family"].isin(FAMILIES[self.family])
+        if self.ratio_db is not None:
+            chosen &= (cases["ratio_db"] == self.ratio_db).fillna(value=False)
+        return cases[chosen]
+
+
+SHARES = (
+    Shared("single, exact base, 20 dB", "top1", ">= 0.95", "single", "gpi", 20.0),
+    Shared("single, foreign base, 20 dB", "top1", ">= 0.88", "single", "foreign", 20.0),
+    Shared("nothing beside, exact", "exact", ">= 0.88", "single", "gpi", 20.0),
+    Shared("nothing beside, foreign", "exact", ">= 0.88", "single", "foreign", 20.0),
+    Shared("single, exact base, 10 dB", "top1", "", "single", "gpi", 10.0),
+    Shared("single, foreign base, 10 dB", "top1", "", "single", "foreign", 10.0),
+    Shared("pair: both named", "all_named", ">= 0.88", "pair"),
+    Shared("pair: nothing beside", "exact", ">= 0.8", "pair"),
+    Shared("nothing hidden: no name", "no_name", ">= 0.99", "none"),
+    Shared("unlisted: no name", "no_name", ">= 0.9", "unlisted"),
+    Shared("unlisted: named with more than 0.8", "surely", "<= 0.03", "unlisted"),
+    Shared("wrong name with more than 0.8", "wrongly", "<= 0.03"),
+)
+
+
+def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
+    """Put the figures of both plants side by side.
+
+    Parameters
+    ----------
+    own, elsewhere : DataFrame
+        Judged cases of one solver, as ``frames.frame`` has them; ``own`` may be empty.
 
     Returns
     -------
     DataFrame
-        A row a group: shares of the cases, with the 95 % interval of ``right``.
-
-    Raises
-    ------
-    InputError
-        If there is no case, or one has no truth.
+        A row a figure; ``low`` and ``high`` are the 95 % interval elsewhere.
     """
-    if not cases:
-        raise InputError("CASES: none; expected folders with truth.yaml and result/")
-    rows = []
-    groups = pd.DataFrame([told(case) for case in cases]).groupby(
-        ["kind", "base", "ratio_db"], sort=True, dropna=False
-    )
-    for (kind, base, ratio), group in groups:
-        share = wilson(int(group["right"].sum()), len(group))
-        rows.append(
-            {
-                "kind": kind,
-                "base": base,
-                "ratio_db": ratio,
-                "cases": share.cases,
-                "right": share.share,
-                "low": share.low,
-                "high": share.high,
-                "exact": group["exact"].mean(),
-                "confidently_wrong": group["confidently_wrong"].mean(),
-            }
+    both = [_with_names(cases) for cases in (own, elsewhere)]
+    found: list[tuple[Any, ...]] = []
+    for figure in SHARES:
+        here, there = (
+            wilson(int(chosen[figure.column].fillna(value=False).sum()), len(chosen))
+            for chosen in map(figure.among, both)
         )
-    return pd.DataFrame(rows, columns=COLUMNS).round(4)
+        found.append((figure.name, figure.asked, here.share, here.cases, *there))
+    for name, families, asked in (
+        ("gap closed, median, exact base", FAMILIES["gpi"], ">= 0.95"),
+        ("gap closed, median, foreign base", FAMILIES["foreign"], ">= 0.85"),
+    ):
+        chosen = [of(x[x["family"].isin(families)], HIDDEN) for x in both]
+        found.append(
+            _number(name, asked, chosen, [middle(x, "shrink") for x in chosen])
+        )
+    apart = [calibration_error(x) if len(x) else None for x in both]
+    found.append(_number("stated confidence off by", "<= 0.05", both, apart))
+    return pd.DataFrame(found, columns=list(COLUMNS)).round(4)
+
+
+def _number(
+    name: str,
+    asked: str,
+    cases: Sequence[pd.DataFrame],
+    values: Sequence[float | None],
+) -> tuple[Any, ...]:
+    """Give the row of a number that is no share, and has no interval."""
+    (own, elsewhere), (here, there) = map(len, cases), values
+    return (name, asked, here, own, there, None, None, elsewhere)
+
+
+def _with_names(cases: pd.DataFrame) -> pd.DataFrame:
+    """Add whether no name is given, one surely, and a wrong one surely."""
+    names = [
+        _stated(row) if row["verdict"] == "named" else {}
+        for row in cases.to_dict("records")
+    ]
+    hidden = [str(truth).split() for truth in cases["truth"]]
+    return cases.assign(
+        no_name=[not x for x in names],
+        surely=[any(sure > SURE for sure in x.values()) for x in names],
+        wrongly=[
+            any(sure > SURE and name not in true for name, sure in x.items())
+            for x, true in zip(names, hidden, strict=True)
+        ],
+    )
+
+
+SURE = 0.8
+
+
+def _stated(row: Mapping[Any, Any]) -> dict[str, float]:
+    """Give the stated confidence of each name of a case."""
+    parts = (word.rpartition("=") for word in str(row["confidences"]).split())
+    return {name: float(sure) for name, _, sure in parts}
