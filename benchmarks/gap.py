@@ -55,9 +55,10 @@ def main() -> None:
 
 def make_cases(folder: Path) -> None:
     """Write the cases as a solver gets them."""
-    settings = {"set": "development", "scale": 1.0, "size": CASES, "chunk": "0000"}
+    plan = {"name": "development", "scale": 1.0}
+    settings = {"plan": plan, "size": CASES, "chunk": "0000"}
     command = str(Path(sys.executable).with_name("hystbench"))
-    words = ["blind-make", "--settings", json.dumps(settings), "--out", str(folder)]
+    words = ["job", "blind-make", "--settings", json.dumps(settings), "--out", str(folder)]
     subprocess.run([command, *words], check=True)
 
 
