@@ -58,7 +58,14 @@ def make_cases(folder: Path) -> None:
     plan = {"name": "development", "scale": 1.0}
     settings = {"plan": plan, "size": CASES, "chunk": "0000"}
     command = str(Path(sys.executable).with_name("hystbench"))
-    words = ["job", "blind-make", "--settings", json.dumps(settings), "--out", str(folder)]
+    words = [
+        "job",
+        "blind-make",
+        "--settings",
+        json.dumps(settings),
+        "--out",
+        str(folder),
+    ]
     subprocess.run([command, *words], check=True)
 
 

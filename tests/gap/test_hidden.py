@@ -16,14 +16,14 @@ from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.judging.unnamed import what_is_unnamed
-from hystbench.gap.judging.verdict import LONE, judge, what_is_left
+from hystbench.gap.judging.verdict import judge, what_is_left
 from hystbench.gap.locate import locate
 from hystbench.gap.naming import name as naming
 from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.records.disturbances import lone_share
 from hystbench.gap.records.floor import noise_floor
 from hystbench.gap.records.residual import Compared
-from hystbench.gap.thresholds import PAYS, SHAPE, TIE
+from hystbench.gap.thresholds import LONE, PAYS, SHAPE, TIE
 from tests.gap.halved import first_halves
 
 SEED = 1

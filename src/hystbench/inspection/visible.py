@@ -17,12 +17,11 @@ from scipy.optimize import brentq
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
-from hystbench.gap.fitting.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import PAYS
+from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, PAYS, RECORD_WEIGHT
 from hystbench.inspection.shapes import Shape, shapes_of
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record

@@ -13,10 +13,10 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import numbers_of
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.judging.known_signals import halves, low_pass
-from hystbench.gap.judging.unnamed import CHANGE, SORTS, Unnamed, what_is_unnamed
+from hystbench.gap.judging.unnamed import SORTS, Unnamed, what_is_unnamed
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.thresholds import CHANGE, UNNAMED_SHARE
 from tests.gap.made import record
 from tests.gap.small import block, measured, state_of
 

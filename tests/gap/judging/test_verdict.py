@@ -5,14 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.judging.unnamed import CHANGE, LOOSE, Unnamed
+from hystbench.gap.judging.unnamed import Unnamed
 from hystbench.gap.judging.verdict import (
     GIVE,
-    LONE,
-    SLIGHT,
-    SOME,
-    UNREPEATED,
-    WIDE,
     Left,
     confidence,
     error_of,
@@ -21,7 +16,16 @@ from hystbench.gap.judging.verdict import (
     what_mends,
 )
 from hystbench.gap.naming.rounds import Candidate, near
-from hystbench.gap.thresholds import ABOVE_NOISE, TIE
+from hystbench.gap.thresholds import (
+    ABOVE_NOISE,
+    CHANGE,
+    LONE,
+    LOOSE,
+    SLIGHT,
+    SOME,
+    TIE,
+    WIDE,
+)
 from hystbench.record import Channel, Record
 from tests.gap.small import block, measured, state_of
 
@@ -62,7 +66,7 @@ def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     # As slight as only a wrong shape of the hysteresis leaves it.
     found = Left(0.0, 0.0, 100.0, after, 1e6)
     word, reason = judge(found, False, 0.0, unrepeated=differs)
-    told = differs > max(UNREPEATED, SOME * after)
+    told = differs > max(ABOVE_NOISE, SOME * after)
     assert word == ("unnamed" if told else "no-gap")
     assert ("one period" in reason) == told
 
@@ -72,7 +76,7 @@ def test_a_wide_gap_is_one_though_reshaping_could_do_all_of_it(beyond, whole):
     output = 1e5
     found = Left(beyond, beyond, whole, whole, output)
     word, reason = judge(found, False, 0.0)
-    assert word == ("no-gap" if whole < WIDE**2 * output else "unnamed")
+    assert word == ("no-gap" if whole < (WIDE * SLIGHT) ** 2 * output else "unnamed")
     assert (word == "no-gap") == ("% of the output" in reason)
 
 

@@ -24,9 +24,8 @@ from scipy import fft
 from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
 from hystbench.blocks.held import Hold
 from hystbench.blocks.input_delay import InputDelay
-from hystbench.gap.fitting.score import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.gap.records.nuisance import FIRST
-from hystbench.gap.thresholds import PAYS, TIE
+from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, PAYS, RECORD_WEIGHT, TIE
 from hystbench.record import FloatArray, Record
 
 KEYS = {"delay": "delay_s", "gain": "gain", "offset": "offset"}

@@ -23,14 +23,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.gap.records.sample import Sample
+from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.record import FloatArray
 
-RECORD_WEIGHT = 50.0
-"""Independent samples that a record counts as."""
-LEAST_WEIGHT = 300.0
-"""Of all records together, where there are few."""
-PARAMETER = 4.0
-"""Charge for a fitted parameter."""
 ROUNDS = 4
 """Of reweighting: amplitudes change little after."""
 STILL = 1e-3

@@ -29,7 +29,7 @@ from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import may_hold
-from hystbench.gap.thresholds import CERTAIN, FURTHER, MATTERS, PAYS, TIE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, TIE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -148,7 +148,7 @@ def charged(item: Hypothesis, found: Sequence[Hypothesis], floor: float) -> floa
         if not before.effects:
             value += PAYS
         else:
-            value += FURTHER if share > MATTERS else CERTAIN
+            value += FURTHER if share > UNNAMED_SHARE else CERTAIN
     return value
 
 

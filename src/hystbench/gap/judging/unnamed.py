@@ -17,13 +17,9 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import Products
 from hystbench.gap.judging.known_signals import PATH, generic_groups, halves
 from hystbench.gap.simulation.reshape import orthonormal, products
-from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.thresholds import CHANGE, LOOSE, UNNAMED_SHARE
 from hystbench.record import FloatArray
 
-CHANGE = 0.2
-"""Of `UNNAMED_SHARE`, what may go if an effect's numbers may differ in time."""
-LOOSE = 0.25
-"""Share of the power of the gap that may stay in all: half of its rms."""
 RELATED = 0.1
 """Share of what stays that must follow known signals, to be called by their sort."""
 

@@ -11,10 +11,23 @@ import numpy as np
 
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.judging.unnamed import LOOSE, NOTHING, Unnamed
+from hystbench.gap.judging.unnamed import NOTHING, Unnamed
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.rounds import Candidate
-from hystbench.gap.thresholds import ABOVE_NOISE, UNNAMED_SHARE
+from hystbench.gap.thresholds import (
+    ABOVE_NOISE,
+    DISTRUST,
+    DOUBT,
+    HALF,
+    LONE,
+    LOOSE,
+    RESHAPABLE,
+    SCALE,
+    SLIGHT,
+    SOME,
+    UNNAMED_SHARE,
+    WIDE,
+)
 from hystbench.periods import find_period
 from hystbench.record import Record
 
@@ -22,28 +35,8 @@ Word = Literal["named", "parameters", "no-gap", "unnamed"]
 
 OFF = 1 / 9
 """Share of the gap that stays and may be the base's own error: a third of its rms."""
-SLIGHT = 0.015
-"""RMS of what is left, over that of the output, that a fitted hysteresis may leave."""
-WIDE = 0.045
-"""The same of all that is left, most of which reshaping could do."""
-RESHAPABLE = 0.3
-"""Share of the gap that then has to lie in what a wrong shape of it could do."""
-HALF = 0.5
-"""The same, where what stays is no more than a slightly wrong shape leaves."""
-LONE = 0.12
-"""Power that stays in samples far off, over that of the gap, that is not noise."""
-UNREPEATED = 0.5
-"""Power above the floor, in floors, that differs between periods and is not noise."""
-SOME = 0.03
-"""Share of what is left that has to differ so, to be told from settling."""
-SCALE = 4.0
-"""Difference in score that makes one name e times likelier than another."""
 SURE = 100.0
 """Odds beyond e to this are all the same."""
-DISTRUST = 0.7
-"""Share of the gap that stays, at which no name is believed."""
-DOUBT = 0.02
-"""That none of the vocabulary is right though one fits well."""
 SAID = 0.1
 """Share of the gap that a wrong shape of the base could leave, to be told."""
 
@@ -91,7 +84,7 @@ class Left:
     def _slight(self, beyond: float, whole: float) -> bool:
         if whole <= ABOVE_NOISE:
             return True
-        if whole >= WIDE**2 * self.output:
+        if whole >= (WIDE * SLIGHT) ** 2 * self.output:
             return False
         small = beyond < SLIGHT**2 * self.output
         return beyond <= ABOVE_NOISE or (small and beyond < (1 - RESHAPABLE) * whole)
@@ -255,7 +248,7 @@ def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
             "vocabulary does"
         )
     differs = unrepeated is not None and unrepeated > max(
-        UNREPEATED, SOME * left.all_after
+        ABOVE_NOISE, SOME * left.all_after
     )
     if differs:
         return (

@@ -20,10 +20,10 @@ from hystbench.gap.thresholds import (
     BESIDE_SHAPE,
     CERTAIN,
     FURTHER,
-    MATTERS,
     MOST,
     PAYS,
     SHAPE,
+    UNNAMED_SHARE,
 )
 
 LITTLE = "what the effects leave of a slightly wrong shape is most of it"
@@ -229,7 +229,7 @@ def _pays(item: Candidate, state: ModelState, floor: float, gap: float) -> bool:
     if not state.added:
         return True
     beside_shape = any(other.effect == SHAPE for other in state.added)
-    matters = BESIDE_SHAPE if beside_shape else MATTERS
+    matters = BESIDE_SHAPE if beside_shape else UNNAMED_SHARE
     share = item.state.share(state, floor, gap)
     if is_most_of_it(item.effect, item.gain, share):
         return True

@@ -23,15 +23,20 @@ from hystbench.gap.naming.rounds import Candidate, TriedVariant, in_order
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.thresholds import (
     CERTAIN,
-    EXACT,
-    FINALISTS,
-    MATTERS,
-    NEAR,
     PAYS,
     SHAPE,
-    STILL,
+    UNNAMED_SHARE,
     WORSE,
 )
+
+NEAR = 80.0
+"""Variants that score worse than the best by more are not searched further."""
+STILL = 0.5
+"""The same as a share of the best's gain: a grid's step may miss much of a gain."""
+FINALISTS = 6
+"""Effects that are added and refitted jointly before one is taken."""
+EXACT = 3
+"""Of the finalists, those that are simulated exactly before one is taken."""
 
 
 def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
@@ -162,7 +167,7 @@ def beyond_an_offset(
             if other.state is None or other.gain < PAYS or other.score <= item.score:
                 continue
             more = item.state.freedom > other.state.freedom
-            if more and item.state.share(other.state, floor, gap) < MATTERS:
+            if more and item.state.share(other.state, floor, gap) < UNNAMED_SHARE:
                 dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
                 return replace(item, score=dearer, gain=gain)
         return item

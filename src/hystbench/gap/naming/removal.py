@@ -14,10 +14,7 @@ from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty import error_of_size, on_more_samples
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say
-from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE
-
-UNKNOWN = 0.5
-"""Standard error of an effect's size, as a share of it: two of them reach nothing."""
+from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE, UNKNOWN
 
 
 class TakenOut(NamedTuple):

@@ -13,7 +13,10 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.progress import Say
-from hystbench.gap.thresholds import CLOSE, PAYS, SHAPE, SWAP
+from hystbench.gap.thresholds import PAYS, SHAPE, SWAP
+
+CLOSE = 0.6
+"""Rivals are those with this share of the gain of the best of a round."""
 
 
 def reconsidered(
