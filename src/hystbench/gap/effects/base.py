@@ -146,6 +146,9 @@ class Effect(ABC):
     """Blocks of other laws of the effect, beside the one that has its name."""
     vanishing: ClassVar[str] = ""
     """Of its block inside the dynamics: without this number it is another effect."""
+    special: ClassVar[bool] = False
+    """Whether it is offered only where its cause can be, as a weight where something
+    turns: of a tie with a law that any device may have it is the likelier."""
 
     @abstractmethod
     def variants(self, simulation: Simulation) -> Iterator[Variant]:

@@ -14,6 +14,7 @@ class Gravity(ForceEffect):
 
     name = "gravity"
     shows = "amplitude"
+    special = True
 
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer a weight that makes half of the spring, and one that works against it.

@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
+from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -173,6 +174,8 @@ def chosen(found: Sequence[Hypothesis], floor: float) -> Hypothesis:
     """Take the least score with what effects have to pay; of a tie the fewest numbers.
 
     Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
+    As many numbers have a weight that turns a little and a spring that grows softer:
+    then it is the effect that is offered only where its cause can be.
     """
     values = [charged(item, found, floor) for item in found]
     best = found[int(np.argmin(values))]
@@ -181,7 +184,12 @@ def chosen(found: Sequence[Hypothesis], floor: float) -> Hypothesis:
         for item, value in zip(found, values, strict=True)
         if value < min(values) + TIE and len(item.effects) == len(best.effects)
     ]
-    return min(tied, key=lambda item: (item.fitted.state.freedom, item.score))
+
+    def unlikely(item: Hypothesis) -> tuple[float, int, float]:
+        special = sum(effects()[name].special for name in item.effects)
+        return item.fitted.state.freedom, -special, item.score
+
+    return min(tied, key=unlikely)
 
 
 def _rounds(
