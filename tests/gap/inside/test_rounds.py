@@ -82,7 +82,7 @@ def test_a_further_effect_that_takes_no_share_of_the_gap_must_be_beyond_doubt(
 def test_of_a_tie_a_weight_that_turns_is_likelier_than_a_softer_spring(behind, name):
     found = [
         measured(0.0, 1.0),
-        measured(-900.0, 0.1, SPRING),
+        measured(-900.0, 0.1, "stiffness-hardening"),
         measured(-900.0 + behind, 0.1, "gravity"),
     ]
     assert chosen(found, 0.0).effects == (name,)
