@@ -26,8 +26,8 @@ from hystbench.gap.thresholds import FURTHER, PAYS, TIE
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
 alone may gain much together."""
-FORMS = 3
-"""Laws of one effect that are fitted roughly, each from its likeliest start."""
+STARTS = 8
+"""Of the laws of one effect, the likeliest, that are fitted roughly."""
 
 
 @dataclass(frozen=True)
@@ -210,8 +210,8 @@ def fitted_likely(
     score : Score
         Of the whole records.
     count : int
-        How many, each by its best law and start, are fitted to the end; twice as many
-        are fitted roughly.
+        How many, each by its best start, are fitted to the end; twice as many are
+        fitted roughly.
 
     Returns
     -------
@@ -223,10 +223,9 @@ def fitted_likely(
         likely.setdefault(frozenset(item.effects), []).append(item)
     rough = []
     for own in list(likely.values())[: 2 * count]:
-        likeliest = {item.forms: item for item in reversed(own)}
         tried = [
             (item, fitted(beginnings.cut(item.fitted.state), beginnings.score, QUICK))
-            for item in sorted(likeliest.values(), key=lambda x: x.score)[:FORMS]
+            for item in own[:STARTS]
         ]
         rough.append(min(tried, key=lambda pair: pair[1].score))
     rough.sort(key=lambda pair: pair[1].score)
