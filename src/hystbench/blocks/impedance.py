@@ -11,8 +11,8 @@ import numpy as np
 
 from hystbench.blocks.curve import (
     AHEAD,
-    COARSER,
     POINTS,
+    SHORT_STEPS,
     about_sample,
     coarser,
     low_pass_taps,
@@ -168,7 +168,7 @@ class Impedance(HeldBlock):
             "rate": np.ravel(rate) / dt,
             "curvature": np.ravel(curvature) / dt**2,
             "way": way * dt,
-            "fine": COARSER if between else 0,
+            "fine": SHORT_STEPS if between else 0,
             "dt": dt,
             "width": len(taps),
             "taps": taps,
@@ -215,19 +215,19 @@ class Impedance(HeldBlock):
     def _between(
         self, z: FloatArray, q: FloatArray, dt: float
     ) -> tuple[FloatArray, FloatArray]:
-        """Give position and velocity ``COARSER`` times finer.
+        """Give position and velocity ``SHORT_STEPS`` times finer.
 
         The velocity takes straight lines: the mean one of an interval is that in the
         middle of it. A device that stops between two samples rests soon after; the
         band-limited curve would go on to and fro, and friction with it.
         """
         samples = np.arange(len(z))
-        fine = np.arange((len(z) - 1) * COARSER + 1) / COARSER
+        fine = np.arange((len(z) - 1) * SHORT_STEPS + 1) / SHORT_STEPS
         if self.input == "velocity":
             velocity = np.interp(fine, samples, z)
         else:
             velocity = np.interp(fine, samples[:-1] + 0.5, np.diff(z) / dt)
-        steps = (velocity[1:] + velocity[:-1]) / 2 * (dt / COARSER)
+        steps = (velocity[1:] + velocity[:-1]) / 2 * (dt / SHORT_STEPS)
         return np.append(q[0], q[0] + np.cumsum(steps)), velocity
 
     def _moved(
