@@ -197,11 +197,13 @@ class Impedance(HeldBlock):
         if self.holding != "band-limited" or len(z) < 3:
             q, v, curved = self._moved(z, dt)
             return Motion(q, v, curved, against(forces, q, v))
-        way, *slopes = weighed(z, _of_curve())
-        rate, curvature = _rate(z, dt), _curvature(z, dt)
-        # The curve is turned about its ends, which gives its derivatives a kink there.
-        inner = slice(AHEAD + 1, -AHEAD)
-        rate[inner], curvature[inner] = slopes[0][inner] / dt, slopes[1][inner] / dt**2
+        way, rate, curvature = weighed(z, _of_curve())
+        # The curve is turned about its ends: its derivatives have a kink there.
+        first, last = slice(AHEAD + 1), slice(-AHEAD, None)
+        for found, rows, order in ((rate, RATE, 1), (curvature, CURVATURE, 2)):
+            found[first] = _weighed(z[: AHEAD + 1 + REACH], rows, order)[first]
+            found[last] = _weighed(z[-AHEAD - REACH :], rows, order)[last]
+            found /= dt**order
         if self.input == "position":
             q, v, curved = z, rate, curvature
         else:
