@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from math import factorial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -20,12 +20,13 @@ from hystbench.blocks.curve import (
     weighed,
 )
 from hystbench.blocks.force import Force, Motion, against, exported
-from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.record import FloatArray
 
 INPUTS = ("position", "velocity")
+NUMBERS = ("mass", "damping", "stiffness", "bias")
 REACH = 4
 """Samples on either side that a rate is taken from, where they are there."""
 
@@ -90,15 +91,31 @@ class Impedance(HeldBlock):
     input: str = choice("what the input is", INPUTS, "position")
 
     @classmethod
-    def parts(cls, moved: str, hold: str = "default") -> dict[str, Impedance]:
-        """Give a block for each number, with that at one and the others at zero.
+    def columns(cls, moved: str, hold: Hold, z: FloatArray, dt: float) -> FloatArray:
+        """Give the force of each number at one, with the others at zero.
 
         The force of any impedance is the sum of theirs, times its numbers.
+
+        Parameters
+        ----------
+        moved : {"position", "velocity"}
+            What the motion is.
+        hold : {"zero-order", "linear", "band-limited"}
+        z : ndarray, shape (n,)
+            The motion.
+        dt : float
+            Sampling interval in seconds.
+
+        Returns
+        -------
+        ndarray, shape (n, len(NUMBERS))
         """
-        names = ("mass", "damping", "stiffness", "bias")
-        zero: dict[str, Any] = dict.fromkeys(names, 0.0)
-        zero |= {"input": moved, "hold": hold}
-        return {name: cls(**{**zero, name: 1.0}) for name in names}
+        numbers: dict[str, float] = dict.fromkeys(NUMBERS, 0.0)
+        motion = cls(**numbers, input=moved, hold=hold).motion(z, dt, ())
+        ones = np.ones(len(z))
+        return np.column_stack(
+            [motion.acceleration, motion.velocity, motion.position, ones]
+        )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the force without one that is not linear."""
