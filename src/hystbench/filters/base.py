@@ -21,7 +21,7 @@ from hystbench import kernels
 from hystbench.errors import InputError
 from hystbench.filters.bound import Bound, eigenvalue_bound
 from hystbench.filters.keys import keys_of
-from hystbench.filters.state import End, Result, State, finite, positive
+from hystbench.filters.state import Chunk, End, Result, State, finite, positive
 from hystbench.filters.together import run_together
 from hystbench.record import FloatArray, Record
 
@@ -345,10 +345,8 @@ class AdaptiveFilter(ABC):
     def _adapt_all(
         self,
         filters: Sequence[AdaptiveFilter],
-        line: FloatArray,
-        d: FloatArray,
+        chunk: Chunk,
         ends: Sequence[End],
-        limit: float,
         output: FloatArray,
         error: FloatArray,
         start: int,
@@ -367,19 +365,12 @@ class AdaptiveFilter(ABC):
         list of (int, (ndarray, ndarray))
             What :meth:`_adapt` returns, of each.
         """
-        part = slice(start, start + len(d))
+        part = slice(start, start + len(chunk.d))
         rows = zip(filters, ends, output[:, part], error[:, part], strict=True)
-        return [item._adapt(line, d, *end, limit, y, e) for item, end, y, e in rows]
+        return [item._adapt(chunk, end, y, e) for item, end, y, e in rows]
 
     def _adapt(
-        self,
-        line: FloatArray,
-        d: FloatArray,
-        weights: FloatArray,
-        operators: FloatArray,
-        limit: float,
-        output: FloatArray,
-        error: FloatArray,
+        self, chunk: Chunk, before: End, output: FloatArray, error: FloatArray
     ) -> tuple[int, End]:
         """Run the LMS loop over a chunk, writing output and error.
 
@@ -393,15 +384,16 @@ class AdaptiveFilter(ABC):
         weights, operators : ndarray
             Weights and outputs of the operators after them.
         """
+        weights, operators = before
         lanes, steps = kernels.pad(weights), kernels.pad(2 * self.steps)
         done = 0
-        while done < len(d):
+        while done < len(chunk.d):
             part = slice(done, done + ROWS)
-            chunk = line[done : done + self.history + ROWS]
-            h, operators = self.whole_regressor(chunk, operators)
+            line = chunk.line[done : done + self.history + ROWS]
+            h, operators = self.whole_regressor(line, operators)
             rows = np.zeros((len(h), len(lanes)))
             rows[:, : self.size] = h
-            signals = (d[part], limit, lanes, output[part], error[part])
+            signals = (chunk.d[part], chunk.limit, lanes, output[part], error[part])
             taken = self._rows(rows, len(lanes), steps, *signals)
             done += taken
             if taken < len(h):

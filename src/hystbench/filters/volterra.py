@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from hystbench import kernels
 from hystbench.filters.base import AdaptiveFilter
 from hystbench.filters.bound import Bound, eigenvalue_bound
-from hystbench.filters.state import End, positive
+from hystbench.filters.state import Chunk, End, positive
 from hystbench.record import FloatArray
 
 TILE = 4  # the kernel keeps tiles of 4 x 4 second-order weights
@@ -163,15 +163,9 @@ class VolterraFilter(AdaptiveFilter):
         return 2 * (first + self.second_order_step * power**2)
 
     def _adapt(
-        self,
-        line: FloatArray,
-        d: FloatArray,
-        weights: FloatArray,
-        operators: FloatArray,
-        limit: float,
-        output: FloatArray,
-        error: FloatArray,
+        self, chunk: Chunk, before: End, output: FloatArray, error: FloatArray
     ) -> tuple[int, End]:
+        (line, d, limit), (weights, operators) = chunk, before
         spare = -self.taps % TILE
         parts = [self.taps, self.taps + self.taps**2]
         taps, products, constant = np.split(weights, parts)
