@@ -12,7 +12,6 @@ from hystbench.blocks.parameter import HUGE, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
-from hystbench.errors import InputError
 from hystbench.operators import (
     generalized_play,
     generalized_prandtl_ishlinskii,
@@ -56,16 +55,10 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     thresholds: tuple[float, ...] = numbers(
         "-", "r_i, in the unit of the envelope functions", 0.0, HUGE
     )
-    weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -HUGE, HUGE)
+    weights: tuple[float, ...] = numbers(
+        "Y", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
+    )
     start: str = choice("operators before the first sample", STARTS, "rest")
-
-    def check(self) -> None:
-        """Refuse as many weights as there are no thresholds for."""
-        if len(self.weights) != len(self.thresholds):
-            raise InputError(
-                f"weights: expected {len(self.thresholds)} numbers, one a threshold, "
-                f"got {len(self.weights)}"
-            )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute Eq. 9 for every sample."""

@@ -10,7 +10,6 @@ import numpy as np
 from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
-from hystbench.errors import InputError
 from hystbench.operators import growing_play, play
 from hystbench.record import FloatArray
 
@@ -37,23 +36,20 @@ class HysteresisShape(WrappingBlock):
     reference: ClassVar = "Kuhnen, European Journal of Control 9 (2003) 407-418"
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
-    weights: tuple[float, ...] = numbers("Y/U", "w_i, one a threshold", -HUGE, HUGE)
+    weights: tuple[float, ...] = numbers(
+        "Y/U", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
+    )
     square_weights: tuple[float, ...] = numbers(
-        "Y/U^2", "s_i, one a threshold or none", -HUGE, HUGE, optional=True
+        "Y/U^2",
+        "s_i, one a threshold or none",
+        -HUGE,
+        HUGE,
+        optional=True,
+        as_many_as="thresholds",
     )
     powers: tuple[float, ...] = numbers(
         "Y/U^k", "c_k, from k = 1 on", -HUGE, HUGE, optional=True
     )
-
-    def check(self) -> None:
-        """Refuse as many weights as there are no thresholds for."""
-        for key in ("weights", "square_weights"):
-            given = len(getattr(self, key))
-            if given != len(self.thresholds) and (given or key == "weights"):
-                raise InputError(
-                    f"{key}: expected {len(self.thresholds)} numbers, one a "
-                    f"threshold, got {given}"
-                )
 
     def wrap(
         self,
