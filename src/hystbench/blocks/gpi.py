@@ -14,7 +14,6 @@ from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
 from hystbench.operators import (
     generalized_play,
-    generalized_prandtl_ishlinskii,
     growing_prandtl_ishlinskii,
 )
 from hystbench.rdgpi.model import STARTS
@@ -69,14 +68,11 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
         left, right, rounds = self._envelopes(v)
-        if growth is None:
-            y, _ = generalized_prandtl_ishlinskii(
-                left, right, self.thresholds, self.weights
-            )
-        else:
-            y = growing_prandtl_ishlinskii(
-                left, right, self.thresholds, self.weights, np.tile(growth, rounds)
-            )
+        if growth is not None:
+            growth = np.tile(growth, rounds)
+        y = growing_prandtl_ishlinskii(
+            left, right, self.thresholds, self.weights, growth
+        )
         return y[-len(v) :] if rounds > 1 else y
 
     def operators(self, v: FloatArray) -> FloatArray:

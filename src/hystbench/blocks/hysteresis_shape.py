@@ -10,7 +10,7 @@ import numpy as np
 from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
-from hystbench.operators import growing_play, play
+from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
@@ -60,10 +60,7 @@ class HysteresisShape(WrappingBlock):
         growth: FloatArray | None = None,
     ) -> FloatArray:
         """Add the correction, whose thresholds grow with those inside."""
-        if growth is None:
-            plays, _ = play(v, self.thresholds)
-        else:
-            plays = growing_play(v, self.thresholds, growth)
+        plays = growing_play(v, self.thresholds, growth)
         y: FloatArray = inner.grow(v, u, dt, growth) + plays @ np.array(self.weights)
         if self.square_weights:
             y += (plays * plays) @ np.array(self.square_weights)

@@ -11,7 +11,7 @@ from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
-from hystbench.operators import growing_play, play
+from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
@@ -69,10 +69,7 @@ class PrandtlIshlinskii(HystereticBlock):
         self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
     ) -> FloatArray:
         """Add the weighted plays with all thresholds times ``growth``."""
-        if growth is None:
-            plays, _ = play(v, self.thresholds)
-        else:
-            plays = growing_play(v, self.thresholds, growth)
+        plays = growing_play(v, self.thresholds, growth)
         y: FloatArray = v + plays @ np.array(self.weights)
         if self.square_weights:
             y += plays**2 @ np.array(self.square_weights)
