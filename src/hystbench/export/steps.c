@@ -212,8 +212,8 @@ static double hb_input_delay(double shift, int first, int points, const double *
  * in steps of at most 0.1 radian of the stiffened mode, over segments of an interval in
  * which the force goes straight from corner to corner. mode: displacement, velocity. */
 static double hb_stiffness_hardening(double participation, double phase, double damping,
-                                     double coefficient, double ramp, int segments,
-                                     int points, int ahead, const double *corners,
+                                     double coefficient, int segments, int points,
+                                     int ahead, const double *corners, double ramp,
                                      double *mode, double *history, double z)
 {
 #define HB_BEND(x, v, f) ((f) - (x) * (1 + coefficient * (x) * (x)) - 2 * damping * (v))
