@@ -25,6 +25,11 @@ def short(value: object) -> str:
     return text if len(text) <= LONG else f"{text[: LONG - 3]}..."
 
 
+def in_line(error: BaseException) -> str:
+    """Write what somebody else's code raised, with its kind, in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
 def nearest(name: object, known: Iterable[object]) -> str:
     """End a message with the nearest valid name, or with all of them.
 

@@ -143,8 +143,10 @@ def generalized_prandtl_ishlinskii(
     return y, end[: len(r)].copy()
 
 
-def growing_play(v: FloatArray, thresholds: ArrayLike, growth: ArrayLike) -> FloatArray:
-    """Play operators from rest whose thresholds grow from sample to sample.
+def growing_play(
+    v: FloatArray, thresholds: ArrayLike, growth: ArrayLike | None
+) -> FloatArray:
+    """Play operators from rest whose thresholds may grow from sample to sample.
 
     Parameters
     ----------
@@ -152,8 +154,8 @@ def growing_play(v: FloatArray, thresholds: ArrayLike, growth: ArrayLike) -> Flo
         Input.
     thresholds : array_like, shape (m,)
         Thresholds at a growth of one, none negative.
-    growth : array_like, shape (n,)
-        Factor on all thresholds at each sample, none negative.
+    growth : array_like, shape (n,), or None
+        Factor on all thresholds at each sample, none negative; None for one.
 
     Returns
     -------
@@ -165,6 +167,8 @@ def growing_play(v: FloatArray, thresholds: ArrayLike, growth: ArrayLike) -> Flo
     InputError
         If shapes differ, or a threshold or growth is negative.
     """
+    if growth is None:
+        return play(v, thresholds)[0]
     v, r = _signal("v", v), _thresholds(thresholds)
     factor = _growth(growth, len(v))
     state, outputs = np.zeros(len(r)), np.empty((len(v), len(r)))
@@ -177,16 +181,16 @@ def growing_prandtl_ishlinskii(
     right: FloatArray,
     thresholds: ArrayLike,
     weights: ArrayLike,
-    growth: ArrayLike,
+    growth: ArrayLike | None,
 ) -> FloatArray:
-    """Eq. 9 from rest with thresholds that grow from sample to sample.
+    """Eq. 9 from rest with thresholds that may grow from sample to sample.
 
     Parameters
     ----------
     left, right, thresholds, weights
         As for :func:`generalized_prandtl_ishlinskii`.
-    growth : array_like, shape (n,)
-        Factor on all thresholds at each sample, none negative.
+    growth : array_like, shape (n,), or None
+        Factor on all thresholds at each sample, none negative; None for one.
 
     Returns
     -------
@@ -198,6 +202,8 @@ def growing_prandtl_ishlinskii(
     InputError
         As for :func:`generalized_prandtl_ishlinskii`, or if a growth is negative.
     """
+    if growth is None:
+        return generalized_prandtl_ishlinskii(left, right, thresholds, weights)[0]
     left, right = _envelopes(left, right, "eq4", None, None)
     r, w = _thresholds(thresholds), _array(weights)
     if w.shape != r.shape:

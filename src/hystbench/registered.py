@@ -8,7 +8,7 @@ import pkgutil
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from hystbench.errors import InputError
+from hystbench.errors import InputError, in_line
 
 
 def classes_in(package: str, path: Iterable[str], kind: type) -> dict[str, Any]:
@@ -66,8 +66,9 @@ def with_installed(inside: Mapping[str, Any], group: str, kind: type) -> dict[st
         try:
             item = point.load()
         except Exception as error:  # whatever somebody's module raises
-            told = " ".join(f"{type(error).__name__}: {error}".split())
-            raise InputError(f"{place}: cannot be imported: {told}") from error
+            raise InputError(
+                f"{place}: cannot be imported: {in_line(error)}"
+            ) from error
         if not _is_one(item, kind):
             raise InputError(
                 f"{place}: expected a class derived from {kind.__name__} with a name "

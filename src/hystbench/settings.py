@@ -160,6 +160,10 @@ class Settings:
         files = [file for name in names for file in model_files(name)]
         return list(dict.fromkeys([self.model_file, *files]))
 
+    def _of(self, section: str, *keys: str) -> dict[str, Any]:
+        """Give some keys of a section."""
+        return {key: self.config[section][key] for key in keys}
+
     def signal_job(self, name: str) -> dict[str, Any]:
         """Give a signal's definition and the common values that it takes."""
         return {
@@ -170,8 +174,7 @@ class Settings:
     @property
     def measure_job(self) -> dict[str, Any]:
         """Settings of the twin's measurement."""
-        keys = ("seed", "input_zero_error", "input_noise")
-        return {key: self.config["twin"][key] for key in keys}
+        return self._of("twin", "seed", "input_zero_error", "input_noise")
 
     @property
     def tracking_job(self) -> dict[str, Any]:
@@ -189,12 +192,9 @@ class Settings:
     @property
     def identification_job(self) -> dict[str, Any]:
         """Settings of Algorithm 1, for as many operators as the filter has."""
-        job = {
-            key: value
-            for key, value in self.config["identification"].items()
-            if key != "signal"
-        }
-        return job | {"order": self.config["filters"]["order"]}
+        job = {**self.config["identification"], **self._of("filters", "order")}
+        del job["signal"]
+        return job
 
     def _twin_job(self, *more: str) -> dict[str, Any]:
         names = dict.fromkeys([*self.signals, *more])
@@ -216,8 +216,7 @@ class Settings:
 
     def twin_runs_job(self, model: str) -> dict[str, Any]:
         """Give the settings of one filter on all twins."""
-        keys = ("signal", "orders", "convergence_factor")
-        sweep = {key: self.config["order_sweep"][key] for key in keys}
+        sweep = self._of("order_sweep", "signal", "orders", "convergence_factor")
         return self._twin_job(sweep["signal"]) | {
             "filters": {model: self.filter_job(model)},
             "order_sweep": sweep,
@@ -229,7 +228,7 @@ class Settings:
     def _experiments(self) -> dict[str, Any]:
         """Design of the experiments in which claims are judged on each twin."""
         keys = ("members", "step_factors", "zero_factors", "noise_factors")
-        return {key: self.config["pressure"][key] for key in keys}
+        return self._of("pressure", *keys)
 
     @property
     def twins_job(self) -> dict[str, Any]:
@@ -266,12 +265,11 @@ class Settings:
     @property
     def constants_job(self) -> dict[str, Any]:
         """Settings of the ranking with other constants."""
-        section = self.config["constants"]
         return {
             "signals": {name: self.signal_job(name) for name in self.signals},
             "measure": self.measure_job,
             "filters": self._paper_filter_jobs,
-            **{key: section[key] for key in ("zero_errors", "constant_taps")},
+            **self._of("constants", "zero_errors", "constant_taps"),
             **self.compare_job,
         }
 
@@ -293,7 +291,6 @@ class Settings:
         The step sizes are what it finds, and the published envelope functions made
         the published tables: neither is taken from the filters' settings.
         """
-        section = self.config["calibration"]
         unused = {"convergence_factor", *self.error_job}
         filters = {
             name: {k: v for k, v in self.filter_job(name).items() if k not in unused}
@@ -304,31 +301,24 @@ class Settings:
             "signals": {name: self.signal_job(name) for name in CALIBRATION_SIGNALS},
             "filters": filters,
             "seed": self.config["twin"]["seed"],
-            **{key: section[key] for key in ("starts", "search_seed", "twins")},
+            **self._of("calibration", "starts", "search_seed", "twins"),
         }
 
     @property
     def error_job(self) -> dict[str, Any]:
         """Settings of the errors of any model."""
-        filters = self.config["filters"]
-        return {
-            key: filters[key] for key in ("transient_fraction", "smoothing_fraction")
-        }
+        return self._of("filters", "transient_fraction", "smoothing_fraction")
 
     @property
     def rdgpi_job(self) -> dict[str, Any]:
         """Settings of the identification of the RDGPI model."""
-        return {key: self.config["rdgpi"][key] for key in ("starts", "seed")}
+        return self._of("rdgpi", "starts", "seed")
 
     @property
     def order_sweep_job(self) -> dict[str, Any]:
         """Settings of Figure 7: its orders and each filter's settings."""
-        sweep = self.config["order_sweep"]
-        return {
-            "orders": sweep["orders"],
-            "convergence_factor": sweep["convergence_factor"],
-            "filters": self._filter_jobs,
-        }
+        sweep = self._of("order_sweep", "orders", "convergence_factor")
+        return sweep | {"filters": self._filter_jobs}
 
     @property
     def page_job(self) -> dict[str, Any]:
@@ -369,7 +359,7 @@ class Settings:
         chosen = filter_class(model)
         keys = keys_of(chosen).items()
         job = {name: filters.get(name, key.default) for name, key in keys}
-        job |= {key: filters[key] for key in ("order", "input_before", "constant_tap")}
+        job |= self._of("filters", "order", "input_before", "constant_tap")
         job |= self.error_job
         if chosen.takes_envelopes:
             job["envelopes"] = self.envelopes

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from hystbench.blocks.curve import (
     AHEAD,
-    COARSER,
     POINTS,
+    SHORT_STEPS,
     coarser,
     continued,
     finer,
@@ -109,14 +109,14 @@ def test_other_holds_take_the_samples():
 
 def test_coarser_undoes_finer():
     v = sine(0.05) + 0.3 * sine(0.2)
-    found = coarser(finer(v, COARSER))
+    found = coarser(finer(v, SHORT_STEPS))
     assert found.shape == v.shape
     np.testing.assert_allclose(found[MIDDLE], v[MIDDLE], atol=3e-3)
 
 
 @pytest.mark.parametrize(("frequency", "size"), [(0.3, 1.0), (0.62, 0.0), (1.4, 0.0)])
 def test_coarser_passes_what_is_below_half_the_coarse_rate(frequency, size):
-    place = np.arange((SAMPLES - 1) * COARSER + 1) / COARSER
+    place = np.arange((SAMPLES - 1) * SHORT_STEPS + 1) / SHORT_STEPS
     fine = np.sin(2 * np.pi * frequency * place)
     wanted = size * np.sin(2 * np.pi * frequency * np.arange(SAMPLES))
     np.testing.assert_allclose(coarser(fine)[MIDDLE], wanted[MIDDLE], atol=3e-3)

@@ -79,7 +79,7 @@ def test_settled_it_has_passed_the_input_once_before(growth):
 
 
 def test_a_weight_for_each_threshold():
-    with pytest.raises(InputError, match="expected 2 numbers, one a threshold, got 1"):
+    with pytest.raises(InputError, match="2 numbers, as many as thresholds, got 1"):
         GeneralizedPrandtlIshlinskii(
             envelope=ENVELOPE, thresholds=[0.0, 0.1], weights=[1.0]
         )

@@ -220,7 +220,7 @@ def test_a_transfer_function_that_cannot_be_simulated_is_refused(values, message
 
 
 def test_creep_needs_a_time_constant_for_each_magnitude():
-    with pytest.raises(InputError, match="expected 2 numbers, one a time constant"):
+    with pytest.raises(InputError, match="expected 2 numbers, as many as time_cons"):
         Creep(magnitudes=[0.1], time_constants_s=[1.0, 2.0])
 
 

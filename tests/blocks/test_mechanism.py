@@ -220,6 +220,76 @@ def test_stribeck_friction_makes_a_slow_drive_stick_and_slip():
     assert len(slips) >= 2
 
 
+#: A static force of 0.4 N that fades to 0.1 N with the velocity.
+STRIBECK = {"coulomb": 0.1, "static_excess": 0.3, "stribeck_velocity": 3e-3}
+SLIDER = Mechanism(mass=0.1, damping=1.0, stiffness=0.0)
+
+
+def held_then_loose(given, t):
+    """Integrate a mass that sticks on a spring of 400 N/m, then slides.
+
+    It breaks loose where the spring reaches the force of sliding at its velocity; from
+    there on it must not turn back. Gives the way, and when it broke loose, if it did.
+    """
+
+    def sliding(v):
+        return 0.1 + 0.3 * np.exp(-((v / 3e-3) ** 2))
+
+    def stuck(at, state):
+        q, v = state
+        return [v, (given(at) - v - 400 * q) / 0.1]
+
+    def slides(at, state):
+        v = state[1]
+        return [v, (given(at) - v - sliding(v)) / 0.1]
+
+    def holds(at, state):
+        return sliding(state[1]) - 400 * abs(state[0])
+
+    holds.terminal = True
+    settings = {"method": "DOP853", "rtol": 1e-10, "atol": 1e-13, "max_step": 0.01}
+    ends = t[0], t[-1]
+    held = solve_ivp(
+        stuck, ends, (0.0, 0.0), events=holds, dense_output=True, **settings
+    )
+    if held.status == 0:
+        return held.sol(t)[0], None
+    begin = held.t[-1]
+    later = t[t > begin]
+    loose = solve_ivp(slides, (begin, t[-1]), held.y[:, -1], t_eval=later, **settings)
+    assert loose.y[1].min() > 0
+    return np.append(held.sol(t[t <= begin])[0], loose.y[0]), begin
+
+
+@pytest.mark.parametrize(
+    ("most", "ramp_s", "dt", "off"),
+    [
+        # Below the static force it stays: a step in which it slides off would fulfil
+        # the equations of a step as well, as the force falls with the velocity.
+        (0.3, 2.0, 1e-2, 0.01),
+        # Beyond it slides; in long steps it breaks loose a little early.
+        (0.6, 1.0, 1e-2, 0.15),
+        (0.6, 1.0, 1e-3, 0.001),
+    ],
+)
+def test_friction_that_falls_with_the_velocity_holds_up_to_the_static_force(
+    most, ramp_s, dt, off
+):
+    def ramp(t):
+        return most * np.minimum(t / ramp_s, 1.0)
+
+    friction = force("friction-force", presliding_distance=1e-3, **STRIBECK)
+    t = np.arange(round(1.5 * ramp_s / dt) + 1) * dt
+    wanted, loose = held_then_loose(ramp, t)
+    assert (loose is None) == (most < 0.4)
+    found = run(SLIDER, [friction], ramp(t), dt)
+    assert np.abs(found - wanted).max() < off * np.ptp(wanted)
+    if loose is None:
+        assert found[-1] == pytest.approx(0.3 / 400, rel=off)
+    else:
+        assert found[-1] > 100 * 1e-3
+
+
 def test_outputs_agree_with_each_other():
     forces, _ = SMOOTH["two"]
     t = np.arange(4000) * 5e-4

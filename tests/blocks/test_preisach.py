@@ -176,7 +176,7 @@ def test_a_missing_sample_shows():
     ("change", "message"),
     [
         ({"cells": 12.5}, "cells: expected a whole number, got 12.5"),
-        ({"centres": [0.0]}, "centres: expected 2 numbers, one a weight, got 1"),
+        ({"centres": [0.0]}, "centres: expected 2 numbers, as many as weights, got 1"),
         ({"weights": [-1.0, 0.0]}, r"weights\[0\]: -1 is out of bounds"),
     ],
 )

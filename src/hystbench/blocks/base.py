@@ -70,9 +70,18 @@ class Block(ABC):
 
     def __post_init__(self) -> None:
         """Check every value against its declaration, then all of them together."""
-        for key, about in self.parameters().items():
+        declared = self.parameters()
+        for key, about in declared.items():
             checked = about.check(key, getattr(self, key))
             object.__setattr__(self, key, checked)
+        for key, about in declared.items():
+            if not (other := about.as_many_as):
+                continue
+            count, wanted = len(getattr(self, key)), len(getattr(self, other))
+            if count != wanted and (count or not about.may_be_empty):
+                raise InputError(
+                    f"{key}: expected {wanted} numbers, as many as {other}, got {count}"
+                )
         self.check()
 
     def check(self) -> None:  # noqa: B027

@@ -8,7 +8,7 @@ from typing import ClassVar
 from hystbench.blocks.parameter import HUGE, number
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
-from hystbench.operators import growing_play, play
+from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
@@ -45,10 +45,7 @@ class Butterfly(WrappingBlock):
         growth: FloatArray | None = None,
     ) -> FloatArray:
         """Add the square, whose threshold grows with those inside."""
-        if growth is None:
-            moved, _ = play(v, [self.threshold])
-        else:
-            moved = growing_play(v, [self.threshold], growth)
+        moved = growing_play(v, [self.threshold], growth)
         return inner.grow(v, u, dt, growth) + self.coefficient * moved[:, 0] ** 2
 
     def step(self, sampling: Sampling) -> Step:

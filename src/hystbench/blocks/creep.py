@@ -10,7 +10,6 @@ import numpy as np
 from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.parameter import numbers
 from hystbench.blocks.state_space import StateSpace
-from hystbench.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -33,16 +32,10 @@ class Creep(LinearBlock):
         "Croft, Shed, Devasia, J. Dyn. Sys., Meas., Control 123 (2001) 35-43"
     )
 
-    magnitudes: tuple[float, ...] = numbers("-", "m_j", -10.0, 10.0)
+    magnitudes: tuple[float, ...] = numbers(
+        "-", "m_j", -10.0, 10.0, as_many_as="time_constants_s"
+    )
     time_constants_s: tuple[float, ...] = numbers("s", "tau_j", 1e-6, 1e6)
-
-    def check(self) -> None:
-        """Refuse magnitudes without time constants."""
-        if len(self.magnitudes) != len(self.time_constants_s):
-            raise InputError(
-                f"magnitudes: expected {len(self.time_constants_s)} numbers, one a "
-                f"time constant, got {len(self.magnitudes)}"
-            )
 
     def continuous(self) -> StateSpace:
         """Return one state for each time constant."""

@@ -241,14 +241,18 @@ def _corners() -> FloatArray:
     return np.array([corner(POINTS, -0.5 - AHEAD), corner(POINTS, -AHEAD)])
 
 
-COARSER = 8
-"""How many times :func:`coarser` samples less often."""
+SHORT_STEPS = 8
+"""Steps of a sampling interval for what may turn between two samples.
+
+Hysteresis and friction take that many where the input is band-limited.
+"""
 _RINGS = AHEAD - 1
-"""Coarse samples on either side that its filter reaches."""
+"""Coarse samples on either side that the filter of :func:`coarser` reaches."""
 _STOP = 60.0
-"""Attenuation of its filter in dB, from 0.57 of the coarse sampling rate on."""
+"""Attenuation of that filter in dB, from 0.57 of the coarse sampling rate on."""
 
 
+@lru_cache(maxsize=1)
 def low_pass_taps() -> FloatArray:
     """Give the filter of :func:`coarser`: a sine over its argument, in Kaiser's window.
 
@@ -260,36 +264,35 @@ def low_pass_taps() -> FloatArray:
 
     Returns
     -------
-    ndarray, shape (2 COARSER _RINGS + 1,)
+    ndarray, shape (2 SHORT_STEPS _RINGS + 1,)
+        Not to be written to.
     """
-    place = np.arange(-COARSER * _RINGS, COARSER * _RINGS + 1)
-    taps = np.sinc(place / COARSER) * np.kaiser(len(place), 0.1102 * (_STOP - 8.7))
-    normalized: FloatArray = taps / taps.sum()
-    return normalized
+    place = np.arange(-SHORT_STEPS * _RINGS, SHORT_STEPS * _RINGS + 1)
+    taps: FloatArray = np.sinc(place / SHORT_STEPS) * np.kaiser(
+        len(place), 0.1102 * (_STOP - 8.7)
+    )
+    taps /= taps.sum()
+    taps.setflags(write=False)
+    return taps
 
 
 def coarser(v: FloatArray) -> FloatArray:
-    """Sample a signal :data:`COARSER` times coarser, behind a low-pass filter.
+    """Sample a signal :data:`SHORT_STEPS` times coarser, behind a low-pass filter.
 
     What is above half of the coarse sampling rate is left out, as by an instrument that
     samples without aliasing. The signal goes on at both ends, turned about them.
 
     Parameters
     ----------
-    v : ndarray, shape ((n - 1) COARSER + 1,)
+    v : ndarray, shape ((n - 1) SHORT_STEPS + 1,)
 
     Returns
     -------
     ndarray, shape (n,)
     """
-    taps = _taps()
-    count, reach = (len(v) - 1) // COARSER + 1, len(taps) // 2
+    taps = low_pass_taps()
+    count, reach = (len(v) - 1) // SHORT_STEPS + 1, len(taps) // 2
     around = _turned(v, reach, reach)
     out = np.empty(count)
-    kernels.call("hb_decimated", count, COARSER, len(taps), taps, around, out)
+    kernels.call("hb_decimated", count, SHORT_STEPS, len(taps), taps, around, out)
     return out
-
-
-@lru_cache(maxsize=1)
-def _taps() -> FloatArray:
-    return low_pass_taps()

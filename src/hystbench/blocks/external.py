@@ -16,7 +16,7 @@ import numpy as np
 from hystbench.blocks.kept_outputs import source_digest
 from hystbench.blocks.parameter import text
 from hystbench.blocks.simulator import Simulator, called_with, checked
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, in_line, nearest
 from hystbench.record import FloatArray
 
 FORM = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
@@ -77,8 +77,7 @@ def called(name: str, z: FloatArray, dt: float) -> FloatArray:
         given = function(np.array(z), dt)
     except (Exception, SystemExit) as error:
         # Whatever a user's program raises is to be told in one line.
-        said = " ".join(f"{type(error).__name__}: {error}".split())
-        raise InputError(f"{call}, it raised {said}") from error
+        raise InputError(f"{call}, it raised {in_line(error)}") from error
     return checked(call, z, given)
 
 
@@ -100,10 +99,9 @@ def imported(name: str) -> Callable[[FloatArray, float], Any]:
     try:
         found: Any = importlib.import_module(module_name)
     except (Exception, SystemExit) as error:
-        said = " ".join(f"{type(error).__name__}: {error}".split())
         raise InputError(
-            f"{name}: cannot import {module_name!r} ({said}); expected a module that "
-            f"is installed or lies in {here}"
+            f"{name}: cannot import {module_name!r} ({in_line(error)}); expected a "
+            f"module that is installed or lies in {here}"
         ) from error
     for part in path.split("."):
         known = [

@@ -20,7 +20,7 @@ from hystbench.blocks.simulator import (
     file_of,
     same_file,
 )
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError, in_line, nearest
 from hystbench.libraries import library
 from hystbench.record import FloatArray
 
@@ -80,8 +80,7 @@ class Fmu(Simulator):
             )
         except Exception as error:
             # A unit, and FMPy of it, may raise anything.
-            said = " ".join(f"{type(error).__name__}: {error}".split())
-            raise InputError(f"{call}, it failed: {said}") from error
+            raise InputError(f"{call}, it failed: {in_line(error)}") from error
         return checked(call, z, found[gives])
 
 
@@ -100,9 +99,8 @@ def _unpacked(fmpy: Any, label: str, path: str, changed: int, size: int) -> _Uni
         description = fmpy.read_model_description(path, validate=False)
         folder = fmpy.extract(path)
     except Exception as error:
-        said = " ".join(f"{type(error).__name__}: {error}".split())
         raise InputError(
-            f"{label}: cannot be read ({said}); expected {EXPECTED}"
+            f"{label}: cannot be read ({in_line(error)}); expected {EXPECTED}"
         ) from error
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     if description.coSimulation is None:

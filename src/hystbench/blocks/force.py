@@ -19,7 +19,7 @@ KINDS = (
     *("drag", "hysteretic", "gravity", "slider", "smooth"),
 )
 """Laws of the kernel, by the number that they have in kernels/forces.c and, exported,
-in export/inside.py."""
+in export/forces.py."""
 ROW = 6
 """Numbers of a row of the kernel."""
 

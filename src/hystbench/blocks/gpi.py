@@ -12,10 +12,8 @@ from hystbench.blocks.parameter import HUGE, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
-from hystbench.errors import InputError
 from hystbench.operators import (
     generalized_play,
-    generalized_prandtl_ishlinskii,
     growing_prandtl_ishlinskii,
 )
 from hystbench.rdgpi.model import STARTS
@@ -56,16 +54,10 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     thresholds: tuple[float, ...] = numbers(
         "-", "r_i, in the unit of the envelope functions", 0.0, HUGE
     )
-    weights: tuple[float, ...] = numbers("Y", "w_i, one a threshold", -HUGE, HUGE)
+    weights: tuple[float, ...] = numbers(
+        "Y", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
+    )
     start: str = choice("operators before the first sample", STARTS, "rest")
-
-    def check(self) -> None:
-        """Refuse as many weights as there are no thresholds for."""
-        if len(self.weights) != len(self.thresholds):
-            raise InputError(
-                f"weights: expected {len(self.thresholds)} numbers, one a threshold, "
-                f"got {len(self.weights)}"
-            )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute Eq. 9 for every sample."""
@@ -76,14 +68,11 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     ) -> FloatArray:
         """Compute Eq. 9 with all thresholds times ``growth``."""
         left, right, rounds = self._envelopes(v)
-        if growth is None:
-            y, _ = generalized_prandtl_ishlinskii(
-                left, right, self.thresholds, self.weights
-            )
-        else:
-            y = growing_prandtl_ishlinskii(
-                left, right, self.thresholds, self.weights, np.tile(growth, rounds)
-            )
+        if growth is not None:
+            growth = np.tile(growth, rounds)
+        y = growing_prandtl_ishlinskii(
+            left, right, self.thresholds, self.weights, growth
+        )
         return y[-len(v) :] if rounds > 1 else y
 
     def operators(self, v: FloatArray) -> FloatArray:

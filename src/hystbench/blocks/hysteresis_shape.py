@@ -10,8 +10,7 @@ import numpy as np
 from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
-from hystbench.errors import InputError
-from hystbench.operators import growing_play, play
+from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
@@ -37,23 +36,20 @@ class HysteresisShape(WrappingBlock):
     reference: ClassVar = "Kuhnen, European Journal of Control 9 (2003) 407-418"
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
-    weights: tuple[float, ...] = numbers("Y/U", "w_i, one a threshold", -HUGE, HUGE)
+    weights: tuple[float, ...] = numbers(
+        "Y/U", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
+    )
     square_weights: tuple[float, ...] = numbers(
-        "Y/U^2", "s_i, one a threshold or none", -HUGE, HUGE, optional=True
+        "Y/U^2",
+        "s_i, one a threshold or none",
+        -HUGE,
+        HUGE,
+        optional=True,
+        as_many_as="thresholds",
     )
     powers: tuple[float, ...] = numbers(
         "Y/U^k", "c_k, from k = 1 on", -HUGE, HUGE, optional=True
     )
-
-    def check(self) -> None:
-        """Refuse as many weights as there are no thresholds for."""
-        for key in ("weights", "square_weights"):
-            given = len(getattr(self, key))
-            if given != len(self.thresholds) and (given or key == "weights"):
-                raise InputError(
-                    f"{key}: expected {len(self.thresholds)} numbers, one a "
-                    f"threshold, got {given}"
-                )
 
     def wrap(
         self,
@@ -64,10 +60,7 @@ class HysteresisShape(WrappingBlock):
         growth: FloatArray | None = None,
     ) -> FloatArray:
         """Add the correction, whose thresholds grow with those inside."""
-        if growth is None:
-            plays, _ = play(v, self.thresholds)
-        else:
-            plays = growing_play(v, self.thresholds, growth)
+        plays = growing_play(v, self.thresholds, growth)
         y: FloatArray = inner.grow(v, u, dt, growth) + plays @ np.array(self.weights)
         if self.square_weights:
             y += (plays * plays) @ np.array(self.square_weights)

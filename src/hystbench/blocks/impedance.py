@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from math import factorial
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from hystbench.blocks.curve import (
     AHEAD,
-    COARSER,
     POINTS,
+    SHORT_STEPS,
     about_sample,
     coarser,
     low_pass_taps,
@@ -20,12 +20,13 @@ from hystbench.blocks.curve import (
     weighed,
 )
 from hystbench.blocks.force import Force, Motion, against, exported
-from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.record import FloatArray
 
 INPUTS = ("position", "velocity")
+NUMBERS = ("mass", "damping", "stiffness", "bias")
 REACH = 4
 """Samples on either side that a rate is taken from, where they are there."""
 
@@ -90,15 +91,31 @@ class Impedance(HeldBlock):
     input: str = choice("what the input is", INPUTS, "position")
 
     @classmethod
-    def parts(cls, moved: str, hold: str = "default") -> dict[str, Impedance]:
-        """Give a block for each number, with that at one and the others at zero.
+    def columns(cls, moved: str, hold: Hold, z: FloatArray, dt: float) -> FloatArray:
+        """Give the force of each number at one, with the others at zero.
 
         The force of any impedance is the sum of theirs, times its numbers.
+
+        Parameters
+        ----------
+        moved : {"position", "velocity"}
+            What the motion is.
+        hold : {"zero-order", "linear", "band-limited"}
+        z : ndarray, shape (n,)
+            The motion.
+        dt : float
+            Sampling interval in seconds.
+
+        Returns
+        -------
+        ndarray, shape (n, len(NUMBERS))
         """
-        names = ("mass", "damping", "stiffness", "bias")
-        zero: dict[str, Any] = dict.fromkeys(names, 0.0)
-        zero |= {"input": moved, "hold": hold}
-        return {name: cls(**{**zero, name: 1.0}) for name in names}
+        numbers: dict[str, float] = dict.fromkeys(NUMBERS, 0.0)
+        motion = cls(**numbers, input=moved, hold=hold).motion(z, dt, ())
+        ones = np.ones(len(z))
+        return np.column_stack(
+            [motion.acceleration, motion.velocity, motion.position, ones]
+        )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the force without one that is not linear."""
@@ -168,7 +185,7 @@ class Impedance(HeldBlock):
             "rate": np.ravel(rate) / dt,
             "curvature": np.ravel(curvature) / dt**2,
             "way": way * dt,
-            "fine": COARSER if between else 0,
+            "fine": SHORT_STEPS if between else 0,
             "dt": dt,
             "width": len(taps),
             "taps": taps,
@@ -197,11 +214,13 @@ class Impedance(HeldBlock):
         if self.holding != "band-limited" or len(z) < 3:
             q, v, curved = self._moved(z, dt)
             return Motion(q, v, curved, against(forces, q, v))
-        way, *slopes = weighed(z, _of_curve())
-        rate, curvature = _rate(z, dt), _curvature(z, dt)
-        # The curve is turned about its ends, which gives its derivatives a kink there.
-        inner = slice(AHEAD + 1, -AHEAD)
-        rate[inner], curvature[inner] = slopes[0][inner] / dt, slopes[1][inner] / dt**2
+        way, rate, curvature = weighed(z, _of_curve())
+        # The curve is turned about its ends: its derivatives have a kink there.
+        first, last = slice(AHEAD + 1), slice(-AHEAD, None)
+        for found, rows, order in ((rate, RATE, 1), (curvature, CURVATURE, 2)):
+            found[first] = _weighed(z[: AHEAD + 1 + REACH], rows, order)[first]
+            found[last] = _weighed(z[-AHEAD - REACH :], rows, order)[last]
+            found /= dt**order
         if self.input == "position":
             q, v, curved = z, rate, curvature
         else:
@@ -215,19 +234,19 @@ class Impedance(HeldBlock):
     def _between(
         self, z: FloatArray, q: FloatArray, dt: float
     ) -> tuple[FloatArray, FloatArray]:
-        """Give position and velocity ``COARSER`` times finer.
+        """Give position and velocity ``SHORT_STEPS`` times finer.
 
         The velocity takes straight lines: the mean one of an interval is that in the
         middle of it. A device that stops between two samples rests soon after; the
         band-limited curve would go on to and fro, and friction with it.
         """
         samples = np.arange(len(z))
-        fine = np.arange((len(z) - 1) * COARSER + 1) / COARSER
+        fine = np.arange((len(z) - 1) * SHORT_STEPS + 1) / SHORT_STEPS
         if self.input == "velocity":
             velocity = np.interp(fine, samples, z)
         else:
             velocity = np.interp(fine, samples[:-1] + 0.5, np.diff(z) / dt)
-        steps = (velocity[1:] + velocity[:-1]) / 2 * (dt / COARSER)
+        steps = (velocity[1:] + velocity[:-1]) / 2 * (dt / SHORT_STEPS)
         return np.append(q[0], q[0] + np.cumsum(steps)), velocity
 
     def _moved(

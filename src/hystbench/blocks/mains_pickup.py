@@ -10,7 +10,6 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import HUGE, number, numbers
 from hystbench.blocks.step import Sampling, Step
-from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 
@@ -31,15 +30,9 @@ class MainsPickup(Block):
 
     frequency_hz: float = number("Hz", "f, of the fundamental", 1e-3, 1e6)
     amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic", -HUGE, HUGE)
-    phases: tuple[float, ...] = numbers("rad", "one a harmonic", -1e3, 1e3)
-
-    def check(self) -> None:
-        """Refuse amplitudes without phases."""
-        if len(self.phases) != len(self.amplitudes):
-            raise InputError(
-                f"phases: expected {len(self.amplitudes)} numbers, one an amplitude, "
-                f"got {len(self.phases)}"
-            )
+    phases: tuple[float, ...] = numbers(
+        "rad", "one a harmonic", -1e3, 1e3, as_many_as="amplitudes"
+    )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Add the hum."""

@@ -10,12 +10,12 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.curve import AHEAD, held_lines
+from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Force, Motion, exported, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
 from hystbench.blocks.state_space import StateSpace, discretise
-from hystbench.blocks.step import TURNED, Sampling, Step, line_corners, smooth_curve
+from hystbench.blocks.step import TURNED, Sampling, Step, lines_of
 from hystbench.blocks.transfer_function import STARTS, path_from
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -149,21 +149,14 @@ class Mechanism(HeldBlock):
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Do so with forces inside."""
-        ahead = sampling.ahead
-        segments, points, corners = line_corners(
-            self.holding, sampling.curve_points, ahead
-        )
-        line = sampling.dt / segments
+        lines = lines_of(self.holding, sampling)
+        line = sampling.dt / lines.segments
         parts = self._parts(line, forces)
         balanced = 0.0 if self.start == "rest" else self.stiffness
         constants = {
             "gain": self.gain,
             "bias": self.bias,
-            "segments": segments,
-            "points": points,
-            "ahead": ahead,
-            "corners": corners,
-            "ramp": float(self.holding != "zero-order"),
+            **lines.constants,
             "parts": parts,
             "h": line / parts,
             "step": self._steps(line / parts).ravel(),
@@ -171,16 +164,9 @@ class Mechanism(HeldBlock):
             "start": np.array([self.start_position, self.start_velocity, balanced]),
             **exported(forces),
         }
-        states = {"motion": 2, "memory": max(len(forces), 1), "history": 1 + points}
-        smooth = segments > 1
-        return Step(
-            "mechanism",
-            constants,
-            states,
-            gains=AHEAD * smooth,
-            past=TURNED if self.start == "moving" else "",
-            differs=smooth_curve(points - 1, ahead) if smooth else "",
-        )
+        states = {"motion": 2, "memory": max(len(forces), 1), **lines.states}
+        past = TURNED if self.start == "moving" else ""
+        return Step("mechanism", constants, states, past=past, **lines.told)
 
     def _shown(self) -> FloatArray:
         """Weights of q, q', the forces inside and the driving force in the output."""

@@ -17,7 +17,7 @@ from hystbench.blocks.simulator import (
     file_of,
     same_file,
 )
-from hystbench.errors import InputError
+from hystbench.errors import InputError, in_line
 from hystbench.libraries import library
 from hystbench.record import FloatArray
 
@@ -80,8 +80,7 @@ class Onnx(Simulator):
             found = session.run([session.get_outputs()[0].name], feed)[0]
         except Exception as error:
             # The runtime raises anything of a graph that does not fit.
-            said = " ".join(f"{type(error).__name__}: {error}".split())
-            raise InputError(f"{call}, it failed: {said}") from error
+            raise InputError(f"{call}, it failed: {in_line(error)}") from error
         given = np.asarray(found)
         return checked(call, z, given.reshape(-1) if given.size == len(z) else given)
 
@@ -97,9 +96,8 @@ def _session(runtime: Any, label: str, path: str, changed: int, size: int) -> An
             path, options, providers=["CPUExecutionProvider"]
         )
     except Exception as error:
-        said = " ".join(f"{type(error).__name__}: {error}".split())
         raise InputError(
-            f"{label}: cannot be read ({said}); expected {EXPECTED}"
+            f"{label}: cannot be read ({in_line(error)}); expected {EXPECTED}"
         ) from error
 
 

@@ -43,6 +43,8 @@ class Parameter:
         Words that a choice may take.
     may_be_empty : bool
         Whether a sequence may have no numbers at all.
+    as_many_as : str
+        Another sequence of the block, of as many numbers; none for any count.
     """
 
     kind: Kind
@@ -53,6 +55,7 @@ class Parameter:
     names: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
     may_be_empty: bool = False
+    as_many_as: str = ""
 
     def check(self, name: str, value: object) -> Value:
         """Return the value as float, tuple of float or text.
@@ -136,9 +139,12 @@ def numbers(
     high: float = math.inf,
     names: tuple[str, ...] = (),
     optional: bool = False,
+    as_many_as: str = "",
 ) -> Any:
     """Declare a parameter that is a sequence of numbers; an optional one may be ()."""
-    about = Parameter("numbers", unit, meaning, low, high, names, may_be_empty=optional)
+    about = Parameter(
+        "numbers", unit, meaning, low, high, names, (), optional, as_many_as
+    )
     return _declare(about, () if optional else MISSING)
 
 

@@ -11,8 +11,7 @@ from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
-from hystbench.errors import InputError
-from hystbench.operators import growing_play, play
+from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
@@ -42,23 +41,25 @@ class PrandtlIshlinskii(HystereticBlock):
     )
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
-    weights: tuple[float, ...] = numbers("-", "w_i, one a threshold", -HUGE, HUGE)
+    weights: tuple[float, ...] = numbers(
+        "-", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
+    )
     square_weights: tuple[float, ...] = numbers(
-        "1/U", "s_i, one a threshold or none", -HUGE, HUGE, optional=True
+        "1/U",
+        "s_i, one a threshold or none",
+        -HUGE,
+        HUGE,
+        optional=True,
+        as_many_as="thresholds",
     )
     cube_weights: tuple[float, ...] = numbers(
-        "1/U^2", "c_i, one a threshold or none", -HUGE, HUGE, optional=True
+        "1/U^2",
+        "c_i, one a threshold or none",
+        -HUGE,
+        HUGE,
+        optional=True,
+        as_many_as="thresholds",
     )
-
-    def check(self) -> None:
-        """Refuse as many weights as there are no thresholds for."""
-        for key in ("weights", "square_weights", "cube_weights"):
-            given = len(getattr(self, key))
-            if given != len(self.thresholds) and (given or key == "weights"):
-                raise InputError(
-                    f"{key}: expected {len(self.thresholds)} numbers, one a "
-                    f"threshold, got {given}"
-                )
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Add the weighted plays."""
@@ -68,10 +69,7 @@ class PrandtlIshlinskii(HystereticBlock):
         self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
     ) -> FloatArray:
         """Add the weighted plays with all thresholds times ``growth``."""
-        if growth is None:
-            plays, _ = play(v, self.thresholds)
-        else:
-            plays = growing_play(v, self.thresholds, growth)
+        plays = growing_play(v, self.thresholds, growth)
         y: FloatArray = v + plays @ np.array(self.weights)
         if self.square_weights:
             y += plays**2 @ np.array(self.square_weights)

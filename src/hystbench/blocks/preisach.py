@@ -47,26 +47,24 @@ class Preisach(HystereticBlock):
     weights: tuple[float, ...] = numbers(
         "Y", "swing of the output by each cluster of relays", 0.0, HUGE
     )
-    centres: tuple[float, ...] = numbers("U", "mean of (a + b) / 2", -HUGE, HUGE)
-    centre_spreads: tuple[float, ...] = numbers(
-        "U", "standard deviation of (a + b) / 2", TINY, HUGE
+    centres: tuple[float, ...] = numbers(
+        "U", "mean of (a + b) / 2", -HUGE, HUGE, as_many_as="weights"
     )
-    half_widths: tuple[float, ...] = numbers("U", "mean of (a - b) / 2", 0.0, HUGE)
+    centre_spreads: tuple[float, ...] = numbers(
+        "U", "standard deviation of (a + b) / 2", TINY, HUGE, as_many_as="weights"
+    )
+    half_widths: tuple[float, ...] = numbers(
+        "U", "mean of (a - b) / 2", 0.0, HUGE, as_many_as="weights"
+    )
     half_width_spreads: tuple[float, ...] = numbers(
-        "U", "standard deviation of (a - b) / 2", TINY, HUGE
+        "U", "standard deviation of (a - b) / 2", TINY, HUGE, as_many_as="weights"
     )
     cells: float = number("-", "cells of the grid along each axis", 2, 1000, 128.0)
 
     def check(self) -> None:
-        """Refuse lists of different lengths and a grid that is no grid."""
+        """Refuse a grid that is no grid."""
         if self.cells != int(self.cells):
             raise InputError(f"cells: expected a whole number, got {self.cells:g}")
-        for key in ("centres", "centre_spreads", "half_widths", "half_width_spreads"):
-            if len(getattr(self, key)) != len(self.weights):
-                raise InputError(
-                    f"{key}: expected {len(self.weights)} numbers, one a weight, "
-                    f"got {len(getattr(self, key))}"
-                )
 
     @cached_property
     def cell_weights(self) -> FloatArray:

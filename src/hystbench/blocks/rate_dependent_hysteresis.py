@@ -12,6 +12,7 @@ from hystbench.blocks.curve import (
     AHEAD,
     CENTRAL,
     POINTS,
+    SHORT_STEPS,
     central_difference,
     finer,
     value_at,
@@ -24,7 +25,6 @@ from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.record import FloatArray
 
 FORMS = ("growing-thresholds", "excess-field", "acting-field")
-OVERSAMPLING = 8
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
 
     The rate is a central difference, one-sided at the ends. Where v turns it is zero
     for an instant only, and the thresholds are narrow for as long: with a band-limited
-    hold all are computed on a grid that is ``OVERSAMPLING`` times finer, the rate of
+    hold all are computed on a grid that is ``SHORT_STEPS`` times finer, the rate of
     the curve that leads up to each sample.
 
     References
@@ -85,7 +85,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         growth: FloatArray | None = None,
     ) -> FloatArray:
         """Drive the hysteresis with larger thresholds or with less field."""
-        fine = OVERSAMPLING if self.holding == "band-limited" and len(v) > 2 else 1
+        fine = SHORT_STEPS if self.holding == "band-limited" and len(v) > 2 else 1
         given = v
         if fine > 1:
             place = np.arange((len(v) - 1) * fine + 1) / fine
@@ -119,7 +119,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         newest, which a central difference needs.
         """
         points = sampling.curve_points
-        fine = OVERSAMPLING if self.holding == "band-limited" else 1
+        fine = SHORT_STEPS if self.holding == "band-limited" else 1
         ahead = sampling.ahead
         places = np.arange(1 - fine, 1) / fine - ahead
         rates = _rate_weights(points, ahead, fine)

@@ -38,7 +38,20 @@ def discretise(
     """Integrate the state equation over one sampling interval.
 
     Returns ``phi``, ``now``, ``following`` of ``x(k+1) = phi x(k) + now v(k) +
-    following v(k+1)``, by one matrix exponential [1]_.
+    following v(k+1)``.
+    """
+    phi, step, ramp = _exponential(system, dt)
+    if hold == "zero-order":
+        return phi, step, np.zeros(len(step))
+    return phi, step - ramp, ramp
+
+
+def _exponential(
+    system: StateSpace, dt: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Give what is left of the state after one interval, and what an input adds to it.
+
+    The input is a one, and a ramp from zero to one; by one matrix exponential [1]_.
 
     References
     ----------
@@ -56,10 +69,7 @@ def discretise(
     with np.errstate(over="ignore", invalid="ignore"):
         exponential = expm(augmented)
     phi = np.ascontiguousarray(exponential[:m, :m])
-    step, ramp = exponential[:m, m], exponential[:m, m + 1]
-    if hold == "zero-order":
-        return phi, step, np.zeros(m)
-    return phi, step - ramp, ramp
+    return phi, exponential[:m, m], exponential[:m, m + 1]
 
 
 def discretise_modes(
@@ -226,10 +236,5 @@ def _over_interval(system: StateSpace, dt: float) -> tuple[FloatArray, FloatArra
     if system.is_diagonal:
         x = np.diag(system.a) * dt
         return np.diag(np.exp(x)), system.b * dt * _over(np.expm1(x), x, 1.0)
-    from scipy.linalg import expm  # late: a filter's process never needs it
-
-    n = len(system.b)
-    augmented = np.zeros((n + 1, n + 1))
-    augmented[:n, :n], augmented[:n, n] = system.a * dt, system.b * dt
-    exponential = expm(augmented)
-    return exponential[:n, :n], exponential[:n, n]
+    phi, step, _ = _exponential(system, dt)
+    return phi, step

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -110,34 +110,48 @@ def polynomial(*coefficients: float) -> Step:
     return Step("polynomial", {"count": count, "coefficients": np.array(coefficients)})
 
 
-def line_corners(hold: str, points: int, ahead: int = 0) -> tuple[int, int, FloatArray]:
-    """Give what straight lines between two samples take of the newest samples.
+class Lines(NamedTuple):
+    """Straight lines between two samples, along which a step's function moves."""
+
+    segments: int
+    """Of an interval."""
+    constants: dict[str, Any]
+    """What the function takes: corners are weights of samples, the oldest first."""
+    states: dict[str, int]
+    told: dict[str, Any]
+    """How the step differs, and how many later samples would make it exact."""
+
+
+def lines_of(hold: str, sampling: Sampling) -> Lines:
+    """Give the lines that the newest samples make.
 
     Parameters
     ----------
     hold : {"zero-order", "linear", "band-limited"}
         A band-limited input is taken as
         :func:`~hystbench.blocks.curve.held_lines` twice as fine.
-    points : int
-        Samples that a band-limited curve goes through.
-    ahead : int
-        So many of them are later than the one that the output is for.
-
-    Returns
-    -------
-    segments : int
-        Lines of an interval.
-    points : int
-        Samples that are needed.
-    corners : ndarray, shape ((segments + 1) points,)
-        Weights of the samples for each corner, the oldest corner first.
+    sampling : Sampling
     """
-    if hold != "band-limited":
-        points = 2 + ahead
-        return 1, points, np.eye(points)[[ahead + 1, ahead]].ravel()
-    middle, end = (corner(points, place - ahead) for place in (-0.5, 0.0))
-    each = [np.append(0.0, end), np.append(middle, 0.0), np.append(end, 0.0)]
-    return 2, points + 1, np.concatenate(each)
+    ahead, segments, told = sampling.ahead, 1, ""
+    points = 2 + ahead
+    corners = np.eye(points)[[ahead + 1, ahead]].ravel()
+    if hold == "band-limited":
+        segments, points = 2, sampling.curve_points + 1
+        told = smooth_curve(points - 1, ahead)
+        middle, end = (corner(points - 1, place - ahead) for place in (-0.5, 0.0))
+        each = [np.append(0.0, end), np.append(middle, 0.0), np.append(end, 0.0)]
+        corners = np.concatenate(each)
+    constants = {
+        "segments": segments,
+        "points": points,
+        "ahead": ahead,
+        "corners": corners,
+        "ramp": float(hold != "zero-order"),
+    }
+    gains = AHEAD * (segments > 1)
+    return Lines(
+        segments, constants, {"history": 1 + points}, {"gains": gains, "differs": told}
+    )
 
 
 def smooth_curve(points: int, ahead: int = 0) -> str:

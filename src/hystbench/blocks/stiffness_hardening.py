@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.curve import AHEAD, held_lines
+from hystbench.blocks.curve import held_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
+from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.record import FloatArray
 
 
@@ -65,25 +65,13 @@ class StiffnessHardening(HeldBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Integrate the mode over the interval that has passed."""
-        smooth = self.holding == "band-limited"
-        ahead = sampling.ahead
-        segments, points, corners = line_corners(
-            self.holding, sampling.curve_points, ahead
-        )
+        lines = lines_of(self.holding, sampling)
         constants = {
             "participation": self.participation,
-            "phase": 2 * np.pi * self.frequency_hz * sampling.dt / segments,
+            "phase": 2 * np.pi * self.frequency_hz * sampling.dt / lines.segments,
             "damping": self.damping_ratio,
             "coefficient": self.coefficient,
-            "ramp": float(self.holding != "zero-order"),
-            "segments": segments,
-            "points": points,
-            "ahead": ahead,
-            "corners": corners,
+            **lines.constants,
         }
-        states = {"mode": 2, "history": 1 + points}
-        differs = smooth_curve(points - 1, ahead) if smooth else ""
-        gains = AHEAD * smooth
-        return Step(
-            "stiffness_hardening", constants, states, gains=gains, differs=differs
-        )
+        states = {"mode": 2, **lines.states}
+        return Step("stiffness_hardening", constants, states, **lines.told)

@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench import kernels
-from hystbench.blocks.curve import AHEAD, held_lines
+from hystbench.blocks.curve import held_lines
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
-from hystbench.blocks.step import Sampling, Step, line_corners, smooth_curve
+from hystbench.blocks.step import Sampling, Step, lines_of
 from hystbench.record import FloatArray
 
 PART = 0.1
@@ -80,21 +80,14 @@ class Store(HeldBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Fill and empty it over the interval that has passed."""
-        ahead, smooth = sampling.ahead, self.holding == "band-limited"
-        segments, points, corners = line_corners(
-            self.holding, sampling.curve_points, ahead
-        )
-        parts = self._parts(sampling.dt / segments)
+        lines = lines_of(self.holding, sampling)
+        parts = self._parts(sampling.dt / lines.segments)
         constants = {
             "gain": self.gain,
             "bias": self.bias,
-            "segments": segments,
-            "points": points,
-            "ahead": ahead,
-            "corners": corners,
-            "ramp": float(self.holding != "zero-order"),
+            **lines.constants,
             "parts": parts,
-            "t": sampling.dt / segments / parts,
+            "t": sampling.dt / lines.segments / parts,
             "rate": self.rate,
             "exponent": self.exponent,
             "height": self.height,
@@ -102,9 +95,7 @@ class Store(HeldBlock):
             "outflow": int(self.output == "outflow"),
             "caught": self.caught,
         }
-        states = {"level": 1, "history": 1 + points}
-        differs = smooth_curve(points - 1, ahead) if smooth else ""
-        return Step("store", constants, states, gains=AHEAD * smooth, differs=differs)
+        return Step("store", constants, {"level": 1, **lines.states}, **lines.told)
 
     def _parts(self, dt: float) -> int:
         """Steps of an interval: none empties more than a part of the store."""

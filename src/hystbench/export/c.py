@@ -18,6 +18,7 @@ from hystbench.export.described import Described, Language, Piece, needed
 LIBRARY = (
     Path(kernels.__file__).with_name("forces.c"),
     Path(__file__).with_name("steps.c"),
+    Path(__file__).with_name("hysteresis_steps.c"),
     Path(__file__).with_name("inside.c"),
     Path(__file__).with_name("inverse_steps.c"),
 )

@@ -7,6 +7,7 @@
 #endif
 #include "fmi2Functions.h"
 
+typedef fmi2ValueReference Reference;
 #include "hb_unit.h"
 
 typedef struct {
@@ -22,6 +23,11 @@ static fmi2Status refuse(const Instance *self, const char *why)
     if (self->log)
         self->log(self->environment, self->name, fmi2Error, "logStatusError", why);
     return fmi2Error;
+}
+
+static fmi2Status done(const Instance *self, const char *wrong)
+{
+    return wrong ? refuse(self, wrong) : fmi2OK;
 }
 
 const char *fmi2GetVersion(void) { return fmi2Version; }
@@ -64,7 +70,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined,
                                fmi2Boolean stopTimeDefined, fmi2Real stopTime)
 {
     Instance *self = c;
-    self->now.start = self->now.time = startTime;
+    self->now.start = self->now.variable[TIME] = startTime;
     return fmi2OK;
 }
 
@@ -85,23 +91,14 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
                        fmi2Real value[])
 {
     const Instance *self = c;
-    for (size_t i = 0; i < nvr; i++) {
-        const double *place = variable(&self->now, vr[i]);
-        if (!place) return refuse(self, "no such variable");
-        value[i] = *place;
-    }
-    return fmi2OK;
+    return done(self, get(&self->now, vr, nvr, value));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                        const fmi2Real value[])
 {
     Instance *self = c;
-    for (size_t i = 0; i < nvr; i++) {
-        if (vr[i] != INPUT) return refuse(self, "only the input can be set");
-        self->now.input = value[i];
-    }
-    return fmi2OK;
+    return done(self, set(&self->now, vr, nvr, value));
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
@@ -116,7 +113,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint,
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *FMUstate)
 {
     const Instance *self = c;
-    return keep(&self->now, FMUstate) ? fmi2OK : refuse(self, "out of memory");
+    return done(self, keep(&self->now, FMUstate));
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate FMUstate)

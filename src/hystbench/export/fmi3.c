@@ -5,6 +5,7 @@
 #define FMI3_FUNCTION_PREFIX @name@_
 #include "fmi3Functions.h"
 
+typedef fmi3ValueReference Reference;
 #include "hb_unit.h"
 
 typedef struct {
@@ -17,6 +18,11 @@ static fmi3Status refuse(const Instance *self, const char *why)
 {
     if (self->log) self->log(self->environment, fmi3Error, "logStatusError", why);
     return fmi3Error;
+}
+
+static fmi3Status done(const Instance *self, const char *wrong)
+{
+    return wrong ? refuse(self, wrong) : fmi3OK;
 }
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
@@ -76,7 +82,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance,
                                        fmi3Boolean stopTimeDefined, fmi3Float64 stopTime)
 {
     Instance *self = instance;
-    self->now.start = self->now.time = startTime;
+    self->now.start = self->now.variable[TIME] = startTime;
     return fmi3OK;
 }
 
@@ -101,12 +107,7 @@ fmi3Status fmi3GetFloat64(fmi3Instance instance,
 {
     const Instance *self = instance;
     if (nValues != nValueReferences) return refuse(self, "one value a reference");
-    for (size_t i = 0; i < nValueReferences; i++) {
-        const double *place = variable(&self->now, valueReferences[i]);
-        if (!place) return refuse(self, "no such variable");
-        values[i] = *place;
-    }
-    return fmi3OK;
+    return done(self, get(&self->now, valueReferences, nValueReferences, values));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance instance,
@@ -116,11 +117,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance,
 {
     Instance *self = instance;
     if (nValues != nValueReferences) return refuse(self, "one value a reference");
-    for (size_t i = 0; i < nValueReferences; i++) {
-        if (valueReferences[i] != INPUT) return refuse(self, "only the input can be set");
-        self->now.input = values[i];
-    }
-    return fmi3OK;
+    return done(self, set(&self->now, valueReferences, nValueReferences, values));
 }
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
@@ -142,7 +139,7 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
 fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *FMUState)
 {
     const Instance *self = instance;
-    return keep(&self->now, FMUState) ? fmi3OK : refuse(self, "out of memory");
+    return done(self, keep(&self->now, FMUState));
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState FMUState)

@@ -2,6 +2,7 @@
  *
  * The model takes a step wherever a multiple of its own interval is passed: with the
  * input that was set before, so that its output is that of the step's first sample.
+ * Reference is FMI's type for the number of a variable.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,12 +15,13 @@
 #endif
 
 /* References of the variables, as in modelDescription.xml. */
-enum { TIME, INPUT, OUTPUT };
+enum { TIME, INPUT, OUTPUT, VARIABLES };
 
 static const char *const TOKEN = "@token@";
 
 typedef struct {
-    double start, time, input, output;
+    double variable[VARIABLES];
+    double start; /* time */
     double count; /* steps since the start */
     @name@_state state;
 } Values;
@@ -30,15 +32,35 @@ static void begin(Values *now)
     @name@_init(&now->state);
 }
 
-/* NULL where there is no such variable. */
-static const double *variable(const Values *now, unsigned long reference)
+/* These tell what is wrong; NULL where nothing is. */
+
+static const char *get(const Values *now, const Reference vr[], size_t count,
+                       double values[])
 {
-    switch (reference) {
-    case TIME: return &now->time;
-    case INPUT: return &now->input;
-    case OUTPUT: return &now->output;
-    default: return NULL;
+    for (size_t i = 0; i < count; i++) {
+        if (vr[i] >= VARIABLES) return "no such variable";
+        values[i] = now->variable[vr[i]];
     }
+    return NULL;
+}
+
+static const char *set(Values *now, const Reference vr[], size_t count,
+                       const double values[])
+{
+    for (size_t i = 0; i < count; i++) {
+        if (vr[i] != INPUT) return "only the input can be set";
+        now->variable[INPUT] = values[i];
+    }
+    return NULL;
+}
+
+/* Copy the values to where a copy was before, or to new memory. */
+static const char *keep(const Values *now, void **kept)
+{
+    if (!*kept) *kept = malloc(sizeof *now);
+    if (!*kept) return "out of memory";
+    memcpy(*kept, now, sizeof *now);
+    return NULL;
 }
 
 static void advance(Values *now, double end)
@@ -46,14 +68,6 @@ static void advance(Values *now, double end)
     /* times are sums, which are a little off */
     const double due = floor((end - now->start) / @NAME@_DT + 1e-6);
     for (; now->count < due; now->count++)
-        now->output = @name@_step(&now->state, now->input);
-    now->time = end;
-}
-
-/* Copy the values to where a copy was before, or to new memory: 0 where there is none. */
-static int keep(const Values *now, void **kept)
-{
-    if (!*kept) *kept = malloc(sizeof *now);
-    if (*kept) memcpy(*kept, now, sizeof *now);
-    return *kept != NULL;
+        now->variable[OUTPUT] = @name@_step(&now->state, now->variable[INPUT]);
+    now->variable[TIME] = end;
 }

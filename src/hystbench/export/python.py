@@ -16,7 +16,7 @@ from hystbench.export.described import Described, Language, Piece, needed
 
 LIBRARY = tuple(
     Path(__file__).with_name(f"{name}.py")
-    for name in ("steps", "inside", "inverse_steps")
+    for name in ("steps", "hysteresis_steps", "forces", "inside", "inverse_steps")
 )
 WIDTH = 88
 

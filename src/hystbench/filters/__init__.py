@@ -8,8 +8,8 @@ from __future__ import annotations
 from functools import cache
 
 from hystbench.errors import InputError, nearest
-from hystbench.filters.base import MOST_CORRECTION as MOST_CORRECTION
 from hystbench.filters.base import AdaptiveFilter as AdaptiveFilter
+from hystbench.filters.bound import MOST_CORRECTION as MOST_CORRECTION
 from hystbench.filters.bound import Bound as Bound
 from hystbench.filters.many import run_many as run_many
 from hystbench.filters.state import Result as Result

@@ -19,9 +19,9 @@ from numpy.typing import ArrayLike
 
 from hystbench import kernels
 from hystbench.errors import InputError
-from hystbench.filters.bound import Bound, eigenvalue_bound
+from hystbench.filters.bound import Bound, correlation, eigenvalue_bound
 from hystbench.filters.keys import keys_of
-from hystbench.filters.state import End, Result, State, finite, positive
+from hystbench.filters.state import Chunk, End, Result, State, finite, positive
 from hystbench.filters.together import run_together
 from hystbench.record import FloatArray, Record
 
@@ -30,14 +30,6 @@ ROWS = 2048
 
 MAX_ORDER = 4095
 """Highest order: the kernels keep a regressor on the stack."""
-
-MOST_CORRECTION = 1.7
-"""Most that one update may correct of an error where a margin is asked for.
-
-Beyond 2 the LMS of Eq. 18 is unstable while its regressor moves little; see
-:meth:`AdaptiveFilter.correction`. Errors at that edge are those of an incipient
-instability. 1.7 leaves 15 %.
-"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,8 +117,7 @@ class AdaptiveFilter(ABC):
         dict
             By field: of each of the filter's own keys the value that is set.
         """
-        keys = keys_of(cls).items()
-        return {key.field: settings[name] for name, key in keys}
+        return {key.field: settings[name] for name, key in keys_of(cls).items()}
 
     @property
     def taps(self) -> int:
@@ -192,16 +183,12 @@ class AdaptiveFilter(ABC):
         InputError
             If there are not ``size`` finite weights.
         """
-        w = np.zeros(self.size)
-        if weights is not None:
-            given = np.asarray(weights, dtype=np.float64)
-            if given.shape != w.shape or not np.isfinite(given).all():
-                raise InputError(
-                    f"weights: {given.shape} given, {self.size} finite numbers expected"
-                )
-            w[:] = given
-        past = np.empty(self.history)
-        past.fill(self.x_before)
+        w = np.zeros(self.size) if weights is None else np.array(weights, np.float64)
+        if w.shape != (self.size,) or not np.isfinite(w).all():
+            raise InputError(
+                f"weights: {w.shape} given, {self.size} finite numbers expected"
+            )
+        past = np.full(self.history, self.x_before, dtype=np.float64)
         return State(w, past, self.first_operators())
 
     def run(
@@ -234,8 +221,7 @@ class AdaptiveFilter(ABC):
             If x and d differ in length, are not finite, the limit is not positive or
             the filter diverged in a chunk before.
         """
-        (result,) = run_together([self], x, d, state, limit)
-        return result
+        return run_together([self], x, d, state, limit)[0]
 
     def bound(self, x: ArrayLike) -> Bound:
         """Bound on the step size for an input, Eq. 19.
@@ -250,7 +236,7 @@ class AdaptiveFilter(ABC):
         x : array_like, shape (n,)
             Input, at least one sample.
         """
-        return eigenvalue_bound(self._correlation(x), self.size)
+        return eigenvalue_bound(correlation(self.rows(x)), self.size)
 
     def step_bounds(self, x: ArrayLike) -> dict[str, float]:
         """Bound of Eq. 19, 1 / tr R, on each step size for an input, by its name.
@@ -267,10 +253,9 @@ class AdaptiveFilter(ABC):
         x : array_like, shape (n,)
             Input, at least one sample.
         """
-        largest = 0.0
-        for rows in self.rows(x):
-            largest = max(largest, float(np.einsum("ij,ij->i", rows, rows).max()))
-        return largest
+        return max(
+            float(np.einsum("ij,ij->i", rows, rows).max()) for rows in self.rows(x)
+        )
 
     def tap_rms(self, x: ArrayLike) -> float:
         """RMS over an input of the taps, the constant one aside."""
@@ -334,21 +319,11 @@ class AdaptiveFilter(ABC):
         for start in range(0, len(x), ROWS):
             yield line[start : start + self.history + ROWS]
 
-    def _correlation(self, x: ArrayLike) -> FloatArray:
-        """Mean of H H' over the input."""
-        total, count = np.zeros((self.size, self.size)), 0
-        for rows in self.rows(x):
-            total += rows.T @ rows
-            count += len(rows)
-        return total / count
-
     def _adapt_all(
         self,
         filters: Sequence[AdaptiveFilter],
-        line: FloatArray,
-        d: FloatArray,
+        chunk: Chunk,
         ends: Sequence[End],
-        limit: float,
         output: FloatArray,
         error: FloatArray,
         start: int,
@@ -367,19 +342,12 @@ class AdaptiveFilter(ABC):
         list of (int, (ndarray, ndarray))
             What :meth:`_adapt` returns, of each.
         """
-        part = slice(start, start + len(d))
+        part = slice(start, start + len(chunk.d))
         rows = zip(filters, ends, output[:, part], error[:, part], strict=True)
-        return [item._adapt(line, d, *end, limit, y, e) for item, end, y, e in rows]
+        return [item._adapt(chunk, end, y, e) for item, end, y, e in rows]
 
     def _adapt(
-        self,
-        line: FloatArray,
-        d: FloatArray,
-        weights: FloatArray,
-        operators: FloatArray,
-        limit: float,
-        output: FloatArray,
-        error: FloatArray,
+        self, chunk: Chunk, before: End, output: FloatArray, error: FloatArray
     ) -> tuple[int, End]:
         """Run the LMS loop over a chunk, writing output and error.
 
@@ -393,15 +361,16 @@ class AdaptiveFilter(ABC):
         weights, operators : ndarray
             Weights and outputs of the operators after them.
         """
+        weights, operators = before
         lanes, steps = kernels.pad(weights), kernels.pad(2 * self.steps)
         done = 0
-        while done < len(d):
+        while done < len(chunk.d):
             part = slice(done, done + ROWS)
-            chunk = line[done : done + self.history + ROWS]
-            h, operators = self.whole_regressor(chunk, operators)
+            line = chunk.line[done : done + self.history + ROWS]
+            h, operators = self.whole_regressor(line, operators)
             rows = np.zeros((len(h), len(lanes)))
             rows[:, : self.size] = h
-            signals = (d[part], limit, lanes, output[part], error[part])
+            signals = (chunk.d[part], chunk.limit, lanes, output[part], error[part])
             taken = self._rows(rows, len(lanes), steps, *signals)
             done += taken
             if taken < len(h):

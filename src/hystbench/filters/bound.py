@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from hystbench.record import FloatArray
+
+MOST_CORRECTION = 1.7
+"""Most that one update may correct of an error where a margin is asked for.
+
+Beyond 2 the LMS of Eq. 18 is unstable while its regressor moves little; see
+:meth:`hystbench.filters.base.AdaptiveFilter.correction`. Errors at that edge are those
+of an incipient instability. 1.7 leaves 15 %.
+"""
 
 
 @dataclass(frozen=True)
@@ -48,6 +57,15 @@ class Bound:
     def spread_nonzero(self) -> float:
         """Largest over smallest of the eigenvalues that are not rounding."""
         return self.largest / self.smallest_nonzero if self.rank else np.inf
+
+
+def correlation(regressors: Iterable[FloatArray]) -> FloatArray:
+    """Mean of H H' over regressors, some samples of them at a time."""
+    total, count = np.zeros(()), 0
+    for rows in regressors:
+        total = total + rows.T @ rows
+        count += len(rows)
+    return total / count
 
 
 def eigenvalue_bound(correlation: FloatArray, size: int) -> Bound:

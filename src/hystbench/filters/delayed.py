@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.filters.base import AdaptiveFilter
-from hystbench.filters.state import End
+from hystbench.filters.state import Chunk, End
 from hystbench.record import FloatArray
 
 
@@ -34,17 +34,11 @@ class DelayedFilter(AdaptiveFilter):
         return self.windows(line), operators
 
     def _adapt(
-        self,
-        line: FloatArray,
-        d: FloatArray,
-        weights: FloatArray,
-        operators: FloatArray,
-        limit: float,
-        output: FloatArray,
-        error: FloatArray,
+        self, chunk: Chunk, before: End, output: FloatArray, error: FloatArray
     ) -> tuple[int, End]:
         if self.constant_tap:  # no column of the line
-            return super()._adapt(line, d, weights, operators, limit, output, error)
+            return super()._adapt(chunk, before, output, error)
+        (line, d, limit), (weights, operators) = chunk, before
         # rows are windows of the line itself, one sample apart, oldest first
         lanes = kernels.pad_front(weights[::-1])
         steps = np.zeros(len(lanes))

@@ -13,7 +13,7 @@ from hystbench import kernels
 from hystbench.errors import InputError, nearest
 from hystbench.filters.base import AdaptiveFilter
 from hystbench.filters.keys import choice
-from hystbench.filters.state import End, positive
+from hystbench.filters.state import Chunk, End, positive
 from hystbench.operators import FORMS, Form, follow_direction
 from hystbench.record import FloatArray, Record
 
@@ -117,19 +117,16 @@ class PlayFilter(AdaptiveFilter):
     def _adapt_all(
         self,
         filters: Sequence[AdaptiveFilter],
-        line: FloatArray,
-        d: FloatArray,
+        chunk: Chunk,
         ends: Sequence[End],
-        limit: float,
         output: FloatArray,
         error: FloatArray,
         start: int,
     ) -> list[tuple[int, End]]:
         if self.constant_tap:  # the kernel has none
-            signals = (output, error, start)
-            return super()._adapt_all(filters, line, d, ends, limit, *signals)
+            return super()._adapt_all(filters, chunk, ends, output, error, start)
         # All have seen the same input: they share envelopes and operators so far.
-        left, right, r, state = self._lanes(line, ends[0][1])
+        left, right, r, state = self._lanes(chunk.line, ends[0][1])
         count = len(filters)
         states = np.tile(state, (count, 1))
         lanes = np.array([kernels.pad_front(weights[::-1]) for weights, _ in ends])
@@ -137,9 +134,9 @@ class PlayFilter(AdaptiveFilter):
         taken = np.empty(count)
         kernels.call(
             "hb_lms_play",
-            *(count, len(d), len(r) // kernels.WIDTH),
-            *(left, right, int(self.along_line), d, r),
-            *(steps, self._kernel_regularization(), limit),
+            *(count, len(chunk.d), len(r) // kernels.WIDTH),
+            *(left, right, int(self.along_line), chunk.d, r),
+            *(steps, self._kernel_regularization(), chunk.limit),
             *(states, lanes),
             *(output.reshape(-1)[start:], error.reshape(-1)[start:]),
             *(output.shape[1], taken),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,6 +45,17 @@ class State:
 
 End = tuple[FloatArray, FloatArray]
 """Weights and outputs of the operators after a chunk."""
+
+
+class Chunk(NamedTuple):
+    """A part of a record that is filtered at a time."""
+
+    line: FloatArray
+    """Past inputs, as many as the filter looks back on, then those of the chunk."""
+    d: FloatArray
+    """Output of the plant."""
+    limit: float
+    """Magnitude of the error beyond which a filter has diverged."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from hystbench import kernels
 from hystbench.errors import InputError
-from hystbench.filters.state import End, Result, State, finite, positive
+from hystbench.filters.state import Chunk, End, Result, State, finite, positive
 
 if TYPE_CHECKING:
     from hystbench.filters.base import AdaptiveFilter
@@ -72,13 +72,12 @@ def run_together(
     pasts, done = [past] * count, [0] * count
     for start in range(0, len(d), CHUNK):
         part = slice(start, start + CHUNK)
-        line = np.concatenate((past, x[part]))
-        past = line[-first.history :].copy()
+        chunk = Chunk(np.concatenate((past, x[part])), d[part], limit)
+        past = chunk.line[-first.history :].copy()
         for row in _neighbours([samples == start for samples in done]):
             own = range(count)[row]
-            signals = (output[row], error[row], start)
             found = first._adapt_all(
-                filters[row], line, d[part], ends[row], limit, *signals
+                filters[row], chunk, ends[row], output[row], error[row], start
             )
             for k, (taken, end) in zip(own, found, strict=True):
                 done[k] += taken

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import ClassVar
@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from hystbench import kernels
 from hystbench.filters.base import AdaptiveFilter
-from hystbench.filters.bound import Bound, eigenvalue_bound
-from hystbench.filters.state import End, positive
+from hystbench.filters.bound import Bound, correlation, eigenvalue_bound
+from hystbench.filters.state import Chunk, End, positive
 from hystbench.record import FloatArray
 
 TILE = 4  # the kernel keeps tiles of 4 x 4 second-order weights
@@ -108,15 +108,14 @@ class VolterraFilter(AdaptiveFilter):
         rows, columns = np.triu_indices(self.taps)
         scale = np.where(rows == columns, 1.0, np.sqrt(2.0))
         constant = [self.constant_tap] if self.constant_tap else []
-        size = self.taps + len(rows) + len(constant)
-        total, count = np.zeros((size, size)), 0
-        for line in self._chunks(x):
-            taps = self.windows(line)
-            products = scale * taps[:, rows] * taps[:, columns]
-            h = np.hstack((taps, products, np.tile(constant, (len(taps), 1))))
-            total += h.T @ h
-            count += len(h)
-        total /= count
+
+        def regressors() -> Iterator[FloatArray]:
+            for line in self._chunks(x):
+                taps = self.windows(line)
+                products = scale * taps[:, rows] * taps[:, columns]
+                yield np.hstack((taps, products, np.tile(constant, (len(taps), 1))))
+
+        total = correlation(regressors())
         power = np.diag(total)
         return VolterraBound(
             **vars(eigenvalue_bound(total, self.size)),
@@ -163,15 +162,9 @@ class VolterraFilter(AdaptiveFilter):
         return 2 * (first + self.second_order_step * power**2)
 
     def _adapt(
-        self,
-        line: FloatArray,
-        d: FloatArray,
-        weights: FloatArray,
-        operators: FloatArray,
-        limit: float,
-        output: FloatArray,
-        error: FloatArray,
+        self, chunk: Chunk, before: End, output: FloatArray, error: FloatArray
     ) -> tuple[int, End]:
+        (line, d, limit), (weights, operators) = chunk, before
         spare = -self.taps % TILE
         parts = [self.taps, self.taps + self.taps**2]
         taps, products, constant = np.split(weights, parts)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hystbench.errors import InputError
+from hystbench.errors import InputError, in_line
 
 
 @contextmanager
@@ -20,5 +20,4 @@ def told(path: Path, kind: str) -> Iterator[None]:
         raise InputError(f"{path}: more than fits into memory") from error
     except Exception as error:
         # Libraries raise anything of what is damaged.
-        said = " ".join(f"{type(error).__name__}: {error}".split())
-        raise InputError(f"{path}: no readable {kind} ({said})") from error
+        raise InputError(f"{path}: no readable {kind} ({in_line(error)})") from error

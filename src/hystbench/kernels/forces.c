@@ -235,9 +235,9 @@ static int hb_falls(int count, const double *forces)
 }
 
 /* The way of a part, by Chandrupatla's method where a force falls, or where the one above
- * does not find it; NaN where there is none.  The miss grows with the way at least as fast where no force
- * falls: between zero and the way without forces, or the one with the force of the
- * beginning, there is then one root. */
+ * does not find it; NaN where there is none. The miss grows with the way at least as fast
+ * where no force falls: between zero and the way without forces, or the one with the
+ * force of the beginning, there is then one root. */
 static double hb_way_of(int count, const double *forces, const double *memory, double q,
                         double alone, double gives, double h)
 {

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.gap.bases.load import load_base, written_base
+from hystbench.gap.bases.load import checked_base, load_base
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
 from hystbench.gap.bases.split_linear import _block
@@ -15,7 +15,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import INSIDE
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.model import Model
+from hystbench.model import Model, load_model
 from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
 from tests.gap.small import block
 
@@ -226,7 +226,7 @@ def test_a_given_base_stays_where_there_is_no_curve(tmp_path):
 
 def test_the_base_of_a_round_is_taken_as_it_is_written(tmp_path, clipped_records):
     given().save(tmp_path / "rig.yaml")
-    found = written_base(tmp_path / "rig.yaml", clipped_records)
+    found = checked_base(load_model(tmp_path / "rig.yaml"), "rig.yaml", clipped_records)
     assert found.chain == given().chain
     split, _ = load_base(str(tmp_path / "rig.yaml"), clipped_records)
     assert len(split.chain) > len(found.chain)

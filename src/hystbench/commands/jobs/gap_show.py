@@ -7,9 +7,10 @@ from pathlib import Path
 import click
 
 from hystbench import options
-from hystbench.gap.bases.load import written_base
+from hystbench.gap.bases.load import checked_base
 from hystbench.gap.jobs import show_in
 from hystbench.gap.records.evidence import load_evidence
+from hystbench.model import load_model
 
 
 @click.command()
@@ -24,5 +25,5 @@ def gap_show(dataset: Path, base: Path, out: Path) -> None:
     holdout/ there. A model that is worse there than the base is taken back.
     """
     evidence = load_evidence(dataset)
-    model = written_base(base, evidence)
+    model = checked_base(load_model(base), str(base), evidence)
     show_in(out, evidence, model)

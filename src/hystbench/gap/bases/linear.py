@@ -9,7 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
-from hystbench.blocks.impedance import INPUTS, Impedance
+from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
 from hystbench.blocks.transfer_function import STARTS
 from hystbench.errors import InputError
 from hystbench.gap.bases.output_error import OutputError
@@ -303,15 +303,12 @@ def _impedance(
     about = evidence.quantities
     if about.causality != "motion to force" or about.input not in INPUTS:
         return None
-    parts = Impedance.parts(about.input, evidence.hold)
     signals = [
-        np.column_stack(
-            [x.simulate(record.u, record.u, record.dt) for x in parts.values()]
-        )
+        Impedance.columns(about.input, evidence.hold, record.u, record.dt)
         for record in evidence.fit
     ]
     found = _summed(signals, evidence, whole, folds)
-    numbers: dict[str, Any] = dict(zip(parts, found.numbers, strict=True))
+    numbers: dict[str, Any] = dict(zip(NUMBERS, found.numbers, strict=True))
     return found, Impedance(**numbers, input=about.input, hold=evidence.hold)
 
 

@@ -20,22 +20,11 @@ from hystbench.errors import InputError
 from hystbench.gap.bases.given import split_given
 from hystbench.gap.bases.gpi import identified_gpi
 from hystbench.gap.bases.kinds import COMMAND, IDENTIFIED, kind_of_base
-from hystbench.gap.bases.linear import HIGHEST, Linear, identified_linear
+from hystbench.gap.bases.linear import HIGHEST, identified_linear
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
-
-__all__ = [
-    "Linear",
-    "given_base",
-    "identified_gpi",
-    "identified_linear",
-    "load_base",
-    "simulated_column",
-    "simulator_base",
-    "written_base",
-]
 
 
 def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
@@ -131,25 +120,10 @@ def given_base(text: str, evidence: Evidence) -> tuple[Model, str]:
     if text == "column":
         return simulated_column(evidence)
     if kind_of_base(text) == "file":
-        model = written_base(Path(text), evidence)
+        path = Path(text)
+        model = checked_base(load_model(path), str(path), evidence)
         return model, f"base {model.name} from {text}"
     return simulator_base(text, evidence)
-
-
-def written_base(path: Path, evidence: Evidence) -> Model:
-    """Give the base of a model file just as it is written.
-
-    Parameters
-    ----------
-    path : Path
-    evidence : Evidence
-
-    Raises
-    ------
-    InputError
-        If it is no model of these records, or does not stay bounded on them.
-    """
-    return checked_base(load_model(path), str(path), evidence)
 
 
 def checked_base(model: Model, place: str, evidence: Evidence) -> Model:

@@ -68,21 +68,15 @@ def parameters_of(
         for key, about in block.parameters().items():
             value = about.plain(getattr(block, key))
             if value is not None and value != ():
-                found[key] = {
-                    "value": value,
-                    "standard_error": known.get(key),
-                    "unit": written(about.unit, record.input.unit, record.output.unit),
-                }
+                unit = written(about.unit, record.input.unit, record.output.unit)
+                found[key] = _number(value, known.get(key), unit)
         return found
     offsets = effects()[item.effect].offsets.get(item.form, ())
     if offsets:
         for place, (label, unit) in zip(item.blocks, offsets, strict=True):
             value = getattr(state.chain[place], OFFSET)
-            found[label] = {
-                "value": value,
-                "standard_error": _errors_of(place, OFFSET, value, state, errors),
-                "unit": _unit(unit, place, state),
-            }
+            error = _errors_of(place, OFFSET, value, state, errors)
+            found[label] = _number(value, error, _unit(unit, place, state))
         return found
     numbers = effects()[item.effect].numbers
     for place in item.blocks:
@@ -95,12 +89,12 @@ def parameters_of(
                 continue
             error = _errors_of(place, key, value, state, errors)
             label = key if key not in found else f"{key}#2"
-            found[label] = {
-                "value": list(value) if isinstance(value, tuple) else value,
-                "standard_error": error,
-                "unit": _unit(about.unit, place, state),
-            }
+            found[label] = _number(value, error, _unit(about.unit, place, state))
     return found
+
+
+def _number(value: object, error: object, unit: str) -> dict[str, object]:
+    return {"value": _plain(value), "standard_error": error, "unit": unit}
 
 
 AT_END = 1e-3

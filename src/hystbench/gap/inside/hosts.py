@@ -17,7 +17,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
-from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
@@ -161,16 +161,13 @@ def one_coordinate(
 
 def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState:
     """Give the impedance that fits best: its force is linear in its numbers."""
-    sample, parts = Sample.of(records), Impedance.parts(moved, hold)
-    columns = [
-        sample.take([part.simulate(r.u, r.u, r.dt) for r in records])
-        for part in parts.values()
-    ]
+    sample = Sample.of(records)
+    columns = sample.take([Impedance.columns(moved, hold, r.u, r.dt) for r in records])
     wanted = sample.take([record.y for record in records])
-    values = _solved(np.column_stack(columns), wanted)
-    numbers: dict[str, Any] = dict(zip(parts, values.tolist(), strict=True))
+    values = _solved(columns, wanted).tolist()
+    numbers: dict[str, Any] = dict(zip(NUMBERS, values, strict=True))
     block = Impedance(**numbers, input=moved, hold=hold)
-    return _state((block,), records, hold, {0: tuple(parts)})
+    return _state((block,), records, hold, {0: NUMBERS})
 
 
 def masses(

@@ -34,11 +34,8 @@ def effect_mapping(
 
     Parameters
     ----------
-    item : Added
-    state : ModelState
-    errors : ndarray, shape (free numbers,)
-    of_beside : sequence of dict
-        Standard errors of the signals beside the chain.
+    item, state, errors, of_beside
+        As for :func:`hystbench.gap.fitting.parameters.parameters_of`.
     ranking : sequence of Candidate
         The last by which it was taken.
     left : Left

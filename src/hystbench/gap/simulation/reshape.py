@@ -61,15 +61,7 @@ def products(simulation: Simulation, sample: Sample) -> FloatArray:
     with another: they tell a hysteresis whose loops depend on where they lie, as of
     most materials, from one of play operators. Sent on as the reshapings are.
 
-    Parameters
-    ----------
-    simulation : Simulation
-    sample : Sample
-
-    Returns
-    -------
-    ndarray, shape (scored samples, k)
-        Without anything in the chain that holds a hysteresis, no column.
+    Parameters and what is returned are those of :func:`reshapings`.
     """
     return _behind(simulation, sample, _mixed)
 
@@ -77,14 +69,14 @@ def products(simulation: Simulation, sample: Sample) -> FloatArray:
 def _behind(
     simulation: Simulation,
     sample: Sample,
-    make: Callable[[Simulation, Sample | None], list[Signals]],
+    make: Callable[[Simulation, int, Sample | None], list[Signals]],
 ) -> FloatArray:
     """Make signals of the hysteresis and send them through what follows it."""
     if simulation.loop is None:
         return np.zeros((len(sample), 0))
     behind = simulation.chain[simulation.behind_hysteresis :]
     at = None if behind else sample  # what nothing follows is wanted there alone
-    ways = make(simulation, at)
+    ways = make(simulation, simulation.loop, at)
     if behind:
         return np.column_stack(
             [sample.take(_sent(simulation, behind, way)) for way in ways]
@@ -108,13 +100,11 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     return np.asarray(basis @ np.linalg.inv(triangle).T)
 
 
-def _ways(simulation: Simulation, sample: Sample | None) -> list[Signals]:
-    """Give ways in which the output of the hysteresis could differ.
+def _ways(simulation: Simulation, place: int, sample: Sample | None) -> list[Signals]:
+    """Give ways in which the output of the hysteresis at a place could differ.
 
     Of whole records, or of scored samples.
     """
-    place = simulation.loop
-    assert place is not None  # noqa: S101  (the caller has looked)
     block, v = simulation.chain[place], simulation.before[place]
     ways: list[Signals] = [tuple(np.ones(len(z)) for z in _at(v, sample))]
     sources = [v] if block.seen else [v, simulation.before[place + 1]]
@@ -126,10 +116,8 @@ def _ways(simulation: Simulation, sample: Sample | None) -> list[Signals]:
     return ways + own
 
 
-def _mixed(simulation: Simulation, sample: Sample | None) -> list[Signals]:
+def _mixed(simulation: Simulation, place: int, sample: Sample | None) -> list[Signals]:
     """Give products of what enters the hysteresis and of play operators of it."""
-    place = simulation.loop
-    assert place is not None  # noqa: S101  (the caller has looked)
     signals = simulation.before[place]
     amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
     thresholds = np.arange(MIXED) / (MIXED + 1)  # the first is the input itself
@@ -152,9 +140,7 @@ def _rows(record: int, sample: Sample | None) -> slice | NDArray[np.intp]:
 
 def _at(signals: Signals, sample: Sample | None) -> Signals:
     """Give whole signals, or their scored samples."""
-    if sample is None:
-        return signals
-    return tuple(z[at] for z, at in zip(signals, sample.positions, strict=True))
+    return tuple(z[_rows(k, sample)] for k, z in enumerate(signals))
 
 
 def _powers(signals: Signals, sample: Sample | None) -> list[Signals]:
@@ -162,10 +148,10 @@ def _powers(signals: Signals, sample: Sample | None) -> list[Signals]:
     amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
     thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)
     scaled = _at(tuple(z / amplitude for z in signals), sample)
-    plays = []
-    for k, z in enumerate(signals):
-        p = play(z, thresholds)[0].T / amplitude
-        plays.append(p if sample is None else p[:, sample.positions[k]])
+    plays = [
+        play(z, thresholds)[0].T[:, _rows(k, sample)] / amplitude
+        for k, z in enumerate(signals)
+    ]
     ways = []
     for base in (scaled, *zip(*plays, strict=True)):
         power = base

@@ -11,7 +11,7 @@ import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock, attached
 from hystbench.blocks.base import Block
-from hystbench.blocks.curve import finer
+from hystbench.blocks.curve import SHORT_STEPS, finer
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
@@ -85,7 +85,7 @@ class Simulation:
         for z, record in zip(signals, self.records, strict=True):
             for step in steps:
                 if finely and (isinstance(step, Wrapped) or step.hysteretic):
-                    z = _finely(step, z, record.dt, FINER)
+                    z = _finely(step, z, record.dt, SHORT_STEPS)
                 elif self.quick and _takes_short_steps(step):
                     z = _finely(step, z, record.dt, QUICK)
                 else:
@@ -229,10 +229,8 @@ def _quick(block: Block) -> Block:
 
 LIMITED = "band-limited"
 NOT_LINEAR = (Mechanism, Store, StiffnessHardening)
-FINER = 8
-"""Steps through the hysteresis in a sampling interval, where exact."""
 QUICK = 2
-"""The same for hysteresis that depends on the rate, where quick."""
+"""Steps of an interval for hysteresis that depends on the rate, where quick."""
 
 
 def _takes_short_steps(step: Block | Wrapped) -> bool:
