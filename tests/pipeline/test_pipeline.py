@@ -207,7 +207,7 @@ def test_a_narrower_config_runs_no_filter_again(workflow):
 def test_an_edited_module_reruns_what_imports_it(workflow):
     source = workflow.folder / "src"
     shutil.copytree(ROOT / "src", source, ignore=shutil.ignore_patterns("__pycache__"))
-    copied = Workflow(workflow.folder, {"PYTHONPATH": str(source)})
+    copied = Workflow(workflow.folder, source)
     # The first run sees other paths of the same files; touch makes it up to date.
     assert copied.snakemake("--touch").returncode == 0
     assert copied.would_run("--rerun-triggers", "mtime") == {}
