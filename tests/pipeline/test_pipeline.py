@@ -132,7 +132,7 @@ def test_other_twins_give_each_error_a_spread(workflow, config):
     (folder / "stronger.yaml").write_text(yaml.safe_dump(perturbed))
     config["pressure"] |= {"twins": ["twins"]}
     workflow.configure(config)
-    workflow.run("tables")
+    workflow.run_here("tables")
     cells = rows(workflow.folder / "results" / "compare" / "cells.csv")
     ran = [cell for cell in cells if cell["status"] == "finite"]
     for cell in ran:
@@ -237,7 +237,7 @@ def test_a_filter_that_diverges_is_a_visible_entry(workflow, config):
     config["filters"]["convergence_factor"]["delayed"]["mu"] = 50.0
     config["models"] = ["delayed"]
     workflow.configure(config)
-    workflow.run("tables")
+    workflow.run_here("tables")
     results = workflow.folder / "results"
     run = load(results / "filters" / "sine-100hz" / "delayed.json")
     assert run["status"] == "diverged"
