@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from multiprocessing.reduction import DupFd
 from pathlib import Path
 
@@ -46,23 +46,15 @@ class Workflow:
     """A folder in which the project's workflow runs."""
 
     folder: Path
-    environment: dict[str, str] = field(default_factory=dict)
+    #: Where packages lie that are found before those of the environment.
+    packages: Path | None = None
 
     def configure(self, config: dict) -> None:
         (self.folder / "config.yaml").write_text(yaml.safe_dump(config))
 
     def snakemake(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         words = ["--snakefile", str(ROOT / "Snakefile"), "--cores", "2", *arguments]
-        if not self.environment:
-            return forked(words, self.folder)
-        return subprocess.run(
-            [sys.executable, "-m", "snakemake", *words],
-            cwd=self.folder,
-            env=os.environ | self.environment,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        return forked(words, self.folder, self.packages)
 
     def run(self, *arguments: str) -> dict[str, int]:
         """Run to the end and count the jobs of each rule."""
@@ -113,32 +105,54 @@ FORKING = multiprocessing.get_context("forkserver")
 FORKING.set_forkserver_preload(list(IMPORTED))
 
 
-def forked(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+def forked(
+    words: list[str], folder: Path, packages: Path | None
+) -> subprocess.CompletedProcess[str]:
     """Run ``python -m snakemake`` in a process that has imported it."""
     with (
         tempfile.TemporaryFile("w+") as out,
         tempfile.TemporaryFile("w+") as err,
     ):
-        given = (words, folder, dict(os.environ), DupFd(out.fileno()))
-        process = FORKING.Process(target=begin, args=(*given, DupFd(err.fileno())))
+        streams = (DupFd(out.fileno()), DupFd(err.fileno()))
+        given = (words, folder, packages, dict(os.environ), *streams)
+        process = FORKING.Process(target=begin, args=given)
         process.start()
         process.join()
         printed = [stream.seek(0) or stream.read() for stream in (out, err)]
     return subprocess.CompletedProcess(words, process.exitcode, *printed)
 
 
-def begin(words: list[str], folder: Path, environment: dict[str, str], out, err):
+def begin(
+    words: list[str],
+    folder: Path,
+    packages: Path | None,
+    environment: dict[str, str],
+    out,
+    err,
+):
     """Take the place, the words and the streams of a program that was just started."""
     from snakemake.cli import main
 
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
+    if packages is not None:
+        find_first(packages)
     for number, stream in ((1, out), (2, err)):
         os.dup2(stream.detach(), number)
     sys.path.insert(0, str(folder))
     sys.argv = ["snakemake", *words]
     main()
+
+
+def find_first(packages: Path) -> None:
+    """Find packages of a folder before others, here and in the jobs of this process."""
+    sys.path.insert(0, str(packages))
+    os.environ["PYTHONPATH"] = str(packages)
+    shadowed = {place.name for place in packages.iterdir()}
+    for name in list(sys.modules):
+        if name.partition(".")[0] in shadowed:
+            del sys.modules[name]  # imported from elsewhere, before the fork
 
 
 def jobs(printed: str) -> dict[str, int]:

@@ -68,9 +68,7 @@ def configured(tmp_path_factory) -> Workflow:
     solvers = config["blind"]["solvers"]
     config["blind"]["solvers"] = {"silent": solvers["silent"]}
     config["blind"]["only"] = ["saturation"]
-    workflow = Workflow(
-        tmp_path_factory.mktemp("extended"), {"PYTHONPATH": str(package)}
-    )
+    workflow = Workflow(tmp_path_factory.mktemp("extended"), package)
     workflow.configure(config)
     return workflow
 
@@ -142,7 +140,7 @@ def test_the_solver_enters_the_contest_and_names_nothing(configured):
 
 
 def test_an_edited_file_of_the_package_runs_its_filter_again(extended):
-    (file,) = Path(extended.environment["PYTHONPATH"]).glob("extra/power.py")
+    file = extended.packages / "extra" / "power.py"
     assert extended.would_run(*TARGETS) == {}
     file.write_text(file.read_text() + "\n# edited\n")
     planned = extended.would_run(*TARGETS, "--rerun-triggers", "mtime")

@@ -46,7 +46,7 @@ def whole(tmp_path_factory):
     config = small_config()
     config["gap"] |= {"write_experiment": True}
     workflow = configured(tmp_path_factory.mktemp("whole"), config, limits=LIMITS)
-    return Finished(workflow.folder, workflow.environment, workflow.run(PAGE))
+    return Finished(workflow.folder, done=workflow.run(PAGE))
 
 
 def load(workflow):

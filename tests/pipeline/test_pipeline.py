@@ -132,7 +132,7 @@ def test_other_twins_give_each_error_a_spread(workflow, config):
     (folder / "stronger.yaml").write_text(yaml.safe_dump(perturbed))
     config["pressure"] |= {"twins": ["twins"]}
     workflow.configure(config)
-    workflow.run("tables")
+    workflow.run_here("tables")
     cells = rows(workflow.folder / "results" / "compare" / "cells.csv")
     ran = [cell for cell in cells if cell["status"] == "finite"]
     for cell in ran:
@@ -207,7 +207,7 @@ def test_a_narrower_config_runs_no_filter_again(workflow):
 def test_an_edited_module_reruns_what_imports_it(workflow):
     source = workflow.folder / "src"
     shutil.copytree(ROOT / "src", source, ignore=shutil.ignore_patterns("__pycache__"))
-    copied = Workflow(workflow.folder, {"PYTHONPATH": str(source)})
+    copied = Workflow(workflow.folder, source)
     # The first run sees other paths of the same files; touch makes it up to date.
     assert copied.snakemake("--touch").returncode == 0
     assert copied.would_run("--rerun-triggers", "mtime") == {}
@@ -237,7 +237,7 @@ def test_a_filter_that_diverges_is_a_visible_entry(workflow, config):
     config["filters"]["convergence_factor"]["delayed"]["mu"] = 50.0
     config["models"] = ["delayed"]
     workflow.configure(config)
-    workflow.run("tables")
+    workflow.run_here("tables")
     results = workflow.folder / "results"
     run = load(results / "filters" / "sine-100hz" / "delayed.json")
     assert run["status"] == "diverged"

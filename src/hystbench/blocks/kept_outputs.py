@@ -14,6 +14,7 @@ import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import cache
 from hashlib import blake2b
 from importlib import metadata
 from pathlib import Path
@@ -186,14 +187,20 @@ def _own_modules(first: str) -> Iterator[tuple[str, Path]]:
         Path(sysconfig.get_path(kind)).resolve()
         for kind in ("stdlib", "platstdlib", "purelib", "platlib")
     ]
+
+    @cache  # of thousands of modules: each folder is followed to its place once
+    def is_installed(folder: Path) -> bool:
+        return any(folder.resolve().is_relative_to(each) for each in installed)
+
     for label, module in list(sys.modules.items()):
         place = getattr(module, "__file__", None)
         package = label.partition(".")[0]
         if not isinstance(place, str) or package in ("hystbench", "__main__"):
             continue
-        file = Path(place).resolve()
-        apart = not any(file.is_relative_to(each) for each in installed)
-        if (package == first or apart) and file.is_file():
+        file = Path(place)
+        if file.is_symlink():
+            file = file.resolve()
+        if (package == first or not is_installed(file.parent)) and file.is_file():
             yield label, file
 
 
