@@ -49,8 +49,6 @@ MOST_OF_IT = 0.3
 
 UNNAMED_SHARE = 0.01
 """Of structure that no name accounts for: a tenth of the rms. A user may set it."""
-CHANGE = 0.2
-"""Of that, what may go if an effect's numbers may differ in time."""
 LOOSE = 0.25
 """In all: half of the gap's rms."""
 UNKNOWN = 0.5

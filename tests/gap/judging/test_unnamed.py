@@ -16,7 +16,7 @@ from hystbench.gap.judging.known_signals import halves, low_pass
 from hystbench.gap.judging.unnamed import SORTS, Unnamed, what_is_unnamed
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import CHANGE, UNNAMED_SHARE
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from tests.gap.made import record
 from tests.gap.small import block, measured, state_of
 
@@ -175,15 +175,14 @@ def test_a_path_that_is_named_owns_slow_paths():
 def test_one_number_sets_both_limits():
     for share in (0.01, 0.05):
         assert Unnamed(1.01 * share).too_much(share)
-        assert not Unnamed(0.99 * share, 0.99 * CHANGE * share).too_much(share)
-        assert Unnamed(0.0, 1.01 * CHANGE * share).too_much(share)
+        assert not Unnamed(0.99 * share, changing=0.5).too_much(share)
 
 
-def test_what_changes_is_told_where_that_alone_withdraws():
-    found = Unnamed(0.002, 0.004, 0.0, {"statics": 50.0})
-    assert found.sort() == "strength"
-    assert "0.4 %" in found.reason()
-    assert found.mapping()["sentence"] == SORTS["strength"]
+def test_a_sort_is_told_where_more_stays_than_may():
+    found = Unnamed(0.02, 0.004, 0.0, {"statics": 50.0, "rate": 20.0})
+    assert found.sort() == "curve"
+    assert "2 %" in found.reason()
+    assert found.mapping()["sentence"] == SORTS["curve"]
     fine = Unnamed(0.002, 0.001, 0.1, {"statics": 50.0}).mapping()
     assert fine["sort"] is fine["sentence"] is None
 

@@ -17,7 +17,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import Products
 from hystbench.gap.judging.known_signals import PATH, generic_groups, halves
 from hystbench.gap.simulation.reshape import orthonormal, products
-from hystbench.gap.thresholds import CHANGE, LOOSE, UNNAMED_SHARE
+from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.record import FloatArray
 
 RELATED = 0.1
@@ -54,7 +54,8 @@ class Unnamed:
         What follows known signals and the named effects cannot own.
     changing : float or None
         What goes if the effects' strength and numbers may differ between the halves of
-        each record; None where no effect acts on the input.
+        each record; None where no effect acts on the input. It is told and decides
+        nothing: what changes in time is structure too.
     unrelated : float
         What follows no known signal.
     gains : mapping of str to float
@@ -78,7 +79,7 @@ class Unnamed:
 
     def too_much(self, share: float = UNNAMED_SHARE) -> bool:
         """Tell whether more stays unnamed than may."""
-        return self._excess > share
+        return self.structured > share
 
     def told(self, share: float = UNNAMED_SHARE) -> bool:
         """Tell whether so much stays that its sort is said."""
@@ -86,16 +87,10 @@ class Unnamed:
 
     def trust(self, share: float = UNNAMED_SHARE) -> float:
         """Give the factor on a name's confidence: one where no more stays than may."""
-        return 1.0 if self._excess <= share else share / self._excess
-
-    @property
-    def _excess(self) -> float:
-        return max(self.structured, (self.changing or 0.0) / CHANGE)
+        return 1.0 if self.structured <= share else share / self.structured
 
     def sort(self, share: float = UNNAMED_SHARE) -> str:
         """Give the sort of what stays: a key of :data:`SORTS`."""
-        if (self.changing or 0.0) > CHANGE * share and self.structured <= share:
-            return "strength"
         best = max(self.gains, key=lambda name: self.gains[name], default=None)
         lone = self.structured < RELATED * self.stays
         if best is None or self.gains[best] <= 0 or lone:
@@ -104,16 +99,10 @@ class Unnamed:
 
     def reason(self, share: float = UNNAMED_SHARE) -> str:
         """Say why no name stands."""
-        if self.structured > share:
-            much = (
-                f"{_percent(self.structured)} of the gap's power follows known signals "
-                "in a way that no number of the named effects accounts for"
-            )
-        else:
-            much = (
-                f"{_percent(self.changing or 0.0)} of the gap's power goes if the "
-                "named effects may change within records"
-            )
+        much = (
+            f"{_percent(self.structured)} of the gap's power follows known signals in "
+            "a way that no number of the named effects accounts for"
+        )
         return f"{much}: {SORTS[self.sort(share)]}"
 
     def mapping(self, share: float = UNNAMED_SHARE) -> dict[str, Any]:
