@@ -14,7 +14,6 @@ from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, of
 from hystbench.challenge.contest.tables import calibration_error, middle
 from hystbench.challenge.contest.wilson import wilson
 from hystbench.files import read_json
-from hystbench.gap.schema import SCHEMA
 from hystbench.yaml_files import load_yaml
 
 OURS = {"gain-error": "calibration-error", "offset": "calibration-error"}
@@ -30,7 +29,7 @@ COLUMNS = (
 )
 
 
-def told(case: Path) -> Row:
+def told(case: Path, schema: Mapping[str, Any]) -> Row:
     """Judge one case.
 
     Parameters
@@ -40,6 +39,8 @@ def told(case: Path) -> Row:
         null with nothing hidden, ``noise_rms``, ``model_error_rms_holdout``,
         ``gap_rms_holdout`` and ``effects``, each with its ``name``) and
         ``result/gap.json``. Where that is missing the case is lost.
+    schema : mapping
+        Of gap.json.
     """
     truth = load_yaml(case / "truth.yaml")
     name = str(truth["family"])
@@ -74,12 +75,12 @@ def told(case: Path) -> Row:
         "cpu_seconds": None,
     }
     told = f"{case.parent.name}/{case.name}"
-    return judge("gap", told, ours, answer, SCHEMA, lambda members: members)
+    return judge("gap", told, ours, answer, schema, lambda members: members)
 
 
-def rows(cases: Sequence[Path]) -> list[Row]:
+def rows(cases: Sequence[Path], schema: Mapping[str, Any]) -> list[Row]:
     """Judge cases, folders as for :func:`told`."""
-    return [told(case) for case in cases]
+    return [told(case, schema) for case in cases]
 
 
 @dataclass(frozen=True)

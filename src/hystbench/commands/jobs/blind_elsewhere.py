@@ -20,8 +20,9 @@ def blind_elsewhere(cases: tuple[Path, ...], own: Path | None, out: Path) -> Non
     """Score CASES, folders with truth.yaml and result/gap.json, as a table."""
     from hystbench.challenge.contest.elsewhere import beside, rows  # late: pandas
     from hystbench.challenge.contest.frames import frame, read_rows
+    from hystbench.gap.schema import SCHEMA
 
     mine = read_rows([own] if own else [])
-    table = beside(mine[mine["solver"] == "gap"], frame(rows(cases)))
+    table = beside(mine[mine["solver"] == "gap"], frame(rows(cases, SCHEMA)))
     with atomic_path(out) as fresh:
         table.to_csv(fresh, index=False)
