@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from hystbench.challenge.contest.score import Row, judge
-from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, of
+from hystbench.challenge.contest.frames import CONFIDENT
+from hystbench.challenge.contest.score import Row, judge, stated
+from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, Figure, of
 from hystbench.challenge.contest.tables import calibration_error, middle
-from hystbench.challenge.contest.wilson import wilson
 from hystbench.files import read_json
 from hystbench.yaml_files import load_yaml
 
@@ -22,7 +21,6 @@ FAMILY = {"gpi": "gpi", "preisach": "preisach", "ja": "jiles-atherton"}
 """The contest's family of plants, by a word that the other plant's has in its name."""
 FORM = "of another plant"
 """Its parameters are not compared: they are of another parametrisation."""
-NO_VIEW: tuple[Any, ...] = ()
 COLUMNS = (
     *("figure", "asked", "own", "own_cases"),
     *("elsewhere", "low", "high", "elsewhere_cases"),
@@ -49,7 +47,7 @@ def told(case: Path, schema: Mapping[str, Any]) -> Row:
         {
             "name": OURS.get(item["name"], item["name"]),
             "form": FORM,
-            "where": NO_VIEW,
+            "where": (),
             "ratio_retuned_db": None,
         }
         for item in truth["effects"]
@@ -74,8 +72,8 @@ def told(case: Path, schema: Mapping[str, Any]) -> Row:
         "seconds": None,
         "cpu_seconds": None,
     }
-    told = f"{case.parent.name}/{case.name}"
-    return judge("gap", told, ours, answer, schema, lambda members: members)
+    place = f"{case.parent.name}/{case.name}"
+    return judge("gap", place, ours, answer, schema, lambda members: members)
 
 
 def rows(cases: Sequence[Path], schema: Mapping[str, Any]) -> list[Row]:
@@ -83,54 +81,23 @@ def rows(cases: Sequence[Path], schema: Mapping[str, Any]) -> list[Row]:
     return [told(case, schema) for case in cases]
 
 
-@dataclass(frozen=True)
-class Shared:
-    """A figure that both plants have: a share of some cases.
-
-    Parameters
-    ----------
-    name : str
-    column : str
-        Of :func:`_with_names`, true or false; empty for all cases.
-    asked : str
-    kind, family : str
-        Empty for all; a family of ``summary.FAMILIES``.
-    ratio_db : float or None
-        None for all.
-    """
-
-    name: str
-    column: str
-    asked: str = ""
-    kind: str = ""
-    family: str = ""
-    ratio_db: float | None = None
-
-    def among(self, cases: pd.DataFrame) -> pd.DataFrame:
-        """Give the cases that it is about."""
-        chosen = pd.Series(data=True, index=cases.index)
-        if self.kind:
-            chosen &= cases["kind"] == self.kind
-        if self.family:
-            chosen &= cases["family"].isin(FAMILIES[self.family])
-        if self.ratio_db is not None:
-            chosen &= (cases["ratio_db"] == self.ratio_db).fillna(value=False)
-        return cases[chosen]
-
-
+FIRST = ("top1", "single")
+SURELY = "unlisted: named with more than 0.8"
 SHARES = (
-    Shared("single, exact base, 20 dB", "top1", ">= 0.95", "single", "gpi", 20.0),
-    Shared("single, foreign base, 20 dB", "top1", ">= 0.88", "single", "foreign", 20.0),
-    Shared("nothing beside, exact", "exact", ">= 0.88", "single", "gpi", 20.0),
-    Shared("nothing beside, foreign", "exact", ">= 0.88", "single", "foreign", 20.0),
-    Shared("single, exact base, 10 dB", "top1", "", "single", "gpi", 10.0),
-    Shared("single, foreign base, 10 dB", "top1", "", "single", "foreign", 10.0),
-    Shared("pair: both named", "all_named", ">= 0.88", "pair"),
-    Shared("pair: nothing beside", "exact", ">= 0.8", "pair"),
-    Shared("nothing hidden: no name", "no_name", ">= 0.99", "none"),
-    Shared("unlisted: no name", "no_name", ">= 0.9", "unlisted"),
-    Shared("unlisted: named with more than 0.8", "surely", "<= 0.03", "unlisted"),
-    Shared("wrong name with more than 0.8", "wrongly", "<= 0.03"),
+    Figure("single, exact base, 20 dB", *FIRST, "gpi", 20.0, ">=", 0.95),
+    Figure(
+        "single, foreign base, 20 dB", "top1", "single", "foreign", 20.0, ">=", 0.88
+    ),
+    Figure("nothing beside, exact", "exact", "single", "gpi", 20.0, ">=", 0.88),
+    Figure("nothing beside, foreign", "exact", "single", "foreign", 20.0, ">=", 0.88),
+    Figure("single, exact base, 10 dB", *FIRST, "gpi", 10.0),
+    Figure("single, foreign base, 10 dB", *FIRST, "foreign", 10.0),
+    Figure("pair: both named", "all_named", "pair", "all", None, ">=", 0.88),
+    Figure("pair: nothing beside", "exact", "pair", "all", None, ">=", 0.8),
+    Figure("nothing hidden: no name", "no_name", "none", "all", None, ">=", 0.99),
+    Figure("unlisted: no name", "no_name", "unlisted", "all", None, ">=", 0.9),
+    Figure(SURELY, "confident", "unlisted", "all", None, "<=", 0.03),
+    Figure("wrong name with more than 0.8", "wrongly", "all", sense="<=", bound=0.03),
 )
 
 
@@ -150,10 +117,7 @@ def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
     both = [_with_names(cases) for cases in (own, elsewhere)]
     found: list[tuple[Any, ...]] = []
     for figure in SHARES:
-        here, there = (
-            wilson(int(chosen[figure.column].fillna(value=False).sum()), len(chosen))
-            for chosen in map(figure.among, both)
-        )
+        here, there = map(figure.share, both)
         found.append((figure.name, figure.asked, here.share, here.cases, *there))
     for name, families, asked in (
         ("gap closed, median, exact base", FAMILIES["gpi"], ">= 0.95"),
@@ -182,24 +146,15 @@ def _number(
 def _with_names(cases: pd.DataFrame) -> pd.DataFrame:
     """Add whether no name is given, one surely, and a wrong one surely."""
     names = [
-        _stated(row) if row["verdict"] == "named" else {}
-        for row in cases.to_dict("records")
+        stated(words) if verdict == "named" else {}
+        for verdict, words in zip(cases["verdict"], cases["confidences"], strict=True)
     ]
     hidden = [str(truth).split() for truth in cases["truth"]]
     return cases.assign(
         no_name=[not x for x in names],
-        surely=[any(sure > SURE for sure in x.values()) for x in names],
+        confident=[any(sure > CONFIDENT for sure in x.values()) for x in names],
         wrongly=[
-            any(sure > SURE and name not in true for name, sure in x.items())
+            any(sure > CONFIDENT and name not in true for name, sure in x.items())
             for x, true in zip(names, hidden, strict=True)
         ],
     )
-
-
-SURE = 0.8
-
-
-def _stated(row: Mapping[Any, Any]) -> dict[str, float]:
-    """Give the stated confidence of each name of a case."""
-    parts = (word.rpartition("=") for word in str(row["confidences"]).split())
-    return {name: float(sure) for name, _, sure in parts}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from hystbench.challenge.contest.score import COLUMNS, Row
+from hystbench.challenge.contest.score import COLUMNS, Row, stated
 from hystbench.errors import InputError
 from hystbench.files import write_csv
 
@@ -59,7 +59,7 @@ def _typed(table: pd.DataFrame) -> pd.DataFrame:
             numbers = pd.to_numeric(column.replace("", None))
             dtype = pd.Int64Dtype() if kind.startswith("int") else pd.Float64Dtype()
             table[item.name] = numbers.astype(dtype)
-    told = table["confidences"].str.findall(r"=(\S+)")
-    highest = [max(map(float, each), default=0.0) for each in told]
+    told = map(stated, table["confidences"])
+    highest = [max(names.values(), default=0.0) for names in told]
     table["confident"] = pd.array([x > CONFIDENT for x in highest], dtype="boolean")
     return table

@@ -216,6 +216,12 @@ def judge(
     )
 
 
+def stated(confidences: str) -> dict[str, float]:
+    """Give the stated confidence of each name, as a row has them."""
+    parts = (word.rpartition("=") for word in confidences.split())
+    return {name: float(confidence) for name, _, confidence in parts}
+
+
 _NOTHING: dict[str, Any] = {"verdict": "", "effects": [], "where": [], "gap": None}
 
 

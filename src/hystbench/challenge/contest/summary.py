@@ -41,9 +41,8 @@ class Figure:
     name : str
     column : str
         The figure of a case, true or false.
-    kind : str
-    family : str
-        Of :data:`FAMILIES`.
+    kind, family : str
+        ``all``, or a kind of case and one of :data:`FAMILIES`.
     ratio_db : float or None
         None for all.
     sense, bound
@@ -58,9 +57,16 @@ class Figure:
     sense: str = ""
     bound: float = 0.0
 
+    @property
+    def asked(self) -> str:
+        """What is asked, in words; empty where nothing is."""
+        return f"{self.sense} {self.bound:g}" if self.sense else ""
+
     def share(self, cases: pd.DataFrame) -> Share:
         """Compute the share over the cases that it is about."""
-        chosen = cases["kind"] == self.kind
+        chosen = pd.Series(data=True, index=cases.index)
+        if self.kind != "all":
+            chosen &= cases["kind"] == self.kind
         if self.family != "all":
             chosen &= cases["family"].isin(FAMILIES[self.family])
         if self.ratio_db is not None:

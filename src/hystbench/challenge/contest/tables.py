@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from hystbench.challenge.contest.experiments import experiment
-from hystbench.challenge.contest.score import SHAPE
+from hystbench.challenge.contest.score import SHAPE, stated
 from hystbench.challenge.contest.wilson import Share, wilson
 
 #: Edges of the bins of stated confidence.
@@ -130,14 +130,13 @@ def _families(cases: pd.DataFrame) -> list[tuple[Any, pd.DataFrame]]:
     return [("all", cases), *cases.groupby("family")] if len(cases) else []
 
 
-def stated(cases: pd.DataFrame) -> list[tuple[float, bool]]:
+def _outcomes(cases: pd.DataFrame) -> list[tuple[float, bool]]:
     """Give the stated confidence of each effect named, and whether it is hidden."""
-    out = []
-    for truth, told in zip(cases["truth"], cases["confidences"], strict=True):
-        for word in told.split():
-            name, _, confidence = word.rpartition("=")
-            out.append((float(confidence), name in truth.split()))
-    return out
+    return [
+        (confidence, name in truth.split())
+        for truth, words in zip(cases["truth"], cases["confidences"], strict=True)
+        for name, confidence in stated(words).items()
+    ]
 
 
 def reliability(cases: pd.DataFrame) -> list[tuple[Any, ...]]:
@@ -149,7 +148,7 @@ def reliability(cases: pd.DataFrame) -> list[tuple[Any, ...]]:
         ``from, to, stated, share, low, high, effects`` of each bin that holds any;
         ``stated`` is the mean.
     """
-    pairs = stated(cases)
+    pairs = _outcomes(cases)
     out: list[tuple[Any, ...]] = []
     for low, high in itertools.pairwise(CONFIDENCES):
         inside = [x for x in pairs if low <= x[0] < high or (x[0] == high == 1.0)]
@@ -163,7 +162,7 @@ def reliability(cases: pd.DataFrame) -> list[tuple[Any, ...]]:
 
 def brier(cases: pd.DataFrame) -> float | None:
     """Mean square of stated confidence minus what happened (1 or 0)."""
-    pairs = stated(cases)
+    pairs = _outcomes(cases)
     if not pairs:
         return None
     return float(np.mean([(said - right) ** 2 for said, right in pairs]))
