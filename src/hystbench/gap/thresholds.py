@@ -32,6 +32,8 @@ SWAP = 3.0
 """A rival, to take the place of an effect that was named before others."""
 MOST = 4
 """Effects that are named, at most."""
+UNKNOWN = 0.5
+"""Standard error of an effect's size, as a share of it: two of them reach nothing."""
 
 # Where the base's own hysteresis may be slightly wrong.
 
@@ -51,8 +53,6 @@ UNNAMED_SHARE = 0.01
 """Of structure that no name accounts for: a tenth of the rms. A user may set it."""
 LOOSE = 0.25
 """In all: half of the gap's rms."""
-UNKNOWN = 0.5
-"""Standard error of an effect's size, as a share of it: two of them reach nothing."""
 
 # With nothing named: whether there is a gap.
 
@@ -70,6 +70,15 @@ LONE = 0.12
 """Power that stays in samples far off, over that of the gap, that is not noise."""
 SOME = 0.03
 """Share of what is left that differs between periods, to be told from settling."""
+
+# What takes a name back.
+
+WORSE_HELD_OUT = 1.01
+"""RMS on hold-out records over the base's.
+
+Noise alone may move it by less, up or down: to withdraw a name for that would be to
+toss a coin for it.
+"""
 
 # How sure a name is.
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.holdout.withdrawal import (
-    WORSE,
+    WORSE_HELD_OUT,
     first_figure,
     withdrawal,
     without_names,
@@ -47,7 +47,7 @@ def test_what_is_worse_than_the_base_goes_whatever_the_verdict_was(verdict, name
 
     assert taken(0.5) is None
     assert taken(1.0) is None
-    assert taken(WORSE) is None  # no more than rounding is worth
+    assert taken(WORSE_HELD_OUT) is None  # no more than rounding is worth
     for after in (1.02, 30.0, None):
         found = taken(after)
         assert found["names"] == list(names)

@@ -36,6 +36,10 @@ class Declined(Exception):  # noqa: N818  (an answer, not an error)
     """An effect cannot be judged on these records or in this chain; says why."""
 
 
+Refused = Literal["", "either", "upper"]
+"""Ends of a number's range at which an effect is not accepted."""
+
+
 @dataclass(frozen=True)
 class Beside:
     """A signal that the input does not explain, new in every record.
@@ -83,7 +87,7 @@ class Variant:
         Added to the output of the chain, which stays as it is.
     charge : float, optional
         Parameters to be charged, where it is not the number of those searched.
-    not_at_an_end : tuple of str
+    refused : dict of str to {"either", "upper"}
         Searched parameters that at an end of their range make another thing of the
         effect: there it is not accepted.
     replaces : bool
@@ -107,7 +111,7 @@ class Variant:
     free: tuple[str, ...] = ()
     beside: Beside | None = None
     charge: float | None = None
-    not_at_an_end: tuple[str, ...] = ()
+    refused: dict[str, Refused] = field(default_factory=dict)
     replaces: bool = False
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
     neutral: bool = True
@@ -142,6 +146,8 @@ class Effect(ABC):
     of each has as a number of the effect."""
     numbers: ClassVar[tuple[str, ...]] = ()
     """Of its blocks, the parameters that are numbers of the effect; by default all."""
+    free_forms: ClassVar[tuple[str, ...]] = ()
+    """Forms that bend to much of what is there, as a path does: no law."""
     laws: ClassVar[tuple[str, ...]] = ()
     """Blocks of other laws of the effect, beside the one that has its name."""
     vanishing: ClassVar[str] = ""
@@ -172,7 +178,7 @@ class Effect(ABC):
         unit: dict[str, float] | None = None,
         positive: tuple[str, ...] = (),
         free: tuple[str, ...] = (),
-        not_at_an_end: tuple[str, ...] = (),
+        refused: dict[str, Refused] | None = None,
         limits: dict[str, tuple[float, float]] | None = None,
         neutral: bool = True,
         zero: dict[str, float] | None = None,
@@ -207,7 +213,7 @@ class Effect(ABC):
             unit or {},
             positive,
             free or (*(grids or {}), *(unit or {})),
-            not_at_an_end=not_at_an_end,
+            refused=refused or {},
             limits=limits or {},
             neutral=neutral,
             zero=zero,

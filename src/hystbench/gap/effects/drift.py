@@ -18,6 +18,10 @@ from hystbench.gap.records.nuisance import periods_of_input, shows_a_path
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray, Record
 
+PATH, WINDING = "path", "winding path"
+FORMS = {"ramp": 1, PATH: 4, WINDING: 10}
+"""Degree of the polynomial that is tried in each record."""
+
 
 class Drift(Effect):
     """A ramp or a slow path, of its own in every record."""
@@ -25,6 +29,7 @@ class Drift(Effect):
     name = "drift"
     shows = "unexplained"
     place = "sensor"
+    free_forms = (PATH, WINDING)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer one slope for all records, a ramp in each, and a path in each."""
@@ -46,11 +51,6 @@ class Drift(Effect):
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, float]:
         """Give the block's slope: the mean one, of a path that of its ramp."""
         return {"slope": float(np.mean(amplitudes[:, 0]))}
-
-
-PATH, WINDING = "path", "winding path"
-FORMS = {"ramp": 1, PATH: 4, WINDING: 10}
-"""Degree of the polynomial that is tried in each record."""
 
 
 def degree(record: Record, order: int) -> int:

@@ -34,7 +34,7 @@ class Friction(Effect):
                     1e-4 * simulation.fastest(), simulation.fastest() / 5, 2
                 )
             },
-            not_at_an_end=("velocity_scale",),
+            refused={"velocity_scale": "either"},
             unit={"coulomb": 1e-3 * simulation.largest(end)},
         )
 

@@ -18,6 +18,7 @@ class HysteresisShape(Effect):
     name = "hysteresis-shape"
     shows = "branch"
     place = "material"
+    free_forms = ("",)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the correction of the chain's hysteresis."""

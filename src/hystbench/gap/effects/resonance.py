@@ -46,7 +46,7 @@ class Resonance(Effect):
                 "damping_ratio": np.array([0.01, 0.15]),
             },
             unit={"participation": 0.01},
-            not_at_an_end=("frequency_hz", "damping_ratio"),
+            refused={"frequency_hz": "either", "damping_ratio": "either"},
             limits={"damping_ratio": (0.001, 0.33)},
         )
 

@@ -50,4 +50,6 @@ class Saturation(Effect):
                 "level": (0.5 * largest, WEAKEST * largest),
                 "sharpness": (SOFTEST, SHARPEST),
             },
+            # The field is the drive's: a corner there is the drive's limit.
+            refused={"sharpness": "upper"} if of else {},
         )

@@ -13,6 +13,9 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Values, Variant
 from hystbench.gap.fitting.state import Added, Free, ModelState
 
+AT_END = 0.02
+"""Share of a range, of its logarithm, that is an end of it."""
+
 
 def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
     """Give the numbers that a variant leaves free, inside the range searched."""
@@ -24,7 +27,8 @@ def numbers_of(block: Block, position: int, variant: Variant) -> Iterator[Free]:
             for element in range(len(value)):
                 yield Free(position, name, element)
         elif name in variant.grids:
-            yield Free(position, name, None, None, *variant.ends(name))
+            refused = variant.refused.get(name, "")
+            yield Free(position, name, None, None, *variant.ends(name), refused)
         else:
             yield Free(position, name)
 
@@ -137,12 +141,13 @@ def removable(state: ModelState, number: int) -> bool:
     )
 
 
-def at_end(state: ModelState, variant: Variant) -> str:
-    """Name a parameter of the effect added last that lies at an end of its range."""
-    own = state.added[-1].blocks
+def at_end(state: ModelState) -> str:
+    """Name a number of the effect added last that lies at a refused end."""
     for free in state.free:
-        if free.block in own and free.parameter in variant.not_at_an_end:
-            value, width = state.value(free), np.log(free.high / free.low)
-            if not 0.02 < np.log(value / free.low) / width < 0.98:
-                return f"{free.parameter} = {value:.3g}"
+        if free.block not in state.added[-1].blocks or not free.refused:
+            continue
+        value = state.value(free)
+        place = np.log(value / free.low) / np.log(free.high / free.low)
+        if place > 1 - AT_END or (free.refused == "either" and place < AT_END):
+            return f"{free.parameter} = {value:.3g}"
     return ""

@@ -13,7 +13,7 @@ from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Beside, Values
+from hystbench.gap.effects.base import Beside, Refused, Values
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.simulation import Signals, Simulation
@@ -30,6 +30,8 @@ class Free(NamedTuple):
     """Expected size of the change; None where nothing is known."""
     low: float = -np.inf
     high: float = np.inf
+    refused: Refused = ""
+    """Which ends of its range make another thing of its effect."""
 
 
 class Added(NamedTuple):

@@ -10,11 +10,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from hystbench.gap.naming.built_in import BuiltIn
+from hystbench.gap.thresholds import WORSE_HELD_OUT
 from hystbench.gap.vocabulary import Vocabulary
 
-WORSE = 1.01
-"""RMS over the base's on hold-out records that is worse. Noise alone may move it by
-less, up or down: to withdraw a name for that would be to toss a coin for it."""
 LEAST = 5e-4
 """Share that is told as none: it would read 0.0 %."""
 
@@ -60,7 +58,7 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """
     gap, unit = content["gap"], content["unit"]
     before, after = gap["before"], gap["after"]
-    if after is not None and after <= WORSE * before:
+    if after is not None and after <= WORSE_HELD_OUT * before:
         return None
     names = [item["name"] for item in content["effects"]]
     what = " and ".join(names) or "the re-tuning of the base"

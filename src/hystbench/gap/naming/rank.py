@@ -23,6 +23,7 @@ from hystbench.gap.naming.rounds import Candidate, TriedVariant, in_order
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.thresholds import (
     CERTAIN,
+    LOOSE,
     PAYS,
     SHAPE,
     UNNAMED_SHARE,
@@ -37,6 +38,7 @@ FINALISTS = 6
 """Effects that are added and refitted jointly before one is taken."""
 EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
+AT_AN_END = "fits best at the end of what it can be"
 
 
 def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
@@ -133,7 +135,7 @@ def rank(
         for item in candidates
     )
     if not folds:
-        return (*beyond_an_offset(candidates, state, score), *declined)
+        return (*beyond_simpler_laws(candidates, state, score), *declined)
     judged = [
         _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
     ]
@@ -144,35 +146,50 @@ def rank(
         first = candidates.pop(0)
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)
-        candidates = in_order([again, *candidates])
-    return (*beyond_an_offset(candidates, state, score), *declined)
+        # Behind it there may now be one that could not be the first before.
+        candidates = in_order(
+            first_on_folds(in_order([again, *candidates]), state, score)
+        )
+    return (*beyond_simpler_laws(candidates, state, score), *declined)
 
 
-def beyond_an_offset(
+def beyond_simpler_laws(
     candidates: Sequence[Candidate], before: ModelState, score: Score
 ) -> list[Candidate]:
-    """Charge what a law has beside an offset of the output as a further effect.
+    """Charge what bends to much as a further effect, where a simpler law does nearly.
 
-    A bias of the field has one, as the sensor may be set to zero with it on. Where an
-    effect of fewer numbers leaves hardly more of the gap, the bias has to be beyond
-    doubt: it may stand for what the simulation misses.
+    Two sorts do: a free form, such as a path or a correction of the hysteresis, which
+    is no rival of a law that leaves no more than may stay in all; and what a law has
+    beside an offset of the output, as a bias of the field has one when the sensor is
+    set to zero with it on, where an effect of fewer numbers leaves hardly more of the
+    gap. Either may stand for what the simulation misses, so that it has to be beyond
+    doubt.
     """
     floor = score.floor
     gap = before.power(floor)
 
     def charged(item: Candidate) -> Candidate:
-        if item.state is None or item.form not in effects()[item.effect].offsets:
+        more = _may_leave_more(item)
+        if item.state is None or not more:
             return item
         for other in candidates:
             if other.state is None or other.gain < PAYS or other.score <= item.score:
                 continue
-            more = item.state.freedom > other.state.freedom
-            if more and item.state.share(other.state, floor, gap) < UNNAMED_SHARE:
+            simpler = item.state.freedom > other.state.freedom
+            if simpler and item.state.share(other.state, floor, gap) < more:
                 dearer, gain = item.score + CERTAIN, item.gain - CERTAIN
                 return replace(item, score=dearer, gain=gain)
         return item
 
     return in_order(charged(item) for item in candidates)
+
+
+def _may_leave_more(item: Candidate) -> float:
+    """Give the share of the gap that a simpler law may leave more; none for most."""
+    effect = effects()[item.effect]
+    if item.form in effect.free_forms:
+        return LOOSE
+    return UNNAMED_SHARE if item.form in effect.offsets else 0.0
 
 
 def _tested(trial: Trial) -> TriedVariant:
@@ -201,9 +218,8 @@ def _judged(trial: Trial, state: ModelState, score: Score, now: float) -> Candid
         after, value = cached.added(state, trial, score)
     except InputError as error:
         return declined(f"fits best where {error}")
-    end = at_end(after, variant)
-    if end:
-        return declined(f"fits best at the end of what it can be: {end}")
+    if end := at_end(after):
+        return declined(f"{AT_AN_END}: {end}")
     power = state.power(score.floor)
     if after.share(state, score.floor, power) < -WORSE:
         return declined("makes the gap wider")
@@ -233,6 +249,8 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
         after, value = cached.finished(item.state, score)
     except CallsUsedUp as error:
         return Candidate(item.effect, item.place, declined=str(error))
+    if end := at_end(after):
+        return Candidate(item.effect, item.place, declined=f"{AT_AN_END}: {end}")
     return replace(item, state=after, score=value, gain=now - value)
 
 
@@ -246,7 +264,7 @@ def first_on_folds(
     """
     best, found = np.inf, []
     for item in candidates:
-        if item.score < best + CERTAIN:
+        if item.held_back is None and item.score < best + CERTAIN:
             item = on_folds(item, before, score)
         if item.state is not None and not item.declined:
             best = min(best, item.score)

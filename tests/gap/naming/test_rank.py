@@ -1,0 +1,98 @@
+"""What stands first of the effects that were tried beside a model."""
+
+from dataclasses import dataclass, replace
+
+import pytest
+
+from hystbench.gap.effects import effects
+from hystbench.gap.naming import rank as module
+from hystbench.gap.naming.rank import beyond_simpler_laws, make_score, rank
+from hystbench.gap.naming.rounds import Candidate
+from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS
+from tests.gap.small import block, measured, plain_score, records, state_of
+
+NOISE = 0.02
+
+
+def ranked(chain, more=(), names=("calibration-error", "asymmetry")):
+    """Rank some effects beside a base on what a chain gives, slightly disturbed."""
+    given = measured(chain, NOISE, given=records() * 3)
+    state = state_of(more, given)
+    known = [effects()[name] for name in names]
+    return rank(state, make_score(state, NOISE), known)
+
+
+@pytest.mark.parametrize("bias", [0.0, 4e-3, 8e-3])
+def test_an_offset_is_no_bias_of_the_field(bias):
+    """A bias with the sensor's zero free has an offset and one number more.
+
+    What it takes beyond an offset is a hundredth of the gap at most.
+    """
+    base = (block("prandtl-ishlinskii", thresholds=[0.0, 0.2, 0.4], weights=[4, 3, 2]),)
+    field = (block("gain", value=1.0, offset=bias), *base)
+    first, *_ = ranked((*field, block("calibration-error", gain=1.0, offset=0.3)), base)
+    assert first.effect == "calibration-error"
+
+
+LOOP = (block("prandtl-ishlinskii", thresholds=[0.0, 0.2, 0.4], weights=[4, 3, 2]),)
+FREE = "hysteresis-shape"
+
+
+@dataclass
+class Leaves:
+    """A model that leaves a share of the gap, with as many numbers."""
+
+    left: float
+    freedom: float
+
+    def share(self, other, _floor, _gap):
+        return other.left - self.left
+
+    def power(self, _floor):
+        return self.left
+
+
+@pytest.mark.parametrize(
+    ("left", "behind", "gain", "first"),
+    [
+        (0.02, 10.0, 300.0, "creep"),
+        (0.02, CERTAIN + 10, 300.0, FREE),  # beyond doubt
+        (LOOSE + 0.02, 10.0, 300.0, FREE),  # the law leaves too much to be a name
+        (0.02, 10.0, PAYS - 1, FREE),  # it does not pay
+    ],
+)
+def test_a_free_correction_is_no_rival_of_a_law_that_leaves_little(
+    left, behind, gain, first
+):
+    score = plain_score(state_of(LOOP))
+    free = Candidate(FREE, "material", "", 0.0, 400.0, Leaves(0.01, 23.0))
+    law = Candidate("creep", "material", "", behind, gain, Leaves(left, 2.0))
+    ranking = beyond_simpler_laws([free, law], Leaves(1.0, 0.0), score)
+    assert ranking[0].effect == first
+
+
+def test_a_corner_of_the_field_is_the_limit_of_the_drive():
+    """Of a soft limit the sharpest is a clip: it is no saturation."""
+    clipped = (block("drive-saturation", limit=0.5), *LOOP)
+    first, soft = ranked(clipped, LOOP, ("saturation", "drive-saturation"))
+    assert first.effect == "drive-saturation"
+    assert soft.effect == "saturation"
+    assert "sharpness = 50" in soft.declined
+
+
+def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch):
+    """Simulated exactly the first may become worse than one that was out of reach."""
+    calls = []
+
+    def worse(item, score, now):
+        calls.append(item.effect)
+        change = 1e4 if len(calls) > 1 else 0.0
+        return replace(item, score=item.score + change, gain=item.gain - change)
+
+    monkeypatch.setattr(module, "EXACT", 1)
+    monkeypatch.setattr(module, "exactly", worse)
+    lag = block("sensor-lag", time_constant_s=0.004)
+    names = ("sensor-lag", "input-delay", "calibration-error", "backlash")
+    ranking = ranked((*LOOP, lag), LOOP, names)
+    paying = [item for item in ranking if item.gain >= PAYS]
+    assert paying[0].held_back is not None
