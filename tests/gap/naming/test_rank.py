@@ -81,18 +81,25 @@ def test_a_corner_of_the_field_is_the_limit_of_the_drive():
 
 
 def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch):
-    """Simulated exactly the first may become worse than one that was out of reach."""
-    calls = []
+    """Behind those that get worse there may be one that was out of reach before."""
+    judges = {name: getattr(module, name) for name in ("exactly", "on_folds")}
+    # The lag loses on records held back; simulated exactly the next two do.
+    loses = [("on_folds", "sensor-lag")]
+    loses += [("exactly", x) for x in ("rate-dependent-hysteresis", "eddy-diffusion")]
 
-    def worse(item, score, now):
-        calls.append(item.effect)
-        change = 1e4 if len(calls) > 1 else 0.0
-        return replace(item, score=item.score + change, gain=item.gain - change)
+    def judge(name):
+        def judged(item, *rest):
+            found = judges[name](item, *rest)
+            less = 1e4 * ((name, item.effect) in loses)
+            return replace(found, score=found.score + less, gain=found.gain - less)
+
+        return judged
 
     monkeypatch.setattr(module, "EXACT", 1)
-    monkeypatch.setattr(module, "exactly", worse)
+    for name in judges:
+        monkeypatch.setattr(module, name, judge(name))
+    names = ("sensor-lag", "rate-dependent-hysteresis", "eddy-diffusion", "input-delay")
     lag = block("sensor-lag", time_constant_s=0.004)
-    names = ("sensor-lag", "input-delay", "calibration-error", "backlash")
-    ranking = ranked((*LOOP, lag), LOOP, names)
-    paying = [item for item in ranking if item.gain >= PAYS]
-    assert paying[0].held_back is not None
+    first, *_ = ranked((*LOOP, lag), LOOP, names)
+    assert first.effect == "input-delay"
+    assert first.held_back is not None
