@@ -27,19 +27,26 @@ EXPORT void hb_slew_limit(index_t n, double rate, const double *z, double *out)
     }
 }
 
-/* s > 0 with s + scale (s / unit)^power = all, power at least 1.  The left side is
- * convex and rises at least as steeply as s: the steps of Newton, from the left at most
- * once, come down on the solution from above. The error after a step is of the order of
- * the square of the step, so that one of a ten-millionth is the last. */
+/* s > 0 with s + scale (s / unit)^power = all, power at least 1: the steps of Halley
+ * from a guess.  The error after a step is of the order of the cube of the step, so that
+ * one of a twenty-thousandth is the last. */
 static double split(double all, double scale, double unit, double power, double s)
 {
     for (int step = 0; step < 60 && s > 0; step++) {
         const double rest = scale * pow(s / unit, power);
-        const double change = (s + rest - all) / (1 + power * rest / s);
+        const double over = s + rest - all, slope = 1 + power * rest / s;
+        const double bend = power * (power - 1) * rest / (s * s);
+        const double change = over / (slope - 0.5 * over * bend / slope);
         s -= change;
-        if (fabs(change) <= 1e-7 * all) break;
+        if (fabs(change) <= 5e-5 * s) break;
     }
     return s;
+}
+
+/* The same of power 2. */
+static double split_square(double all, double scale, double unit)
+{
+    return 2 * all / (1 + sqrt(1 + 4 * scale / (unit * unit) * all));
 }
 
 /* The field g that acts, where v - g = c |dg/dt|^a sign(dg/dt): implicit Euler, which
@@ -49,16 +56,23 @@ static double split(double all, double scale, double unit, double power, double 
 EXPORT void hb_acting_field(index_t n, double c, double a, double dt, const double *v,
                             double *out)
 {
-    double now = n > 0 ? v[0] : 0, guess = 0;
+    double now = n > 0 ? v[0] : 0, guess = 0, last = 0, before = 0;
     const int lags = a <= 1;
     const double scale = lags ? dt : c, unit = lags ? c : dt, power = lags ? 1 / a : a;
     for (index_t k = 0; k < n; k++) {
         const double apart = v[k] - now, all = fabs(apart);
         if (all > 0) {
-            /* neither part is larger than the whole, nor than the whole alone asks for */
-            if (!(guess > 0 && guess < all))
-                guess = fmin(all, unit * pow(all / scale, 1 / power));
-            guess = fmin(split(all, scale, unit, power, guess), all);
+            const double on = 3 * (guess - last) + before; /* it goes on as it went */
+            before = last;
+            last = guess;
+            if (power == 2)
+                guess = split_square(all, scale, unit);
+            else if (on > 0 && on < all)
+                guess = split(all, scale, unit, power, on);
+            else /* neither part is larger than the whole, nor than that alone asks for */
+                guess = split(all, scale, unit, power,
+                              fmin(all, unit * pow(all / scale, 1 / power)));
+            guess = fmin(guess, all);
             now = lags ? v[k] - copysign(guess, apart) : now + copysign(guess, apart);
         } else
             now = v[k]; /* level, or not a number */
