@@ -23,7 +23,7 @@ from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.records.disturbances import lone_share
 from hystbench.gap.records.floor import noise_floor
 from hystbench.gap.records.residual import Compared
-from hystbench.gap.thresholds import LONE, PAYS, SHAPE, TIE
+from hystbench.gap.thresholds import FOREIGN, PAYS, SCALE, SHAPE
 from tests.gap.halved import first_halves
 
 SEED = 1
@@ -75,7 +75,7 @@ def test_a_hidden_effect_is_named_first(name, family, offered):
     assert first.gain > PAYS
     # The name holds because of the effect: no other does as well beside the same base.
     second = next(item for item in ranking[1:] if not item.declined)
-    assert second.score > first.score + TIE, told(ranking)
+    assert second.score > first.score + SCALE, told(ranking)
 
 
 def verdict(names, family):
@@ -146,4 +146,4 @@ def test_a_bad_contact_is_what_the_input_does_not_explain():
 
 def test_dropouts_are_seen_as_lone_samples():
     """More than the verdict takes for a gap that effects may explain."""
-    assert lone_share([item.residual for item in gap("dropouts")]) > LONE
+    assert lone_share([item.residual for item in gap("dropouts")]) > FOREIGN

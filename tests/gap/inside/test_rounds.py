@@ -77,7 +77,7 @@ def test_a_further_effect_that_takes_no_share_of_the_gap_must_be_beyond_doubt(
 
 
 @pytest.mark.parametrize(
-    ("behind", "name"), [(5.0, "gravity"), (7.0, "stiffness-hardening")]
+    ("behind", "name"), [(3.0, "gravity"), (5.0, "stiffness-hardening")]
 )
 def test_of_a_tie_a_weight_that_turns_is_likelier_than_a_softer_spring(behind, name):
     found = [

@@ -122,7 +122,7 @@ def told_by_rows(content, effect):
     The last ranking that has it taken counts, and what was refitted there: what was not
     may score better than records held back let the others. A rival is e times less
     likely for every four of score (2 % are kept for what is not in the vocabulary), and
-    what is left of the gap lowers all, down to none at 70 %. A tie is less than six
+    what is left of the gap lowers all by its share. A tie is less than four
     apart. What scores better than a wrong shape that was added is needed beside it, and
     no rival.
     """
@@ -138,9 +138,9 @@ def told_by_rows(content, effect):
     if effect == "hysteresis-shape" and look == 0:
         scores = {name: x for name, x in scores.items() if x >= own}
     odds = sum(math.exp(min((own - other) / 4, 100)) for other in scores.values())
-    ties = [name for name, x in scores.items() if x < own + 6]
-    trust = max(0.0, 1 - content["fit"]["left"] / 0.7)
-    return 0.98 * trust / (1 + odds), ties
+    ties = [name for name, x in scores.items() if x < own + 4]
+    explained = 1 - content["fit"]["left"]
+    return 0.98 * explained / (1 + odds), ties
 
 
 NAMES = ("drive-lag", "hysteresis-shape", "friction", "resonance", "backlash")

@@ -18,11 +18,10 @@ from hystbench.gap.judging.verdict import (
 from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
-    LONE,
+    FOREIGN,
     LOOSE,
+    SCALE,
     SLIGHT,
-    SOME,
-    TIE,
     WIDE,
 )
 from hystbench.record import Channel, Record
@@ -55,7 +54,7 @@ def test_noise_is_no_gap_whatever_the_black_box_says(after, box):
 @given(st.floats(-1, ABOVE_NOISE), SHARES)
 def test_noise_that_stands_in_lone_samples_is_none(after, lone):
     word, reason = judge(left(after, after), False, 0.0, lone=lone)
-    told = lone * (1 + after) > LONE
+    told = lone * (1 + after) > FOREIGN
     assert word == ("unnamed" if told else "no-gap")
     assert ("lone samples" in reason) == told
 
@@ -65,7 +64,7 @@ def test_what_differs_between_periods_is_no_wrong_shape(after, differs):
     # As slight as only a wrong shape of the hysteresis leaves it.
     found = Left(0.0, 0.0, 100.0, after, 1e6)
     word, reason = judge(found, False, 0.0, unrepeated=differs)
-    told = differs > max(ABOVE_NOISE, SOME * after)
+    told = differs > max(ABOVE_NOISE, FOREIGN * after)
     assert word == ("unnamed" if told else "no-gap")
     assert ("one period" in reason) == told
 
@@ -205,7 +204,7 @@ def test_two_that_score_alike_share_the_confidence():
 
 def test_the_set_of_those_that_cannot_be_told_apart():
     state = state_of((block("gain", value=12.0),))
-    scores = {"a": 0.0, "b": 0.9 * TIE, "c": 1.1 * TIE}
+    scores = {"a": 0.0, "b": 0.9 * SCALE, "c": 1.1 * SCALE}
     ranking = [Candidate(k, "drive", score=v, state=state) for k, v in scores.items()]
     ranking.append(Candidate("d", "drive", score=0.1))  # not refitted: no finalist
     assert near(ranking[0], ranking) == ("b",)

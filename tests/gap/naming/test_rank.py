@@ -77,7 +77,7 @@ def test_a_corner_of_the_field_is_the_limit_of_the_drive():
     first, soft = ranked(clipped, LOOP, ("saturation", "drive-saturation"))
     assert first.effect == "drive-saturation"
     assert soft.effect == "saturation"
-    assert "sharpness = 50" in soft.declined
+    assert "sharpness = 20" in soft.declined
 
 
 def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch):

@@ -19,7 +19,7 @@ from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.removal import TakenOut, needless, unknown, without_what_goes
 from hystbench.gap.naming.rounds import Round
 from hystbench.gap.progress import silent
-from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, LOOSE, PAYS, SHAPE
 from tests.gap.small import block, hysteresis, measured, state_of
 
 NOISE = 0.02
@@ -124,11 +124,11 @@ def test_an_effect_is_not_needless_for_numbers_found_under_another_score(given):
 @pytest.mark.parametrize(
     ("effect", "gain", "share", "goes"),
     [
-        (SHAPE, PAYS + 1, 2 * MOST_OF_IT, False),
-        (SHAPE, PAYS + 1, MOST_OF_IT / 2, True),
-        (SHAPE, PAYS - 1, 2 * MOST_OF_IT, True),
-        (SHAPE, FURTHER + 1, MOST_OF_IT / 2, False),
-        ("asymmetry", PAYS + 1, 2 * MOST_OF_IT, True),
+        (SHAPE, PAYS + 1, 2 * LOOSE, False),
+        (SHAPE, PAYS + 1, LOOSE / 2, True),
+        (SHAPE, PAYS - 1, 2 * LOOSE, True),
+        (SHAPE, FURTHER + 1, LOOSE / 2, False),
+        ("asymmetry", PAYS + 1, 2 * LOOSE, True),
     ],
 )
 def test_a_wrong_shape_stays_by_the_rule_by_which_it_came(

@@ -9,8 +9,8 @@ import numpy as np
 from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
 from hystbench.gap.simulation.simulation import Simulation
 
-SOFTEST, SHARPEST = 1.0, 50.0
-"""Froelich's law of magnetisation; beyond the other one, a corner is a corner."""
+SOFTEST, SHARPEST = 1.0, 20.0
+"""Froelich's law of magnetisation; a curve within 3.4 % of a corner."""
 WEAKEST = 1000.0
 """Largest signals that the level may be of the softest law, whose curve is nearest."""
 

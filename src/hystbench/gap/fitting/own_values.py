@@ -25,7 +25,7 @@ from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
 from hystbench.blocks.held import Hold
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.gap.records.nuisance import FIRST
-from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, PAYS, RECORD_WEIGHT, TIE
+from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, PAYS, RECORD_WEIGHT, SCALE
 from hystbench.record import FloatArray, Record
 
 KEYS = {"delay": "delay_s", "gain": "gain", "offset": "offset"}
@@ -282,7 +282,7 @@ def fitted(
         shifts = np.unique(np.linspace(-longest, longest, COARSE).round().astype(int))
         shifts = np.unique([*shifts, *range(-NEAREST, NEAREST + 1)])
     squares = _squares(simulated, y, shifts, kinds)
-    alike = squares <= squares.min() * np.exp(TIE / RECORD_WEIGHT)
+    alike = squares <= squares.min() * np.exp(SCALE / RECORD_WEIGHT)
     alike |= squares <= ROUNDING * np.mean(y**2)
     place = int(np.flatnonzero(alike)[np.argmin(np.abs(shifts[alike]))])
     low, high = shifts[max(place - 1, 0)], shifts[min(place + 1, len(shifts) - 1)]

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hystbench.gap.naming.built_in import BuiltIn
-from hystbench.gap.thresholds import WORSE_HELD_OUT
+from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import Vocabulary
 
 LEAST = 5e-4
@@ -58,7 +58,7 @@ def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
     """
     gap, unit = content["gap"], content["unit"]
     before, after = gap["before"], gap["after"]
-    if after is not None and after <= WORSE_HELD_OUT * before:
+    if after is not None and after**2 <= (1 + UNNAMED_SHARE) * before**2:
         return None
     names = [item["name"] for item in content["effects"]]
     what = " and ".join(names) or "the re-tuning of the base"

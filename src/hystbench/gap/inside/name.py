@@ -30,7 +30,7 @@ from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import may_hold
-from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, TIE, UNNAMED_SHARE
+from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -182,7 +182,7 @@ def chosen(found: Sequence[Hypothesis], floor: float) -> Hypothesis:
     tied = [
         item
         for item, value in zip(found, values, strict=True)
-        if value < min(values) + TIE and len(item.effects) == len(best.effects)
+        if value < min(values) + SCALE and len(item.effects) == len(best.effects)
     ]
 
     def unlikely(item: Hypothesis) -> tuple[float, int, float]:

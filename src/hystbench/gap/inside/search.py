@@ -21,7 +21,7 @@ from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
 from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.thresholds import FURTHER, PAYS, TIE
+from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
@@ -268,7 +268,7 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
         for place in added.blocks if name else ():
             chain = list(state.chain)
             chain[place] = replace(chain[place], **{name: 0.0})
-            if judged(state.with_chain(tuple(chain)), score) < item.score + TIE:
+            if judged(state.with_chain(tuple(chain)), score) < item.score + SCALE:
                 return True
     return False
 

@@ -16,15 +16,11 @@ from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,
-    DISTRUST,
     DOUBT,
-    HALF,
-    LONE,
+    FOREIGN,
     LOOSE,
-    RESHAPABLE,
     SCALE,
     SLIGHT,
-    SOME,
     UNNAMED_SHARE,
     WIDE,
 )
@@ -87,12 +83,12 @@ class Left:
         if whole >= (WIDE * SLIGHT) ** 2 * self.output:
             return False
         small = beyond < SLIGHT**2 * self.output
-        return beyond <= ABOVE_NOISE or (small and beyond < (1 - RESHAPABLE) * whole)
+        return beyond <= ABOVE_NOISE or (small and beyond < (1 - LOOSE) * whole)
 
     @property
     def little_named(self) -> bool:
         """Whether effects leave most of what may be a slightly wrong shape alone."""
-        return self.slight_before and self.loose > HALF
+        return self.slight_before and self.loose > LOOSE
 
     @property
     def loose(self) -> float:
@@ -241,14 +237,14 @@ def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:
     """Say what is left that no effect and no wrong hysteresis does, if any is."""
     gap = max(left.all_before, 1.0)
     far = lone * (1.0 + left.all_after)
-    if far > LONE * gap:
+    if far > FOREIGN * gap:
         return (
             f"{100 * lone:.0f} % of the power that is left on the fit records stands "
             "in lone samples, far off from the others, which no effect of the "
             "vocabulary does"
         )
     differs = unrepeated is not None and unrepeated > max(
-        ABOVE_NOISE, SOME * left.all_after
+        ABOVE_NOISE, FOREIGN * left.all_after
     )
     if differs:
         return (
@@ -282,8 +278,8 @@ def confidence(
         for item in ranking
         if item.effect != first.effect and item.state is not None
     )
-    trust = max(0.0, 1.0 - left.loose / DISTRUST)
-    return min((1.0 - DOUBT) * trust / (1.0 + odds), is_anything(errors))
+    explained = 1.0 - left.loose
+    return min((1.0 - DOUBT) * explained / (1.0 + odds), is_anything(errors))
 
 
 def is_anything(errors: float) -> float:

@@ -10,9 +10,9 @@ from hystbench.gap.effects.base import Declined, Variant
 from hystbench.gap.fitting.search import GLANCE, MANY
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.rank import FINALISTS
+from hystbench.gap.naming.rounds import MOST
 from hystbench.gap.progress import Say
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.thresholds import MOST
 
 AROUND = 7
 """Runs over all records that the search around the best point of a grid takes."""

@@ -13,14 +13,12 @@ from hystbench.gap.fitting.step_error import above_floor
 from hystbench.gap.naming.forecast_calls import foretell, foretell_rest
 from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.naming.removal import TakenOut, is_most_of_it, without_what_goes
-from hystbench.gap.naming.rounds import Candidate, Round, reasons
+from hystbench.gap.naming.rounds import MOST, Candidate, Round, reasons
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import (
-    BESIDE_SHAPE,
     CERTAIN,
     FURTHER,
-    MOST,
     PAYS,
     SHAPE,
     UNNAMED_SHARE,
@@ -228,9 +226,7 @@ def _pays(item: Candidate, state: ModelState, floor: float, gap: float) -> bool:
         return False
     if not state.added:
         return True
-    beside_shape = any(other.effect == SHAPE for other in state.added)
-    matters = BESIDE_SHAPE if beside_shape else UNNAMED_SHARE
     share = item.state.share(state, floor, gap)
     if is_most_of_it(item.effect, item.gain, share):
         return True
-    return item.gain > CERTAIN or (item.gain > FURTHER and share > matters)
+    return item.gain > CERTAIN or (item.gain > FURTHER and share > UNNAMED_SHARE)

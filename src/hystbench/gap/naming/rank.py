@@ -27,7 +27,6 @@ from hystbench.gap.thresholds import (
     PAYS,
     SHAPE,
     UNNAMED_SHARE,
-    WORSE,
 )
 
 NEAR = 80.0
@@ -221,7 +220,7 @@ def _judged(trial: Trial, state: ModelState, score: Score, now: float) -> Candid
     if end := at_end(after):
         return declined(f"{AT_AN_END}: {end}")
     power = state.power(score.floor)
-    if after.share(state, score.floor, power) < -WORSE:
+    if after.share(state, score.floor, power) < -LOOSE:
         return declined("makes the gap wider")
     return replace(item, score=value, gain=now - value, state=after)
 

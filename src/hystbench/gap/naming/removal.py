@@ -14,7 +14,7 @@ from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty import error_of_size, on_more_samples
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say
-from hystbench.gap.thresholds import CERTAIN, FURTHER, MOST_OF_IT, PAYS, SHAPE, UNKNOWN
+from hystbench.gap.thresholds import CERTAIN, FURTHER, LOOSE, PAYS, SHAPE, UNKNOWN
 
 
 class TakenOut(NamedTuple):
@@ -85,7 +85,7 @@ def needless(state: ModelState, floor_rms: float, gap: float) -> Without | None:
 
 def is_most_of_it(effect: str, gain: float, share: float) -> bool:
     """Tell whether a wrong shape pays and takes much of the gap, dear as it is."""
-    return effect == SHAPE and gain >= PAYS and share > MOST_OF_IT
+    return effect == SHAPE and gain >= PAYS and share > LOOSE
 
 
 def unknown(state: ModelState, floor_rms: float) -> Without | None:

@@ -9,7 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.thresholds import SHAPE, TIE
+from hystbench.gap.thresholds import SCALE, SHAPE
+
+MOST = 4
+"""Effects that are looked for, at most."""
 
 
 class TriedVariant(NamedTuple):
@@ -120,13 +123,13 @@ def reasons(rounds: Iterable[Round]) -> dict[str, tuple[Candidate, ...]]:
 
 
 def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
-    """Give the effects that score within the tie of one that was added."""
+    """Give the effects that score too near one that was added to be told apart."""
     return tuple(
         item.effect
         for item in ranking
         if item.effect != first.effect
         and item.state is not None
-        and item.score < first.score + TIE
+        and item.score < first.score + SCALE
     )
 
 

@@ -13,7 +13,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.progress import Say
-from hystbench.gap.thresholds import PAYS, SHAPE, SWAP
+from hystbench.gap.thresholds import PAYS, SCALE, SHAPE
 
 CLOSE = 0.6
 """Rivals are those with this share of the gain of the best of a round."""
@@ -63,7 +63,7 @@ def reconsidered(
         best = ranking[0]
         own = next((x for x in ranking if x.effect == item.effect and x.state), None)
         least = now if own is None else min(now, own.score)
-        if best.state and best.effect != item.effect and best.score < least - SWAP:
+        if best.state and best.effect != item.effect and best.score < least - SCALE:
             held_back = gain_held_back(short, best.state, score)
             ranking = (replace(best, held_back=held_back), *ranking[1:])
             if held_back > PAYS:
@@ -73,9 +73,9 @@ def reconsidered(
         if own is None:
             looks.append(SecondLook(item.effect, have, ranking, None))
             continue
-        if better is None and own.state and own.score < now - SWAP:
+        if better is None and own.state and own.score < now - SCALE:
             anew, least = finished(own.state, score)
-            if least < now - SWAP:
+            if least < now - SCALE:
                 anew = last_to(anew, number)
                 better = len(looks), anew, _with(ranking, own, own.form, least, anew)
         shown = _with(ranking, own, item.form, now, as_is)
