@@ -139,8 +139,8 @@ def find(
             "effects is tried"
         )
     else:
-        named = name(start, floor.rms, say)
-        start, named, own = named_apart(start, floor.rms, named, say)
+        named = name(start, floor.rms, say, unnamed_share)
+        start, named, own = named_apart(start, floor.rms, named, say, unnamed_share)
         if inside is not None and not beats(inside, named, floor.rms, say):
             inside = None
     if inside is not None:

@@ -17,7 +17,6 @@ from hystbench.gap.naming.rounds import MOST, Candidate, Round, reasons
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import (
-    CERTAIN,
     FURTHER,
     PAYS,
     SHAPE,
@@ -55,10 +54,25 @@ class Named:
         return replace(self, state=self.rounds[0].before, gone=(*self.gone, *gone))
 
 
-def name(state: ModelState, floor_rms: float, say: Say = silent) -> Named:
-    """Add effects to a model for as long as one pays."""
+def name(
+    state: ModelState,
+    floor_rms: float,
+    say: Say = silent,
+    share: float = UNNAMED_SHARE,
+) -> Named:
+    """Add effects to a model for as long as one pays.
+
+    Parameters
+    ----------
+    state : ModelState
+    floor_rms : float
+    say : callable
+        Told a line of progress at a time.
+    share : float
+        Of the power of the gap: once no more is left, nothing further is looked for.
+    """
     foretell(state, say)
-    found = _path(state, floor_rms, say)
+    found = _path(state, floor_rms, say, share)
     try:
         return settled(found, state, floor_rms, say)
     except CallsUsedUp:
@@ -81,7 +95,7 @@ def settled(found: Progress, start: ModelState, floor_rms: float, say: Say) -> N
         and any(item.effect == SHAPE for item in found.state.added)
     ):
         say(f"{SHAPE} is needed and takes most of the gap away: it goes first")
-        found = _path(start, floor_rms, say, shape_first=True)
+        found = _path(start, floor_rms, say, found.share, shape_first=True)
     state, gone = without_what_goes(found.state, floor_rms, found.gap, say)
     rounds = found.rounds
     if not cut_short and len(state.added) > 1 and _others_than_taken(state, rounds):
@@ -109,6 +123,8 @@ class Progress:
     state : ModelState
     gap : float
         Mean square of the base's gap above the floor.
+    share : float
+        Of it, that may stay unnamed.
     rounds : tuple of Round
     deferred : bool
         Whether a shape that takes more of the gap was put off.
@@ -118,17 +134,20 @@ class Progress:
 
     state: ModelState
     gap: float
+    share: float = UNNAMED_SHARE
     rounds: tuple[Round, ...] = ()
     deferred: bool = False
     closed: bool = False
 
     @classmethod
-    def begun(cls, state: ModelState, floor_rms: float) -> Progress:
+    def begun(
+        cls, state: ModelState, floor_rms: float, share: float = UNNAMED_SHARE
+    ) -> Progress:
         """Start from the base, re-tuned where it has free numbers."""
         floor = floor_rms**2
         if state.free:
             state, _ = finished(state, make_score(state, floor_rms))
-        return cls(state, max(state.power(floor), floor * 1e-6))
+        return cls(state, max(state.power(floor), floor * 1e-6), share)
 
     @property
     def done(self) -> bool:
@@ -138,10 +157,14 @@ class Progress:
 
 
 def _path(
-    state: ModelState, floor_rms: float, say: Say, shape_first: bool = False
+    state: ModelState,
+    floor_rms: float,
+    say: Say,
+    share: float,
+    shape_first: bool = False,
 ) -> Progress:
     """Add effects one by one."""
-    progress = Progress.begun(state, floor_rms)
+    progress = Progress.begun(state, floor_rms, share)
     calls = current()
     while not (progress.done or calls.refused()):
         try:
@@ -166,10 +189,10 @@ def advance(
     """Try every effect beside the model and add the one that pays, if any does."""
     floor, state = floor_rms**2, progress.state
     score = make_score(state, floor_rms)
-    closed = _is_closed(state, score)
+    closed = _is_closed(progress, state, score)
     if not closed:
         state = ready(state, score)
-        closed = _is_closed(state, score)
+        closed = _is_closed(progress, state, score)
     if closed:
         say("nothing is left that an effect could gain")
         return replace(progress, closed=True)
@@ -182,7 +205,7 @@ def advance(
     first = ranking[0]
     for item in ranking[:4]:
         say(f"{item.effect} {item.form}: gain {item.gain:.1f}")
-    taken = _pays(first, state, floor, progress.gap)
+    taken = _pays(first, state, floor, progress)
     one = Round(state, first.score + first.gain, ranking, taken)
     state = progress.state
     if taken:
@@ -192,12 +215,23 @@ def advance(
             rounds = (*progress.rounds, one)
             state, looks = reconsidered(state, rounds, floor_rms, say)
             one = replace(one, looks=looks)
-    return Progress(state, progress.gap, (*progress.rounds, one), deferred)
+    return replace(
+        progress, state=state, rounds=(*progress.rounds, one), deferred=deferred
+    )
 
 
-def _is_closed(state: ModelState, score: Score) -> bool:
-    """Tell whether the effects that a model has leave nothing to gain."""
-    return bool(state.added) and above_floor(state, score) < FURTHER
+def _is_closed(progress: Progress, state: ModelState, score: Score) -> bool:
+    """Tell whether what the effects of a model leave is too little to look further.
+
+    It is where no more is left than may stay unnamed, of whatever sort it is: no effect
+    could take what matters. Of a gap near the noise it is where nothing could be
+    gained.
+    """
+    if not state.added:
+        return False
+    if state.power(score.floor) <= progress.share * progress.gap:
+        return True
+    return above_floor(state, score) < FURTHER
 
 
 def _shape_takes_more(
@@ -215,18 +249,20 @@ def _shape_takes_more(
     return first.state.share(before, floor, gap) < most / 2
 
 
-def _pays(item: Candidate, state: ModelState, floor: float, gap: float) -> bool:
+def _pays(
+    item: Candidate, state: ModelState, floor: float, progress: Progress
+) -> bool:
     """Tell whether an effect is to be added.
 
-    The first has only to pay. A further one must matter as well, or be beyond doubt:
-    what is left after the right effect is also what its form, or the simulation,
+    The first has only to pay. A further one must take more than may stay unnamed as
+    well: what is left after the right effect is also what its form, or the simulation,
     misses.
     """
     if item.state is None or item.gain < PAYS:
         return False
     if not state.added:
         return True
-    share = item.state.share(state, floor, gap)
+    share = item.state.share(state, floor, progress.gap)
     if is_most_of_it(item.effect, item.gain, share):
         return True
-    return item.gain > CERTAIN or (item.gain > FURTHER and share > UNNAMED_SHARE)
+    return item.gain > FURTHER and share > progress.share

@@ -19,12 +19,16 @@ from hystbench.gap.naming.name import Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import ABOVE_NOISE, PAYS
+from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, UNNAMED_SHARE
 from hystbench.record import FloatArray, Record
 
 
 def named_apart(
-    start: ModelState, floor_rms: float, named: Named, say: Say
+    start: ModelState,
+    floor_rms: float,
+    named: Named,
+    say: Say,
+    unnamed_share: float = UNNAMED_SHARE,
 ) -> tuple[ModelState, Named, OwnValues]:
     """Name anew beside what records have of their own, where that explains them better.
 
@@ -48,6 +52,9 @@ def named_apart(
         What was named on the records as they are.
     say : callable
         Told a line of progress at a time.
+    unnamed_share : float
+        Of the power of the gap: where laws leave no more, records have nothing of their
+        own that matters.
 
     Returns
     -------
@@ -56,10 +63,13 @@ def named_apart(
     named : Named
     own : OwnValues
     """
-    score = make_score(start, floor_rms, forms=False)
     found = (start, named, NONE)
-    least = score_of(named.state, score)
-    least -= 0.0 if any(not values for _, values in named.state.beside) else PAYS
+    square = floor_rms**2
+    paths = any(not values for _, values in named.state.beside)
+    if not paths and named.state.power(square) <= unnamed_share * start.power(square):
+        return found
+    score = make_score(start, floor_rms, forms=False)
+    least = score_of(named.state, score) - (0.0 if paths else PAYS)
     if least <= score.least(start.freedom + 1):
         return found  # noise alone, and what is their own charged, scores no less
     models = dict.fromkeys((named.state, without_shared(named.state), start))
@@ -70,12 +80,11 @@ def named_apart(
             break
         say(f"records have {own.words} of their own: naming beside that")
         apart = on_records(start, own.taken_off(start.records, start.hold))
-        again = name(apart, floor_rms, say)
+        again = name(apart, floor_rms, say, unnamed_share)
         value = score_of(again.state, score) + own.charge
         if value >= least:
             say("that scores no better: they have none of their own")
             break
-        square = floor_rms**2
         share = apart.share(start, square, start.power(square))
         same = _names(again) == _names(found[1])
         found, least = (apart, again, replace(own, share=share)), value
