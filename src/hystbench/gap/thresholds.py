@@ -23,9 +23,10 @@ PARAMETER = 4.0
 PAYS = 40.0
 """The first effect."""
 FURTHER = 100.0
-"""A further effect that takes more of the gap than may stay unnamed."""
+"""A further effect, which must also take more of the gap than may stay unnamed."""
 CERTAIN = 200.0
-"""A further effect that takes less: it must be beyond doubt."""
+"""Beyond doubt: what bends to much, beside a law of fewer numbers; on records held
+back, an effect whose size is not known."""
 SCALE = 4.0
 """One name is e times likelier than another: by less they cannot be told apart."""
 UNKNOWN = 0.5
@@ -38,7 +39,8 @@ DOUBT = 0.02
 UNNAMED_SHARE = 0.01
 """Of structure that no name accounts for: a tenth of the rms. A user may set it.
 
-An effect that takes less does not matter; a model that leaves so much more power on
+An effect that takes less does not matter, and where no more is left in all nothing
+further is looked for; a model that leaves so much more power on
 hold-out records than the base is worse.
 """
 LOOSE = 0.25

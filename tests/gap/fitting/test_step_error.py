@@ -97,7 +97,7 @@ def test_no_effect_is_tried_where_steps_hold_what_is_left(monkeypatch, error):
     monkeypatch.setattr(
         "hystbench.gap.fitting.step_error.step_error", lambda state: error
     )
-    progress = Progress(state, 1.0)
+    progress = Progress(state, 8 * NOISE**2)  # all that the base leaves is still there
     if error:
         assert advance(progress, NOISE, silent).done
     else:

@@ -144,21 +144,21 @@ def test_a_function_that_gives_another_output_is_refused(function, as_file, tmp_
         load_base(name, evidence())
 
 
-class Slow:
-    """A clock by which every call takes a tenth of a second."""
+class Clock:
+    """A clock by which every call takes the same time, in seconds."""
 
-    def __init__(self):
-        self.now = 0.0
+    def __init__(self, step):
+        self.now, self.step = 0.0, step
 
     def __call__(self):
-        self.now += 0.1
+        self.now += self.step
         return self.now
 
 
 def test_what_slow_work_will_take_is_told_before():
     said: list[str] = []
     given = evidence()
-    with counted(Calls(bound=700, clock=Slow())) as calls:
+    with counted(Calls(bound=700, clock=Clock(0.1))) as calls:
         base, _ = load_base(NAME, given)
         start, _ = start_state(given.fit, base, given.hold)
         foretell(start, said.append)
@@ -173,7 +173,7 @@ def test_what_slow_work_will_take_is_told_before():
 def test_quick_work_is_not_told_of():
     said: list[str] = []
     given = evidence()
-    with counted(Calls()):
+    with counted(Calls(clock=Clock(1e-4))):
         base, _ = load_base(NAME, given)
         start, _ = start_state(given.fit, base, given.hold)
         foretell(start, said.append)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +14,6 @@ from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Values, Variant
 from hystbench.gap.fitting.score import Amplitudes, Score
 from hystbench.gap.fitting.state import ModelState, beside_columns
-from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.record import FloatArray
 
 HALVINGS = 4
@@ -30,8 +29,6 @@ SLIGHT = 3.0
 
 MANY = 15
 """Points of a grid for each of which one more is looked at on all records."""
-GLANCE = 4
-"""Records of which half is enough to choose a point of a grid."""
 
 Point = tuple[float, ...]
 """Values of the searched parameters."""
@@ -213,7 +210,7 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     ----------
     attempt : Attempt
     glance : Attempt, optional
-        The same on fewer records, which then choose the point of the grid.
+        The same on fewer samples, which then choose the point of the grid.
 
     Raises
     ------
@@ -240,19 +237,6 @@ def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:
     if not found:
         raise Declined(str(refused)) from refused
     return min(found, key=lambda trial: trial.score)
-
-
-@lru_cache(maxsize=1)
-def at_a_glance(state: ModelState, score: Score) -> tuple[ModelState, Score]:
-    """Give a model and its score on the half of the records with most of the gap."""
-    slices = state.sample.slices
-    if len(slices) < GLANCE:
-        return state, score
-    squares = [float(np.mean(state.residual[part] ** 2)) for part in slices]
-    kept = sorted(np.argsort(squares, kind="stable")[len(squares) // 2 :].tolist())
-    few = state.on(kept)
-    directions = np.concatenate([score.directions[slices[k]] for k in kept])
-    return few, Score(few.sample, orthonormal(directions), score.floor)
 
 
 def fine(attempt: Attempt, start: Trial) -> Trial:

@@ -8,8 +8,9 @@ from typing import Any
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.fitting import refit, search
+from hystbench.gap.fitting.glance import glance_of
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.search import Attempt, Trial, at_a_glance, coarse
+from hystbench.gap.fitting.search import Attempt, Trial, coarse
 from hystbench.gap.fitting.serialize import (
     remembered_of,
     state_again,
@@ -113,13 +114,12 @@ def _tried(
     runnable: Sequence[tuple[int, Variant]], state: ModelState, score: Score
 ) -> tuple[list[Tried], str]:
     """Score variants over their grids; say why none can be, if so."""
-    few, few_score = at_a_glance(state, score)
     found: list[Tried] = []
     refused = ""
     for number, item in runnable:
         attempt = Attempt(state, item, score, number)
         try:
-            trial = coarse(attempt, Attempt(few, item, few_score))
+            trial = coarse(attempt, glance_of(attempt))
         except Declined as reason:
             refused = str(reason)
             continue

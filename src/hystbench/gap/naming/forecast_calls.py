@@ -7,7 +7,8 @@ from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Declined, Variant
-from hystbench.gap.fitting.search import GLANCE, MANY
+from hystbench.gap.fitting.glance import records_at_a_glance
+from hystbench.gap.fitting.search import MANY
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.rank import FINALISTS
 from hystbench.gap.naming.rounds import MOST
@@ -41,7 +42,7 @@ def calls_of_a_round(state: ModelState) -> int:
     if not places:
         return 0
     count = len(state.records)
-    few = count if count < GLANCE else count - count // 2
+    few = records_at_a_glance(count)
     grids, before, names = 0, 0, set()
     for effect in among(state.offered).values():
         try:
@@ -52,7 +53,7 @@ def calls_of_a_round(state: ModelState) -> int:
             if item.beside is not None or item.start > places[-1]:
                 continue
             points = _points(item)
-            again = 0 if count < GLANCE else 1 + points // MANY
+            again = 0 if few == count else 1 + points // MANY
             grids += _runs(item) * (points * few + again * (count - few))
             before += 1
             names.add(item.effect)

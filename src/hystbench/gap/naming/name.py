@@ -155,6 +155,15 @@ class Progress:
         stopped = bool(self.rounds) and not self.rounds[-1].taken
         return stopped or self.closed or len(self.state.added) >= MOST
 
+    def little_left(self, floor: float) -> bool:
+        """Tell whether no more is left than may stay unnamed, of whatever sort it is.
+
+        Then no effect could take what matters.
+        """
+        return bool(self.state.added) and (
+            self.state.power(floor) <= self.share * self.gap
+        )
+
 
 def _path(
     state: ModelState,
@@ -187,15 +196,13 @@ def advance(
     shape_first: bool = False,
 ) -> Progress:
     """Try every effect beside the model and add the one that pays, if any does."""
-    floor, state = floor_rms**2, progress.state
-    score = make_score(state, floor_rms)
-    closed = _is_closed(progress, state, score)
-    if not closed:
-        state = ready(state, score)
-        closed = _is_closed(progress, state, score)
-    if closed:
+    floor = floor_rms**2
+    little = progress.little_left(floor)
+    found = None if little else _before_a_round(progress.state, floor_rms)
+    if found is None:
         say("nothing is left that an effect could gain")
         return replace(progress, closed=True)
+    state, score = found
     ranking = rank(state, score)
     deferred = progress.deferred
     if _shape_takes_more(ranking, state, floor):
@@ -220,18 +227,20 @@ def advance(
     )
 
 
-def _is_closed(progress: Progress, state: ModelState, score: Score) -> bool:
-    """Tell whether what the effects of a model leave is too little to look further.
+def _before_a_round(
+    state: ModelState, floor_rms: float
+) -> tuple[ModelState, Score] | None:
+    """Refit a model under the score that a further effect is to lower.
 
-    It is where no more is left than may stay unnamed, of whatever sort it is: no effect
-    could take what matters. Of a gap near the noise it is where nothing could be
-    gained.
+    None where the effects that it has leave nothing to gain.
     """
+    score = make_score(state, floor_rms)
     if not state.added:
-        return False
-    if state.power(score.floor) <= progress.share * progress.gap:
-        return True
-    return above_floor(state, score) < FURTHER
+        return state, score
+    if above_floor(state, score) < FURTHER:
+        return None
+    state = ready(state, score)
+    return None if above_floor(state, score) < FURTHER else (state, score)
 
 
 def _shape_takes_more(
@@ -249,9 +258,7 @@ def _shape_takes_more(
     return first.state.share(before, floor, gap) < most / 2
 
 
-def _pays(
-    item: Candidate, state: ModelState, floor: float, progress: Progress
-) -> bool:
+def _pays(item: Candidate, state: ModelState, floor: float, progress: Progress) -> bool:
     """Tell whether an effect is to be added.
 
     The first has only to pay. A further one must take more than may stay unnamed as

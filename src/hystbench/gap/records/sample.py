@@ -32,10 +32,14 @@ class Sample:
     of_start : tuple of ndarray, shape (samples, 0 or 1) each, optional
         What an unknown velocity at the first sample of each record does there; it is
         taken off every signal. By default no record has one.
+    apart : tuple of int, optional
+        Of signals that are given at every so many samples alone, by record: they are
+        straight lines in between. By default they are given at all samples.
     """
 
     positions: tuple[NDArray[np.intp], ...]
     of_start: tuple[FloatArray, ...] = ()
+    apart: tuple[int, ...] = ()
 
     @classmethod
     def of(cls, records: Sequence[Record], count: int = SAMPLES) -> Sample:
@@ -61,6 +65,7 @@ class Sample:
         return Sample(
             tuple(self.positions[k] for k in kept),
             tuple(self.of_start[k] for k in kept) if self.of_start else (),
+            tuple(self.apart[k] for k in kept) if self.apart else (),
         )
 
     @cached_property
@@ -85,10 +90,21 @@ class Sample:
         -------
         ndarray, shape (scored samples,) or (scored samples, k)
         """
-        taken = [x[p] for x, p in zip(signals, self.positions, strict=True)]
+        if self.apart:
+            among = zip(signals, self.positions, self.apart, strict=True)
+            taken = [_between(x, p / step) for x, p, step in among]
+        else:
+            taken = [x[p] for x, p in zip(signals, self.positions, strict=True)]
         if self.of_start:
             taken = [without(x, d) for x, d in zip(taken, self.of_start, strict=True)]
         return np.concatenate(taken)
+
+
+def _between(signal: FloatArray, places: FloatArray) -> FloatArray:
+    """Give a signal, shape (n,) or (n, k), at places between its samples."""
+    left = np.minimum(places.astype(np.intp), len(signal) - 2)
+    part = (places - left).reshape(-1, *[1] * (signal.ndim - 1))
+    return np.asarray(signal[left] + part * (signal[left + 1] - signal[left]))
 
 
 def without(signal: FloatArray, column: FloatArray) -> FloatArray:

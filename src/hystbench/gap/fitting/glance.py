@@ -1,0 +1,131 @@
+"""A model on few samples, which are enough to choose a point of a grid."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from hystbench.errors import InputError
+from hystbench.gap.effects.base import Variant
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.search import Attempt
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.reshape import orthonormal
+from hystbench.gap.simulation.simulation import NOT_LINEAR
+from hystbench.record import Record
+
+ENOUGH = 4
+"""Records of which half is looked at."""
+STRAIGHT = 3e-3
+"""Of an input's largest size, by which straight lines between samples may miss it."""
+LEAST = 150
+"""Samples that a record keeps."""
+EACH = 3
+"""Of the scored samples, one of so many is looked at."""
+
+
+def glance_of(attempt: Attempt) -> Attempt:
+    """Give a variant on few samples: of half of the records, and fewer of each.
+
+    The half has most of the gap. Of an input that moves slowly not every sample is
+    taken, where blocks take steps of any length.
+    """
+    state, score, variant = attempt.state, attempt.score, attempt.variant
+    if not variant.grids:
+        return attempt
+    half = _half(state, score)
+    few = _coarser(*half) if _takes_any_step(state, variant) else half
+    return Attempt(few[0], variant, few[1])
+
+
+def records_at_a_glance(count: int) -> int:
+    """Tell how many of so many records are looked at."""
+    return count if count < ENOUGH else count - count // 2
+
+
+@lru_cache(maxsize=1)
+def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
+    """Give a model and its score on the half of the records with most of the gap."""
+    slices = state.sample.slices
+    count = len(slices)
+    squares = [float(np.mean(state.residual[part] ** 2)) for part in slices]
+    order = np.argsort(squares, kind="stable")[count - records_at_a_glance(count) :]
+    kept = sorted(order.tolist())
+    if len(kept) == count:
+        return state, score
+    few = state.on(kept)
+    directions = np.concatenate([score.directions[slices[k]] for k in kept])
+    return few, Score(few.sample, orthonormal(directions), score.floor)
+
+
+@lru_cache(maxsize=1)
+def _coarser(state: ModelState, score: Score) -> tuple[ModelState, Score]:
+    """Give a model and its score on records of fewer samples.
+
+    What it leaves of the records stays as it is: the difference of the simulation in
+    longer steps is made up for, as that of a quick one is.
+    """
+    steps = tuple(_step(record) for record in state.records)
+    rows = np.concatenate(
+        [np.arange(part.start, part.stop, EACH) for part in state.sample.slices]
+    )
+    places = tuple(positions[::EACH] for positions in state.sample.positions)
+    few = replace(
+        state,
+        records=tuple(map(_every, state.records, steps)),
+        sample=Sample(places, apart=steps),
+        correction=None,
+    )
+    few = replace(few, correction=few.residual - state.residual[rows])
+    directions = orthonormal(score.directions[rows])
+    return few, Score(few.sample, directions, score.floor)
+
+
+def _takes_any_step(state: ModelState, variant: Variant) -> bool:
+    """Tell whether a chain with an effect may be simulated in longer steps.
+
+    Not what the input does not explain, nor a staircase, nor a simulator of somebody's
+    own, nor what is integrated step by step.
+    """
+    if state.beside or variant.beside is not None or state.sample.of_start:
+        return False
+    if state.hold == "zero-order":
+        return False
+    point = {name: float(axis[0]) for name, axis in variant.grids.items()}
+    try:
+        blocks = (*state.chain, *variant.build(point | variant.unit))
+    except InputError:
+        return False  # one end of the grid is refused: nothing is known of its blocks
+    return not any(
+        isinstance(block, NOT_LINEAR) or not (block.seen and block.reruns)
+        for block in blocks
+    )
+
+
+def _step(record: Record) -> int:
+    """Give the longest step of which straight lines are the input, nearly."""
+    most = STRAIGHT * float(np.abs(record.u).max())
+    longest = max(len(record) // LEAST, 1)
+    for step in range(2, longest + 1):
+        kept = record.u[::step]
+        ends = step * np.arange(len(kept))
+        lines = np.interp(np.arange(ends[-1] + 1), ends, kept)
+        if np.abs(lines - record.u[: len(lines)]).max() > most:
+            return step - 1
+    return longest
+
+
+def _every(record: Record, step: int) -> Record:
+    """Give every so many samples of a record."""
+    return replace(
+        record,
+        dt=record.dt * step,
+        u=record.u[::step].copy(),
+        y=record.y[::step].copy(),
+        period_samples=None,
+        simulated=None,
+        interpolated=None,
+    )
