@@ -5,8 +5,14 @@ from dataclasses import dataclass, replace
 import pytest
 
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.naming import rank as module
-from hystbench.gap.naming.rank import beyond_simpler_laws, make_score, rank
+from hystbench.gap.naming.rank import (
+    beside_its_own_shape,
+    beyond_simpler_laws,
+    make_score,
+    rank,
+)
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS
 from tests.gap.small import block, measured, plain_score, records, state_of
@@ -103,3 +109,29 @@ def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch
     first, *_ = ranked((*LOOP, lag), LOOP, names)
     assert first.effect == "input-delay"
     assert first.held_back is not None
+
+
+def test_a_wrong_shape_behind_a_lag_is_what_the_lagged_model_may_leave():
+    """The plant's loop is of another shape and lags; the base knows neither.
+
+    What the shape does wrong lags as well, which no reshaping of the base does.
+    """
+    lag = block("sensor-lag", time_constant_s=0.02)
+    other = replace(LOOP[0], weights=(4.0, 2.0, 4.0))
+    state = state_of(LOOP, measured((other, lag), NOISE, given=records() * 3))
+    score = make_score(state, NOISE)
+    (variant, *_) = effects()["sensor-lag"].variants(state.simulation)
+    right = with_effect(state, variant, {"time_constant_s": 0.02}).settled()
+    value = score.of(right.residual, right.freedom)
+    item = Candidate("sensor-lag", "sensor", score=value, gain=100.0, state=right)
+    beside = beside_its_own_shape(item, score)
+    assert beside.score < value - PAYS
+    assert beside.score + beside.gain == pytest.approx(value + 100.0)
+
+
+def test_without_an_effect_a_model_s_own_shape_is_the_base_s():
+    other = replace(LOOP[0], weights=(4.0, 2.0, 4.0))
+    state = state_of(LOOP, measured((other,), NOISE, given=records() * 3))
+    score = make_score(state, NOISE)
+    item = Candidate("none", "drive", score=score.of(state.residual), state=state)
+    assert beside_its_own_shape(item, score).score == pytest.approx(item.score)

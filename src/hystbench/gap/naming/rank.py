@@ -133,6 +133,11 @@ def rank(
         exactly(item, score, now) if item.effect in exact else item
         for item in candidates
     )
+    if len(exact) > 1:
+        candidates = in_order(
+            beside_its_own_shape(item, score) if item.effect in exact else item
+            for item in candidates
+        )
     if not folds:
         return (*beyond_simpler_laws(candidates, state, score), *declined)
     judged = [
@@ -251,6 +256,24 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     if end := at_end(after):
         return Candidate(item.effect, item.place, declined=f"{AT_AN_END}: {end}")
     return replace(item, state=after, score=value, gain=now - value)
+
+
+def beside_its_own_shape(item: Candidate, score: Score) -> Candidate:
+    """Score a candidate beside what a wrong shape could do in the model that has it.
+
+    The base's hysteresis gets another input behind a lag, and its output goes through
+    what follows it: a wrong shape of it looks different with the effect than without.
+    Both scores are taken above that of noise, as the directions are not as many.
+    """
+    if item.state is None:
+        return item
+    own = make_score(item.state, float(np.sqrt(score.floor)), forms=False)
+    base, with_own = (
+        score_of(item.state, each) - each.least(item.state.freedom)
+        for each in (score, own)
+    )
+    more = with_own - base
+    return replace(item, score=item.score + more, gain=item.gain - more)
 
 
 def first_on_folds(
