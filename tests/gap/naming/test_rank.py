@@ -8,7 +8,8 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.naming import rank as module
 from hystbench.gap.naming.rank import (
-    beside_its_own_shape,
+    above_noise_of_its_own,
+    beside_their_own_shapes,
     beyond_simpler_laws,
     make_score,
     rank,
@@ -111,27 +112,38 @@ def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch
     assert first.held_back is not None
 
 
+OTHER = replace(LOOP[0], weights=(4.0, 2.0, 4.0))
+"""A loop of another shape."""
+
+
 def test_a_wrong_shape_behind_a_lag_is_what_the_lagged_model_may_leave():
     """The plant's loop is of another shape and lags; the base knows neither.
 
     What the shape does wrong lags as well, which no reshaping of the base does.
     """
     lag = block("sensor-lag", time_constant_s=0.02)
-    other = replace(LOOP[0], weights=(4.0, 2.0, 4.0))
-    state = state_of(LOOP, measured((other, lag), NOISE, given=records() * 3))
+    state = state_of(LOOP, measured((OTHER, lag), NOISE, given=records() * 3))
     score = make_score(state, NOISE)
     (variant, *_) = effects()["sensor-lag"].variants(state.simulation)
     right = with_effect(state, variant, {"time_constant_s": 0.02}).settled()
-    value = score.of(right.residual, right.freedom)
-    item = Candidate("sensor-lag", "sensor", score=value, gain=100.0, state=right)
-    beside = beside_its_own_shape(item, score)
-    assert beside.score < value - PAYS
-    assert beside.score + beside.gain == pytest.approx(value + 100.0)
+    beside_the_base_s = score.of(right.residual) - score.least()
+    assert above_noise_of_its_own(right, NOISE**2) < beside_the_base_s - PAYS
 
 
-def test_without_an_effect_a_model_s_own_shape_is_the_base_s():
-    other = replace(LOOP[0], weights=(4.0, 2.0, 4.0))
-    state = state_of(LOOP, measured((other,), NOISE, given=records() * 3))
+def test_those_that_score_alike_are_compared_beside_their_own_shapes(monkeypatch):
+    """The best of them keeps its score and gain; one that is far behind has no part."""
+    state = state_of(LOOP, measured((OTHER,), NOISE, given=records() * 3))
     score = make_score(state, NOISE)
-    item = Candidate("none", "drive", score=score.of(state.residual), state=state)
-    assert beside_its_own_shape(item, score).score == pytest.approx(item.score)
+    own = iter((70.0, 50.0, 50.0))
+    monkeypatch.setattr(module, "above_noise_of_its_own", lambda *_: next(own))
+    given = [
+        Candidate(name, "drive", score=value, gain=300.0 - value, state=state)
+        for name, value in (("delay", 100.0), ("lag", 110.0), ("far", 290.0))
+    ]
+    found = beside_their_own_shapes(given, ("delay", "lag"), score)
+    assert [(x.effect, x.score, x.gain) for x in found] == [
+        ("lag", 110.0, 190.0),
+        ("delay", 130.0, 170.0),
+        ("far", 290.0, 10.0),
+    ]
+    assert beside_their_own_shapes(given, ("lag",), score) == given

@@ -133,11 +133,7 @@ def rank(
         exactly(item, score, now) if item.effect in exact else item
         for item in candidates
     )
-    if len(exact) > 1:
-        candidates = in_order(
-            beside_its_own_shape(item, score) if item.effect in exact else item
-            for item in candidates
-        )
+    candidates = beside_their_own_shapes(candidates, exact, score)
     if not folds:
         return (*beyond_simpler_laws(candidates, state, score), *declined)
     judged = [
@@ -258,22 +254,49 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
     return replace(item, state=after, score=value, gain=now - value)
 
 
-def beside_its_own_shape(item: Candidate, score: Score) -> Candidate:
-    """Score a candidate beside what a wrong shape could do in the model that has it.
+def beside_their_own_shapes(
+    candidates: Sequence[Candidate], alike: Sequence[str], score: Score
+) -> list[Candidate]:
+    """Compare candidates that score alike beside what a wrong shape does in each.
 
     The base's hysteresis gets another input behind a lag, and its output goes through
     what follows it: a wrong shape of it looks different with the effect than without.
-    Both scores are taken above that of noise, as the directions are not as many.
+    The best keeps its score; the others are as far behind it as these scores say,
+    above that of noise, as the directions are not as many.
+
+    Parameters
+    ----------
+    candidates : sequence of Candidate
+    alike : sequence of str
+        Effects of those that are compared.
+    score : Score
+        Beside what a wrong shape does in the model without them.
     """
-    if item.state is None:
-        return item
-    own = make_score(item.state, float(np.sqrt(score.floor)), forms=False)
-    base, with_own = (
-        score_of(item.state, each) - each.least(item.state.freedom)
-        for each in (score, own)
+    own = {
+        item.effect: above_noise_of_its_own(item.state, score.floor)
+        for item in candidates
+        if item.effect in alike and item.state is not None
+    }
+    if len(own) < 2:
+        return list(candidates)
+    best = next(x for x in candidates if x.effect == min(own, key=lambda k: own[k]))
+    behind = {name: value - own[best.effect] for name, value in own.items()}
+    return in_order(
+        replace(
+            item,
+            score=best.score + behind[item.effect],
+            gain=best.gain - behind[item.effect],
+        )
+        if item.effect in behind
+        else item
+        for item in candidates
     )
-    more = with_own - base
-    return replace(item, score=item.score + more, gain=item.gain - more)
+
+
+def above_noise_of_its_own(state: ModelState, floor: float) -> float:
+    """Score a model above noise, beside what a wrong shape of its own could do."""
+    own = make_score(state, float(np.sqrt(floor)), forms=False)
+    return score_of(state, own) - own.least(state.freedom)
 
 
 def first_on_folds(
