@@ -9,7 +9,6 @@ from pathlib import Path
 from hystbench.files import whole_folder, write_csv, write_json
 from hystbench.gap.behaviour import say_in_words
 from hystbench.gap.decision import Decision, find
-from hystbench.gap.experiment.excitations import write_experiment
 from hystbench.gap.fitting.start import run_base
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
 from hystbench.gap.inside.name import inside_of
@@ -206,5 +205,5 @@ def write_next_experiment(decision: Decision, channel: Channel, path: Path) -> s
         needless = "no effects that were tried need to be told apart"
         why = decision.content.get("no_experiment", needless)
         return f"{path}: not written: {why}"
-    write_experiment(decision.experiment.excitation, channel, path)
+    decision.experiment.excitation.write(channel, path)
     return f"{path}: {decision.experiment.sentence}"

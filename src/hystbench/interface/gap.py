@@ -22,7 +22,7 @@ from hystbench.model import Model
 if TYPE_CHECKING:
     import pandas as pd
 
-    from hystbench.gap.experiment.next_experiment import Experiment
+    from hystbench.gap.experiment.tell_apart import Experiment
     from hystbench.interface.picture import Picture
 
 Table = Literal["records", "effects", "ranking"]

@@ -325,7 +325,7 @@ def _never_zero(value: float) -> float:
 
 def _lagged(signal: FloatArray, lag: float, position: NDArray[np.intp]) -> FloatArray:
     """Take a signal some samples ago; before the record it rests where it begins."""
-    return np.interp(position - lag, np.arange(len(signal)), signal)
+    return np.asarray(np.interp(position - lag, np.arange(len(signal)), signal))
 
 
 def _ringing(signal: FloatArray, dt: float, frequency_hz: float) -> list[FloatArray]:
