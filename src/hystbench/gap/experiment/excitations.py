@@ -98,7 +98,8 @@ class Limits:
     @property
     def time(self) -> FloatArray:
         """Times of the samples of a candidate, in seconds."""
-        return np.arange(round(min(self.duration_s / self.dt, LONGEST))) * self.dt
+        count = round(min(self.duration_s / self.dt, LONGEST))
+        return np.asarray(np.arange(count) * self.dt, dtype=np.float64)
 
     @property
     def frequencies(self) -> FloatArray:

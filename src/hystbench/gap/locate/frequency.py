@@ -10,7 +10,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.gap.locate.distortion import take_distortion
-from hystbench.gap.locate.forms import fit_form, named_or, narrowest_bins, p_value_of
+from hystbench.gap.locate.forms import fit_form, named_or, narrowest_bins
 from hystbench.gap.locate.picture import (
     FREQUENCY,
     Axis,
@@ -21,7 +21,7 @@ from hystbench.gap.locate.picture import (
 )
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.spectra import R, S, Spectra, U, take_spectra
-from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.locate.view import View, number, percent, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.residual import Compared
 from hystbench.record import FloatArray
@@ -30,6 +30,7 @@ BANDS = 12
 """With a gain and a phase of their own."""
 BINS = 401
 """Edges of bins over which a range is sought."""
+NO_DISTORTION = "distortion, as no record repeats with a gap above the noise"
 
 
 def frequency(samples: ViewSamples) -> View:
@@ -56,32 +57,23 @@ def frequency(samples: ViewSamples) -> View:
     power, edges = _power(samples, signals)
     first, last = narrowest_bins(power)
     start, end = float(edges[first]), float(edges[last + 1])
-    share = samples.share(form.explained, form.freedom)
-    inside = share * float(np.sum(power[first : last + 1]) / max(power.sum(), 1e-300))
-    told = "" if distortion is None else distortion.told + distortion.told_repeating
+    inside = form.share * float(
+        np.sum(power[first : last + 1]) / max(power.sum(), TINY)
+    )
     like = form.words if form.named else "linear in the simulated output"
-    return View(
-        view="frequency",
-        axis="frequency",
-        start=start,
-        end=end,
-        unit="Hz",
-        share_of_gap_power=share,
-        p_value=p_value_of(samples, form, [filtered]),
-        sentence=(
-            f"{percent(share)} of the gap is {like}; {percent(inside)} of the gap lies "
-            f"between {number(start)} and {number(end)} Hz.{told}"
-        ),
-        saved=form.saved,
-        named=form.named,
-        pictures=(
-            _spectrum(samples, spectra),
-            _response(spectra),
-            *(() if distortion is None else (distortion.picture(samples.units[1]),)),
-        ),
-        not_drawn=()
-        if distortion
-        else ("distortion, as no record repeats with a gap above the noise",),
+    told = (
+        f"is {like}; {percent(form.share * held)} of the gap lies between {number(start)} and "
+        f"{number(end)} Hz."
+    )
+    drawn = [_spectrum(samples, spectra), _response(spectra)]
+    lacks = (NO_DISTORTION,)
+    if distortion is not None:
+        told += distortion.told + distortion.told_repeating
+        drawn.append(distortion.picture(samples.units[1]))
+        lacks = ()
+    axis, ends = "frequency", (start, end)
+    return view_of(
+        samples, "frequency", form, axis, ends, "Hz", told, [filtered], drawn, lacks
     )
 
 
