@@ -43,8 +43,7 @@ from hystbench.gap.naming.name import LITTLE, Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.records.disturbances import lone_share, unrepeated
-from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.floor import Floor, lone_share, unrepeated
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
-from hystbench.gap.behaviour import in_words
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import Closed, closed_gap
 from hystbench.gap.thresholds import UNNAMED_SHARE
-from hystbench.gap.vocabulary import Vocabulary
+from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.model import Model
 
 if TYPE_CHECKING:

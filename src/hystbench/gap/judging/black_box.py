@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.records.folds import Fold, make_folds
-from hystbench.gap.records.residual import Compared
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.sample import Compared, Sample
 from hystbench.operators import play, state_space
 from hystbench.record import FloatArray, Record
 

@@ -28,7 +28,7 @@ from hystbench.gap.locate.over_axis import (
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent, view_of
 from hystbench.operators import play
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Mask
 
 KNOTS = 9
 """Of a map over an axis."""
@@ -283,5 +283,5 @@ def record(samples: ViewSamples) -> View:
     )
 
 
-def _share_of(power: FloatArray, part: FloatArray) -> float:
+def _share_of(power: FloatArray, part: Mask) -> float:
     return float(np.sum(power[part])) / max(float(np.sum(power)), 1e-300)

@@ -7,12 +7,12 @@ from itertools import groupby
 from typing import Any
 
 from hystbench.figures.style import COLUMN, in_style, unit_text
-from hystbench.gap.behaviour import for_readers
 from hystbench.gap.locate import LEVEL
 from hystbench.gap.report import diagram, pictures, words
 from hystbench.gap.report.pictures import Picture, draw, embedded
 from hystbench.gap.report.read import Content
 from hystbench.gap.report.where_pictures import pictures_of
+from hystbench.gap.vocabulary import for_readers
 from hystbench.record import column_name
 from hystbench.report.markup import one_micro
 
