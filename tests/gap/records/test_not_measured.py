@@ -94,7 +94,6 @@ def test_the_yardstick_does_not_see_them(both):
     ]
     np.testing.assert_array_equal(boxes[0].weights, boxes[1].weights)
     assert boxes[0].explained_on_folds == boxes[1].explained_on_folds
-    assert boxes[0].power_on_folds == boxes[1].power_on_folds
 
 
 def test_views_of_samples_do_not_see_them(both):
