@@ -157,8 +157,8 @@ def test_a_dead_simulation_and_a_short_record_are_no_trouble():
 
 def test_heavy_libraries_are_imported_late():
     code = (
-        "import sys, hystbench.gap.holdout.show, hystbench.gap.report, "
-        "hystbench.gap.experiment.tell_apart, hystbench.gap.judging.black_box; "
+        "import sys, hystbench.gap.holdout.shrink, hystbench.gap.report, "
+        "hystbench.gap.experiment.excitations, hystbench.gap.judging.black_box; "
         "print({'sklearn', 'scipy', 'matplotlib', 'jinja2'} & set(sys.modules))"
     )
     run = subprocess.run(
