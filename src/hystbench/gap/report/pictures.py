@@ -110,7 +110,7 @@ def sizes(
     ]
     about = f"rms residual, all hold-out records ({unit_text(unit)})"
     bars(axes, named, widths, about, [BEFORE, *[AFTER] * (len(rows) - 1)])
-    (panel,) = axes
+    panel: Any = axes[0]
     panel.axvline(floor, color=FLOOR, linestyle="--", label=f"noise floor: {floor:.3g}")
     panel.xaxis.set_major_locator(MaxNLocator(TICKS))
     panel.set_xlim(0, 1.05 * max(*widths, floor))
