@@ -115,11 +115,17 @@ class Moving:
         return int(np.sign(most)) if abs(most) > SURE else 0
 
     @property
+    def moved(self) -> tuple[int, int, int]:
+        """How frequency, damping by power and gain move."""
+        columns = (self.numbers[:, 0], self.rates, self.numbers[:, 3])
+        errors = self.errors[:, [0, 2, 3]].T
+        frequency, damping, gain = map(self.moves, columns, errors)
+        return frequency, damping, gain
+
+    @property
     def kind(self) -> Class:
         """The class that follows from what moves."""
-        errors = self.errors
-        frequency = self.moves(self.numbers[:, 0], errors[:, 0])
-        damping = self.moves(self.rates, errors[:, 2])
+        frequency, damping, gain = self.moved
         if damping < 0:
             return "Coulomb friction"
         if frequency > 0:
@@ -128,9 +134,7 @@ class Moving:
             return "micro-slip or hysteresis" if damping > 0 else "softening"
         if damping > 0:
             return "damping that grows with speed"
-        if self.moves(self.numbers[:, 3], errors[:, 3]):
-            return "a static curve before or behind"
-        return "none"
+        return "a static curve before or behind" if gain else "none"
 
     @property
     def bend(self) -> float:
@@ -157,31 +161,26 @@ class Moving:
         """What moves by how much, and the class."""
         first, last = self.numbers[0], self.numbers[-1]
         errors = np.hypot(self.errors[0], self.errors[-1])
+        frequency, damping, gain = self.moved
         change = 100 * (last[0] / first[0] - 1)
         by = _with_error(abs(change), 100 * float(errors[0]))
-        if self.moves(self.numbers[:, 0], self.errors[:, 0]):
+        moved = f"stays (it moves by {by} %)"
+        if frequency:
             moved = f"{'rises' if change > 0 else 'falls'} by {by} %"
-        else:
-            moved = f"stays (it moves by {by} %)"
-        ratios = [
+        low, *_, high = (
             _with_error(100 * mode.power_damping, 100 * mode.power_damping * error)
             for mode, error in zip(self.modes, self.errors[:, 2], strict=True)
-        ]
-        damping = self.moves(self.rates, self.errors[:, 2])
-        told = f"{ratios[0]} to {ratios[-1]} %"
+        )
+        told = f"{low} to {high} %"
         damped = f"{_verb(damping)} {told}" if damping else f"stays ({told})"
-        gain = self.moves(self.numbers[:, 3], self.errors[:, 3])
         ratio = _with_error(last[3] / first[3], last[3] / first[3] * float(errors[3]))
         held = f"its gain {_verb(gain)} 1 to {ratio}" if gain else "its gain stays"
+        seen = len(self.modes)
+        at = "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
         return (
             f"the mode at {number(first[0])} Hz {moved}, its damping ratio {damped}, "
-            f"{held}{self._of_levels}: {WORDS[self.kind]}"
+            f"{held}{at}: {WORDS[self.kind]}"
         )
-
-    @property
-    def _of_levels(self) -> str:
-        seen = len(self.modes)
-        return "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
 
 
 def _verb(way: int) -> str:
