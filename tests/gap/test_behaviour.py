@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from hystbench.device_kinds import KINDS
-from hystbench.gap.behaviour import in_words
 from hystbench.gap.effects import effects
-from hystbench.gap.jobs import decide_in, show_in
 from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import SCHEMA
-from hystbench.gap.vocabulary import Vocabulary
+from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.interface.gap import find_gap
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema

@@ -20,9 +20,8 @@ from hystbench.gap.judging.verdict import judge, what_is_left
 from hystbench.gap.locate import locate
 from hystbench.gap.naming import name as naming
 from hystbench.gap.naming.rank import make_score, rank
-from hystbench.gap.records.disturbances import lone_share
-from hystbench.gap.records.floor import noise_floor
-from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.floor import lone_share, noise_floor
+from hystbench.gap.records.sample import Compared
 from hystbench.gap.thresholds import FOREIGN, PAYS, SCALE, SHAPE
 from tests.gap.halved import first_halves
 

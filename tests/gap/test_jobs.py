@@ -10,8 +10,6 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.example import slow_loop_model
-from hystbench.gap.jobs import BASE as BASE_FILE
-from hystbench.gap.jobs import DECISION, decide_in, show_in
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.tables import (
     write_adds,
@@ -19,6 +17,8 @@ from hystbench.gap.report.tables import (
     write_records,
     write_summary,
 )
+from hystbench.gap.run import BASE as BASE_FILE
+from hystbench.gap.run import DECISION, decide_in, show_in
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.model import Model, load_model
 from hystbench.record import Channel

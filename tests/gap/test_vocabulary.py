@@ -7,7 +7,7 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.start import start_state
-from hystbench.gap.holdout.withdrawal import with_what_was_asked
+from hystbench.gap.holdout.outcome import with_what_was_asked
 from hystbench.gap.naming.built_in import put_in
 from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.records.evidence import load_evidence

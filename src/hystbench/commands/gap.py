@@ -8,11 +8,10 @@ import click
 
 from hystbench import options
 from hystbench.gap.bases.kinds import check_base
-from hystbench.gap.behaviour import in_words
-from hystbench.gap.experiment.limits import Limits
+from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import will_write, write_next_experiment
-from hystbench.gap.vocabulary import Vocabulary
+from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.interface.gap import find_gap
 
 
@@ -66,7 +65,7 @@ def gap(
     Vocabulary.of(without, with_)  # refuses, before a file is read
     evidence = load_evidence(dataset)
     options.warn(evidence.warnings)
-    Limits.within(evidence.fit, asked)  # refuses, before work is paid
+    Limits.of(evidence.fit, asked)  # refuses, before work is paid
     will_write(out, evidence)
     found = find_gap(
         dataset,

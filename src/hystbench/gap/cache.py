@@ -35,10 +35,7 @@ LIBRARIES = ("numpy", "scipy")
 
 
 class Remembered:
-    """A folder of results, a JSON file each.
-
-    Results that this run neither made nor used make room for new ones, the oldest
-    first.
+    """A folder of results, a JSON file each; the oldest make room for new ones.
 
     Parameters
     ----------
@@ -58,14 +55,9 @@ class Remembered:
         self, folder: Path, say: Callable[[str], None], bound: int = BOUND
     ) -> None:
         self.folder, self.say, self.bound = folder, say, bound
-        self.made = self.found = 0
+        self.made = self.found = self._size = 0
         self._usable = True
-        self._older: dict[Path, int] = {}
-        try:
-            self._older = _oldest_first(folder)
-        except OSError as error:
-            self._give_up(error)
-        self._size = sum(self._older.values())
+        self._keep("", None)
 
     def result(
         self,
@@ -94,55 +86,59 @@ class Remembered:
             return read(known[0])
         result = compute()
         self.made += 1
-        self._write(file, json.dumps([write(result)]))
+        self._keep(json.dumps([write(result)]), file)
         return result
 
     def _read(self, file: Path) -> Any:
         try:
             content = json.loads(file.read_text(encoding="utf-8"))
-            self._older.pop(file, None)
-            os.utime(file)
+            os.utime(file)  # it is among the newest now
         except (OSError, ValueError):
             return None  # it is computed, and written anew
         return content if isinstance(content, list) and len(content) == 1 else None
 
-    def _write(self, file: Path, text: str) -> None:
+    def _keep(self, text: str, file: Path | None) -> None:
+        """Make room for a result and write it; without a file see what is there."""
         if not self._usable:
             return
-        while self._size + len(text) > self.bound and self._older:
-            old = next(iter(self._older))
-            self._size -= self._older.pop(old)
-            with suppress(OSError):
-                old.unlink()
-        if self._size + len(text) > self.bound:
-            return
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            handle, name = tempfile.mkstemp(suffix=".json", dir=self.folder)
-            try:
-                with os.fdopen(handle, "w", encoding="utf-8") as stream:
-                    stream.write(text)
-                Path(name).replace(file)
-            finally:
-                Path(name).unlink(missing_ok=True)
+            if file is None or self._size + len(text) > self.bound:
+                self._size = self._trimmed(self.bound - len(text))
+            if file is not None and len(text) <= self.bound:
+                _write(file, text)
+                self._size += len(text)
         except OSError as error:
-            self._give_up(error)
-            return
-        self._size += len(text)
+            self._usable = False
+            self.say(f"{self.folder}: {error.strerror}; results are not kept")
 
-    def _give_up(self, error: OSError) -> None:
-        self._usable = False
-        self.say(f"{self.folder}: {error.strerror}; results are not kept")
+    def _trimmed(self, most: int) -> int:
+        """Remove the oldest results until so many bytes are left; give how many are.
+
+        One that another run removes is passed over.
+        """
+        found = []
+        for file in self.folder.glob("*.json"):
+            with suppress(FileNotFoundError):
+                about = file.stat()
+                found.append((about.st_mtime, file, about.st_size))
+        size = sum(each for _, _, each in found)
+        for _, file, each in sorted(found):
+            if size > most:
+                file.unlink(missing_ok=True)
+                size -= each
+        return size
 
 
-def _oldest_first(folder: Path) -> dict[Path, int]:
-    """Give the size of every result; one that another run removes is passed over."""
-    found = []
-    for file in folder.glob("*.json"):
-        with suppress(FileNotFoundError):
-            about = file.stat()
-            found.append((about.st_mtime, file, about.st_size))
-    return {file: size for _, file, size in sorted(found)}
+def _write(file: Path, text: str) -> None:
+    """Write a result whole or not at all."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(suffix=".json", dir=file.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        Path(name).replace(file)
+    finally:
+        Path(name).unlink(missing_ok=True)
 
 
 _current: ContextVar[Remembered | None] = ContextVar("remembered", default=None)

@@ -11,9 +11,8 @@ import numpy as np
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
 from hystbench.gap.effects import among
-from hystbench.gap.experiment.limits import Limits
-from hystbench.gap.experiment.next_experiment import Experiment
-from hystbench.gap.experiment.tell_apart import tell_apart
+from hystbench.gap.experiment.excitations import Limits
+from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import NONE, OwnValues
@@ -44,8 +43,7 @@ from hystbench.gap.naming.name import LITTLE, Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say, silent
-from hystbench.gap.records.disturbances import lone_share, unrepeated
-from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.floor import Floor, lone_share, unrepeated
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
@@ -125,7 +123,7 @@ def find(
     InputError
         If the base does not run on the records, or no excitation fits the limits.
     """
-    limits = Limits.within(records, asked) if asked else None
+    limits = Limits.of(records, asked) if asked else None
     if any(record.decay_s is not None for record in records):
         offered = tuple(name for name in among(offered) if name not in NOT_IN_WINDOWS)
     start, floor = start_state(records, base, hold, declared, offered)

@@ -63,6 +63,11 @@ VIEW = _object(
     }
 )
 
+# Share of the power above the floor that is gone; a range where the floor is only an
+# upper bound; null where there is no power above it; zero where the model runs away on
+# a hold-out record.
+EXPLAINED = {"oneOf": [OPTIONAL, {"type": "array", "items": NUMBER, "minItems": 2}]}
+
 INTERVAL = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
 
 GAP = _object(
@@ -72,12 +77,7 @@ GAP = _object(
         "after": OPTIONAL,
         "noise_floor": NUMBER,
         "floor_method": {"enum": ["repeats", "declared", "upper-bound"]},
-        # The share of the power above the floor that is gone; a range where the floor
-        # is only an upper bound; null where there is no power above it; zero where the
-        # model runs away on a hold-out record.
-        "explained": {
-            "oneOf": [OPTIONAL, {"type": "array", "items": NUMBER, "minItems": 2}]
-        },
+        "explained": EXPLAINED,
     },
     # 95 % of the draws of one bootstrap: of both rms, and of what is explained.
     before_interval=INTERVAL,
@@ -168,6 +168,9 @@ RECORD_VALUES = _object(
     }
 )
 
+# A hold-out record before and after; null where the model runs away on it.
+HOLD_OUT = {"name": WORDS, "before": NUMBER, "after": OPTIONAL}
+
 # Names that the hold-out records took back: the model with them is worse there than
 # the base. RMS over the hold-out records of the base and of that model, null where it
 # has no bounded output.
@@ -181,10 +184,33 @@ WITHDRAWN = _object(
         "after": OPTIONAL,
         "records": {
             "type": "array",
-            "items": _object({"name": WORDS, "before": NUMBER, "after": OPTIONAL}),
+            "items": _object(HOLD_OUT),
         },
         "why": WORDS,
     }
+)
+
+# A flexible model of the residual, beside which the named effects stand; `outside` are
+# the records that lie outside what was fitted, together.
+BLACK_BOX = _object(
+    {},
+    explained_on_folds=OPTIONAL,
+    after=OPTIONAL,
+    explained=EXPLAINED,
+    after_interval=INTERVAL,
+    interval=INTERVAL,
+    records={
+        "type": "array",
+        "items": _object(
+            HOLD_OUT | {"named": OPTIONAL, "outside": NAMES}, explained=EXPLAINED
+        ),
+    },
+    outside={
+        "oneOf": [
+            _object({"before": NUMBER, "after": OPTIONAL, "named": OPTIONAL}),
+            {"type": "null"},
+        ]
+    },
 )
 
 # Null where the model of a rung runs away on a hold-out record.
@@ -308,7 +334,7 @@ SCHEMA = _object(
         "ranking": {"type": "array", "items": RANK},
         "next_experiment": EXPERIMENT,
     },
-    records={"type": "array"},
+    records={"type": "array", "items": _object(HOLD_OUT, explained=EXPLAINED)},
     # The base, the base re-tuned within what it leaves free, then effect by effect.
     ladder={"type": "array", "items": RUNG},
     fit=FIT,
@@ -338,7 +364,7 @@ SCHEMA = _object(
     not_tried={"type": "array", "items": {"type": "string"}},
     taken_out={"type": "array", "items": TAKEN_OUT},
     shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
-    black_box={"type": ["object", "null"]},
+    black_box={"oneOf": [BLACK_BOX, {"type": "null"}]},
     base_parameters={"type": "object"},
     # The model with its effects: what it takes and gives, how to run it.
     simulator=_object(
@@ -359,3 +385,11 @@ SCHEMA = _object(
     # Why next_experiment is null though effects cannot be told apart.
     no_experiment={"type": "string"},
 )
+
+_NOTHING: dict[str, Any] = {"array": [], "string": ""}
+LEFT_OUT = {
+    key: _NOTHING.get(part.get("type"))
+    for key, part in SCHEMA["properties"].items()
+    if key not in SCHEMA["required"]
+}
+"""What stands for each key that gap.json may leave out."""

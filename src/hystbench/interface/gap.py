@@ -11,18 +11,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError, nearest
-from hystbench.gap.behaviour import in_words
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import Closed, closed_gap
 from hystbench.gap.thresholds import UNNAMED_SHARE
-from hystbench.gap.vocabulary import Vocabulary
+from hystbench.gap.vocabulary import Vocabulary, in_words
 from hystbench.model import Model
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from hystbench.gap.experiment.next_experiment import Experiment
+    from hystbench.gap.experiment.tell_apart import Experiment
     from hystbench.interface.picture import Picture
 
 Table = Literal["records", "effects", "ranking"]

@@ -10,8 +10,7 @@ from hystbench.errors import InputError
 from hystbench.gap.experiment.separation import (
     Pair,
     Rival,
-    pairs_of,
-    parameter_tangents,
+    Run,
     separation,
     separations,
 )
@@ -32,13 +31,17 @@ class Shape:
         return self.shape(u)
 
 
+def run(output, *tangents):
+    return Run(output, np.array(tangents).T.reshape(len(output), -1))
+
+
 def test_a_gain_and_an_offset_separate_nothing():
     u = sine(3)
-    assert separation(u, 1.7 * u + 3, 0.1) < 1e-9
+    assert separation(run(u), run(1.7 * u + 3), 0.1) < 1e-9
     # a sine beside a cosine: orthogonal to their mean, the difference stays whole
     other = sine(3, phase=np.pi / 2)
-    assert separation(u, other, 0.1) == pytest.approx(1 / 0.1)
-    assert separation(u, other, 0.1, (u - other)[:, None]) < 1e-9
+    assert separation(run(u), run(other), 0.1) == pytest.approx(1 / 0.1)
+    assert separation(run(u), run(other, u - other), 0.1) < 1e-9
 
 
 @settings(max_examples=30)
@@ -65,50 +68,40 @@ def test_every_pair_within_a_set_counts_once_and_none_between_sets(names):
     # Written out: of each set every two that differ, whatever their order.
     expected = {
         (of, frozenset((one, other))): separation(
-            u + u ** (powers[of, one] + 2), u + u ** (powers[of, other] + 2), 0.1
+            run(u + u ** (powers[of, one] + 2)),
+            run(u + u ** (powers[of, other] + 2)),
+            0.1,
         )
         for of, members in names.items()
         for one in members
         for other in members
         if one != other
     }
-    assert len(found) == len(expected) == len(pairs_of(sets))
+    assert len(found) == len(expected)
     for pair, size in found.items():
         assert size == pytest.approx(expected[pair.of, frozenset(pair.names)])
 
 
-def test_a_rival_runs_once_though_it_is_in_many_pairs_and_two_sets():
+def test_a_rival_runs_once_though_it_is_in_many_pairs():
     shapes = [Shape(lambda u, k=k: u + u**k) for k in (2, 3, 4, 5)]
-    calls = []
-
-    def tangents(u, dt, output):
-        calls.append(output)
-        return np.zeros((len(u), 0))
-
-    shared, *others = (Rival(shape, tangents) for shape in shapes)
-    sets = {
-        "A": {"A": shared, "b": others[0], "c": others[1]},
-        "B": {"A": shared, "b": others[2]},
-    }
-    assert len(separations(sets, sine(3), DT, 0.1)) == 4
-    assert [shape.runs for shape in shapes] == [1, 1, 1, 1]
-    assert len(calls) == 4
+    shared, *others = (Rival(shape, (shape,)) for shape in shapes)
+    sets = {"A": {"A": shared, "b": others[0], "c": others[1]}}
+    assert len(separations(sets, sine(3), DT, 0.1)) == 3
+    assert [shape.runs for shape in shapes] == [2, 2, 2, 0]  # itself, its neighbour
 
 
 def test_a_pair_is_refitted_along_its_own_tangents_and_no_other():
     """A third rival could be refitted to what tells the first two apart."""
     u = sine(3)
 
-    def cubes(u, dt, output):
-        return (u**3)[:, None]
-
     plain = {"a": Rival(Shape(lambda u: u)), "b": Rival(Shape(lambda u: u + u**3))}
     third = Shape(lambda u: u + u**2)
+    cubes = (Shape(lambda u: u + u**2 + u**3),)
     alone = separations({"a": plain}, u, DT, 0.1)[Pair("a", ("a", "b"))]
     beside = separations({"a": plain | {"c": Rival(third, cubes)}}, u, DT, 0.1)
     assert alone > 0.5
     assert beside[Pair("a", ("a", "b"))] == pytest.approx(alone)
-    own = plain | {"b": Rival(plain["b"].model, cubes)}
+    own = plain | {"b": Rival(plain["b"].model, (Shape(lambda u: u + 2 * u**3),))}
     assert separations({"a": own}, u, DT, 0.1)[Pair("a", ("a", "b"))] < 1e-6
 
 
@@ -119,7 +112,7 @@ def test_a_model_that_runs_away_has_no_pair_and_the_others_keep_theirs(in_tangen
 
     lost = Rival(Shape(away))
     if in_tangent:
-        lost = Rival(Shape(np.square), lambda u, dt, y: away(u)[:, None])
+        lost = Rival(Shape(np.square), (Shape(away),))
     stays = {"a": Rival(Shape(lambda u: u)), "b": Rival(Shape(lambda u: u + u**2))}
     found = separations({"a": stays | {"lost": lost}}, sine(3), DT, 0.1)
     assert list(found) == [Pair("a", ("a", "b"))]
@@ -130,7 +123,7 @@ def test_tangents_are_the_slopes_of_the_output():
     block = registry()["gain"](value=2.0)
     model = Model("m", CURRENT, DISPLACEMENT, (block,))
     u = sine(3)
-    found = parameter_tangents(model, ["gain.value", "gain.offset"])(u, DT, 2 * u)
+    found = Rival.of(model, ["gain.value", "gain.offset"]).run(u, DT).tangents
     assert found[:, 0] == pytest.approx(2e-3 * u)
     # of nothing an absolute step
     assert found[:, 1] == pytest.approx(1e-3)
@@ -140,4 +133,4 @@ def test_a_word_is_no_parameter_to_refit():
     block = registry()["eddy-diffusion"](time_constant_s=0.003, geometry="rod")
     model = Model("d", CURRENT, DISPLACEMENT, (block,))
     with pytest.raises(InputError, match=r"^eddy-diffusion.geometry: 'rod' is no"):
-        parameter_tangents(model, ["eddy-diffusion.geometry"])
+        Rival.of(model, ["eddy-diffusion.geometry"])

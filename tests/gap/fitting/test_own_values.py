@@ -12,9 +12,9 @@ from hystbench.gap.decision import find
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.own_values import NONE, Own, OwnValues, fitted, own_values
-from hystbench.gap.jobs import decide_in, show_in
 from hystbench.gap.naming.with_own_values import without_shared
 from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.run import decide_in, show_in
 from hystbench.gap.schema import RECORD_VALUES
 from hystbench.model import Model
 from hystbench.schema import check_against_schema

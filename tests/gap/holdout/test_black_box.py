@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.holdout.black_box import black_box_mapping
-from hystbench.gap.holdout.shrink import mapping, records_mapping, shrink
+from hystbench.gap.holdout.show import black_box_mapping
+from hystbench.gap.holdout.shrink import shrink
 from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.records.folds import make_folds
-from hystbench.gap.records.residual import rms
+from hystbench.gap.records.sample import rms
 from tests.gap.made import compared, sine
 
 
@@ -42,7 +42,7 @@ def test_mappings_are_plain():
     item = compared(sine(2), sine(3))
     after = item.simulated + 0.5 * item.residual
     whole = shrink([item.record], [item.simulated], [after], 0.1, "upper-bound")
-    assert mapping(whole)["explained"] == list(whole.explained)
-    (row,) = records_mapping(whole)
+    assert whole.mapping()["explained"] == whole.explained
+    (row,) = [item.mapping() for item in whole.records]
     assert row["before"] == pytest.approx(np.sqrt(0.5))
     assert row["after"] == pytest.approx(np.sqrt(0.5) / 2)

@@ -15,8 +15,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.start import start_state
-from hystbench.gap.holdout.runs_away import FAR, bounded, reach
-from hystbench.gap.holdout.show import FitResult, show
+from hystbench.gap.holdout.show import FAR, FitResult, bounded, reach, show
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.evidence import Evidence

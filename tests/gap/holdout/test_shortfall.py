@@ -2,7 +2,7 @@
 
 import pytest
 
-from hystbench.gap.holdout.shortfall import shortfall
+from hystbench.gap.holdout.outcome import shortfall
 
 
 def content(

@@ -5,14 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from hystbench.gap.holdout.withdrawal import (
+from hystbench.gap.holdout.outcome import (
     first_figure,
     withdrawal,
     without_names,
 )
-from hystbench.gap.jobs import DECISION, decide_in, show_in
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.words import verdict_sentence
+from hystbench.gap.run import DECISION, decide_in, show_in
 from hystbench.gap.schema import SCHEMA
 from hystbench.model import Model, load_model
 from hystbench.schema import check_against_schema

@@ -9,9 +9,9 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.hosts import best_host, one_coordinate
+from hystbench.gap.records.evidence import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.sample import Sample
-from hystbench.gap.records.windows import decay_of_free_mass, windows
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import search

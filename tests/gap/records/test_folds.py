@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.errors import InputError
-from hystbench.gap.records.folds import chosen, make_folds
+from hystbench.gap.records.folds import make_folds
 from tests.gap.made import record, sine
 
 
@@ -88,9 +88,3 @@ def test_blocks_may_be_asked_for_however_many_records():
 def test_no_records_is_one_clear_line():
     with pytest.raises(InputError, match=r"^no fit records"):
         make_folds([])
-
-
-def test_chosen_joins_the_masked_samples():
-    masks = (np.array([True, False, True]), np.array([False, True]))
-    values = (np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0]))
-    assert np.array_equal(chosen(values, masks), [1.0, 3.0, 5.0])

@@ -6,8 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.gap.report.diagram_layout import layout
-from hystbench.gap.report.diagram_shapes import RADIUS, text_width
+from hystbench.gap.report.diagram_layout import (
+    RADIUS,
+    Box,
+    Line,
+    Sum,
+    layout,
+    text_width,
+)
 from hystbench.gap.report.parts import Part, Stage
 
 PAGE = 7.2
@@ -18,8 +24,20 @@ def drawn(*stages, page=PAGE):
     return layout(stages, "force (N)", "position (mm)", page)
 
 
+def of(diagram, kind):
+    return [one for one in diagram.shapes if isinstance(one, kind)]
+
+
+def boxes_of(diagram):
+    return [box for box in of(diagram, Box) if box.whose is not None]
+
+
+def labels_of(diagram):
+    return [box for box in of(diagram, Box) if box.whose is None]
+
+
 def named(diagram, words):
-    (box,) = [box for box in diagram.drawn.boxes if " ".join(box.words) == words]
+    (box,) = [box for box in boxes_of(diagram) if " ".join(box.words) == words]
     return box
 
 
@@ -56,7 +74,7 @@ def crosses(line, box):
 def ends(diagram):
     return {
         (round(x, 6), round(y, 6))
-        for line in diagram.drawn.lines
+        for line in of(diagram, Line)
         for x, y in (line.points[0], line.points[-1])
     }
 
@@ -70,9 +88,9 @@ def test_a_chain_stands_from_left_to_right_with_an_arrow_into_each_box():
     first, second = (named(diagram, name) for name in ("gpi", "sensor lag"))
     assert first.x + first.width < second.x
     assert first.y + first.height / 2 == NEAR(second.y + second.height / 2)
-    into = {line.points[-1][0] for line in diagram.drawn.lines if line.arrow}
+    into = {line.points[-1][0] for line in of(diagram, Line) if line.arrow}
     assert {first.x, second.x} <= into
-    assert [label.words for label in diagram.drawn.labels] == [
+    assert [label.words for label in labels_of(diagram)] == [
         ("force (N)",),
         ("position (mm)",),
     ]
@@ -81,7 +99,7 @@ def test_a_chain_stands_from_left_to_right_with_an_arrow_into_each_box():
 def test_a_force_is_fed_back_below_its_mechanism_and_subtracted():
     diagram = drawn(Stage(Part("mechanism"), fed_back=(Part("friction"),)))
     core, force = (named(diagram, name) for name in ("mechanism", "friction"))
-    (total,) = diagram.drawn.sums
+    (total,) = of(diagram, Sum)
     assert force.y + force.height < core.y
     assert total.minus
     assert total.x < core.x
@@ -89,12 +107,12 @@ def test_a_force_is_fed_back_below_its_mechanism_and_subtracted():
     assert any(
         at(*line.points[-1]) == at(total.x, total.y - RADIUS)
         and line.points[0][0] == NEAR(force.x)
-        for line in diagram.drawn.lines
+        for line in of(diagram, Line)
     )
     # What it depends on is taken behind the mechanism.
     (back,) = [
         line
-        for line in diagram.drawn.lines
+        for line in of(diagram, Line)
         if at(*line.points[-1]) == at(force.x + force.width, force.y + force.height / 2)
     ]
     assert back.points[0][0] > core.x + core.width
@@ -104,7 +122,7 @@ def test_a_force_is_fed_back_below_its_mechanism_and_subtracted():
 def test_a_branch_beside_stands_above_and_is_added_behind():
     diagram = drawn(Stage(Part("impedance"), beside=(Part("friction"),)))
     core, force = (named(diagram, name) for name in ("impedance", "friction"))
-    (total,) = diagram.drawn.sums
+    (total,) = of(diagram, Sum)
     assert not total.minus
     assert total.x > core.x + core.width
     assert force.y > core.y + core.height
@@ -114,7 +132,7 @@ def test_a_branch_beside_stands_above_and_is_added_behind():
 def test_two_forces_are_summed_on_their_way_back():
     forces = (Part("friction"), Part("stop"))
     diagram = drawn(Stage(Part("mechanism"), fed_back=forces))
-    assert sorted(item.minus for item in diagram.drawn.sums) == [False, True]
+    assert sorted(item.minus for item in of(diagram, Sum)) == [False, True]
     assert apart(*(named(diagram, part.words) for part in forces))
 
 
@@ -127,7 +145,7 @@ def test_other_modes_are_beside_the_loop_of_a_force():
             beside=(Part("other modes"),),
         )
     )
-    loop, total = sorted(diagram.drawn.sums, key=lambda item: item.x)
+    loop, total = sorted(of(diagram, Sum), key=lambda item: item.x)
     assert loop.minus
     assert not total.minus
     core = named(diagram, "mechanism")
@@ -136,7 +154,7 @@ def test_other_modes_are_beside_the_loop_of_a_force():
 
 def test_what_is_around_holds_the_block():
     diagram = drawn(Stage(Part("gpi"), around=(Part("rate dependent hysteresis"),)))
-    frame = next(box for box in diagram.drawn.boxes if "dependent" in box.words[0])
+    frame = next(box for box in boxes_of(diagram) if "dependent" in box.words[0])
     assert within(named(diagram, "gpi"), frame)
 
 
@@ -151,14 +169,14 @@ def test_numbers_of_a_store_stand_in_it_and_what_is_spilt_joins_its_outflow():
     store = named(diagram, "store")
     assert within(named(diagram, "outflow"), store)
     assert named(diagram, "overflow").y > store.y + store.height
-    (total,) = diagram.drawn.sums
+    (total,) = of(diagram, Sum)
     assert total.x > store.x + store.width
     assert at(total.x, total.y + RADIUS) in ends(diagram)
 
 
 def test_what_is_spilt_and_not_caught_goes_nowhere():
     diagram = drawn(Stage(Part("store"), spilt=Part("overflow")))
-    assert diagram.drawn.sums == ()
+    assert of(diagram, Sum) == []
 
 
 def test_many_blocks_stand_in_rows_that_a_line_joins():
@@ -170,7 +188,7 @@ def test_many_blocks_stand_in_rows_that_a_line_joins():
         (-named(diagram, name).y, named(diagram, name).x) for name in names
     ]  # down, then right
     assert places == sorted(places)
-    turning = [line for line in diagram.drawn.lines if len(line.points) == 6]
+    turning = [line for line in of(diagram, Line) if len(line.points) == 6]
     assert len(turning) == len(rows) - 1
 
 
@@ -187,39 +205,31 @@ STAGES = st.builds(
 @given(st.lists(STAGES, min_size=1, max_size=6))
 def test_nothing_is_cut_off_overlaps_or_is_crossed(stages):
     diagram = drawn(*stages)
-    boxes, content = diagram.drawn.boxes, diagram.drawn
-    for box in [*boxes, *(_as_box(item) for item in content.labels)]:
+    boxes, lines, labels = boxes_of(diagram), of(diagram, Line), labels_of(diagram)
+    for box in [*boxes, *labels]:
         left, low, right, high = edges(box)
         assert 0 <= left < right <= diagram.width == PAGE
         assert 0 <= low < high <= diagram.height
-    for line in content.lines:
+    for line in lines:
         for x, y in line.points:
             assert 0 <= x <= diagram.width
             assert 0 <= y <= diagram.height
     for one, other in combinations(boxes, 2):
         assert apart(one, other) or within(one, other) or within(other, one)
-    for label in content.labels:
-        assert all(apart(_as_box(label), box) for box in boxes)
+    for label in labels:
+        assert all(apart(label, box) for box in boxes)
     holding = [
         box for box in boxes if any(within(x, box) for x in boxes if x is not box)
     ]
     for box in boxes:
         if box not in holding:
-            assert not any(crosses(line, box) for line in content.lines)
-
-
-def _as_box(item):
-    class Square:
-        x, y, width = item.x, item.y, item.width
-        height = 0.15 * len(item.words)
-
-    return Square
+            assert not any(crosses(line, box) for line in lines)
 
 
 def test_texts_fit_their_boxes():
     words = "rate dependent hysteresis of a machine"
     diagram = drawn(Stage(Part(words, ("contact stiffness 2.03·10⁶ N/m",), "added")))
-    box = diagram.drawn.boxes[0]
+    box = boxes_of(diagram)[0]
     assert " ".join(box.words) == words
     assert all(text_width(line, 8.0) < box.width for line in box.words)
     assert all(text_width(line, 7.0) < box.width for line in box.numbers)

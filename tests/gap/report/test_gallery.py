@@ -5,7 +5,7 @@ import csv
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.report.gallery import write_gallery, write_sentences
+from hystbench.gap.report.tables import write_gallery, write_sentences
 from hystbench.gap.report.words import verdict_text
 from tests.gap.report.test_report import GAP, write_folder
 

@@ -12,10 +12,10 @@ from hystbench.errors import InputError
 from hystbench.figures.style import PAGE, in_style
 from hystbench.gap.locate.picture import Axis, Bars, Cells, Panel, Picture, series
 from hystbench.gap.report import pictures, write_report
-from hystbench.gap.report.page import OPTIONAL, headline
+from hystbench.gap.report.page import headline
 from hystbench.gap.report.read import Content
 from hystbench.gap.report.words import number, with_error
-from hystbench.gap.schema import SCHEMA
+from hystbench.gap.schema import LEFT_OUT, SCHEMA
 from hystbench.report.markup import one_micro
 from hystbench.schema import check_against_schema
 
@@ -430,7 +430,7 @@ def test_the_headline_has_before_and_after_as_a_picture(tmp_path):
 )
 def test_what_is_not_changed_is_drawn_once(gap, expected):
     same = {**GAP["gap"], "before": 0.5, "after": 0.5}
-    content = Content({**OPTIONAL, **GAP, "effects": [], **gap, "gap": same}, (), None)
+    content = Content({**LEFT_OUT, **GAP, "effects": [], **gap, "gap": same}, (), None)
     (sizes,) = headline(content.gap, content)
     assert sizes.words.endswith(expected)
 
@@ -484,7 +484,7 @@ def test_no_legend_lies_over_curves():
     with in_style():
         figure = Figure(figsize=(PAGE, 2.4))
         panel = figure.subplots()
-        pictures.steps([panel], [("base", 0.5), ("resonance", 0.2)], 0.1, "um")
+        pictures.sizes([panel], [("base", 0.5), ("resonance", 0.2)], 0.1, "um")
         figure.canvas.draw()
         (legend,) = figure.legends
         box = legend.get_window_extent()

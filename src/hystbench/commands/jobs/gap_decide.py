@@ -8,9 +8,8 @@ import click
 
 from hystbench import options
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.jobs import decide_in
 from hystbench.gap.records.evidence import check_units, load_evidence
-from hystbench.gap.run import write_next_experiment
+from hystbench.gap.run import decide_in, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
 
 

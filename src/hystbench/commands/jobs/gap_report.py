@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from hystbench.gap.report import write_report
-from hystbench.gap.report.gallery import write_gallery
+from hystbench.gap.report.tables import write_gallery
 
 
 @click.command()

@@ -8,8 +8,8 @@ import click
 
 from hystbench import options
 from hystbench.gap.bases.load import checked_base
-from hystbench.gap.jobs import show_in
 from hystbench.gap.records.evidence import load_evidence
+from hystbench.gap.run import show_in
 from hystbench.model import load_model
 
 

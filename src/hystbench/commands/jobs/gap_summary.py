@@ -8,11 +8,11 @@ import click
 
 from hystbench import options
 from hystbench.files import read_json
-from hystbench.gap.report.gallery import write_sentences
 from hystbench.gap.report.tables import (
     write_adds,
     write_effects,
     write_records,
+    write_sentences,
     write_summary,
 )
 from hystbench.model import load_model

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from hystbench.files import atomic_path
-from hystbench.gap.experiment.limits import Limits
-from hystbench.record import Channel, FloatArray
+from hystbench.errors import InputError
+from hystbench.files import write_csv
+from hystbench.record import Channel, FloatArray, Record, column_name
 from hystbench.signals import Signal
 from hystbench.waveforms.chirp import Chirp
-from hystbench.waveforms.sine import Sine
-from hystbench.waveforms.sum_of_sines import SumOfSines
 
+#: Part of the input's power below its bandwidth.
+IN_BAND = 0.999
 #: Samples of a candidate: enough to tell two models apart.
 LONGEST = 20_000
 #: Periods without which a sine has not settled.
@@ -26,8 +25,89 @@ AMPLITUDES = (0.25, 0.5, 1.0)
 BIASES = 5
 
 
-#: Value and unit by name: all that makes an excitation.
-Parameters = dict[str, tuple[float | list[float], str]]
+@dataclass(frozen=True)
+class Limits:
+    """What an experiment may ask of the actuator.
+
+    Parameters
+    ----------
+    low, high : float
+        Range of the input, in its unit.
+    rate : float
+        Largest rate of the input, in its unit per second.
+    bandwidth_hz : float
+        Highest frequency.
+    dt : float
+        Sampling interval in seconds.
+    duration_s : float
+        Longest record.
+    """
+
+    low: float
+    high: float
+    rate: float
+    bandwidth_hz: float
+    dt: float
+    duration_s: float
+
+    def __post_init__(self) -> None:
+        """Refuse limits that no excitation fits."""
+        if not self.low < self.high:
+            raise InputError(
+                f"limits: low {self.low:g} and high {self.high:g}; expected low < high"
+            )
+        for name in ("rate", "bandwidth_hz", "dt", "duration_s"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0):
+                raise InputError(f"limits: {name}: {value:g}; expected above 0")
+        if self.duration_s < 100 * self.dt:
+            raise InputError(
+                f"limits: duration_s: {self.duration_s:g}; expected at least 100 "
+                f"sampling intervals, {100 * self.dt:g} s"
+            )
+
+    @classmethod
+    def of(
+        cls, records: Sequence[Record], asked: Mapping[str, float] | None = None
+    ) -> Limits:
+        """Take what is asked, by name, and the rest from records.
+
+        What was done once can be done again.
+        """
+        own = {
+            "low": min(float(record.u.min()) for record in records),
+            "high": max(float(record.u.max()) for record in records),
+            "rate": max(float(np.abs(np.diff(x.u)).max()) / x.dt for x in records),
+            "bandwidth_hz": max(_bandwidth(record) for record in records),
+            "dt": min(record.dt for record in records),
+            "duration_s": max(len(record) * record.dt for record in records),
+        }
+        return cls(**(own | dict(asked or {})))
+
+    @property
+    def middle(self) -> float:
+        """Middle of the input's range."""
+        middle = (self.high + self.low) / 2
+        return 0.0 if abs(middle) < 1e-9 * self.half else middle
+
+    @property
+    def half(self) -> float:
+        """Half of the input's range."""
+        return (self.high - self.low) / 2
+
+    @property
+    def time(self) -> FloatArray:
+        """Times of the samples of a candidate, in seconds."""
+        count = round(min(self.duration_s / self.dt, LONGEST))
+        return np.asarray(np.arange(count) * self.dt, dtype=np.float64)
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """From a few periods in a record to the bandwidth, equal ratios apart."""
+        lowest = PERIODS / min(self.duration_s, LONGEST * self.dt)
+        highest = min(self.bandwidth_hz, 0.2 / self.dt)
+        count = FREQUENCIES if highest > lowest else 1
+        return np.geomspace(lowest, max(highest, lowest), count)
 
 
 @dataclass(frozen=True, repr=False)
@@ -45,18 +125,42 @@ class Excitation:
     """
 
     kind: str
-    parameters: Parameters
+    parameters: dict[str, tuple[float | list[float], str]]
     dt: float
     u: FloatArray
 
     @property
     def words(self) -> str:
         """Kind and parameters, as in ``sine (frequency 40 Hz, amplitude 2 A)``."""
-        told = ", ".join(
-            f"{_plain(name)} {_number(value)} {unit}".rstrip()
-            for name, (value, unit) in self.parameters.items()
+        told = []
+        for name, (value, unit) in self.parameters.items():
+            plain = name.removesuffix("_hz").removesuffix("_s").replace("_", " ")
+            values = value if isinstance(value, list) else [value]
+            shown = ", ".join(f"{item:.3g}" for item in values)
+            told.append(f"{plain} {shown} {unit}".rstrip())
+        return f"{self.kind.replace('-', ' ')} ({', '.join(told)})"
+
+    def write(self, channel: Channel, path: str | Path) -> None:
+        """Write it as a signal file, whole or not at all.
+
+        A table of time in seconds and the input, its column named as those of datasets
+        are; or, by a path that ends in ``.npz``, an archive as the workflow's signals
+        are, which ``hystbench simulate`` runs a model on.
+
+        Parameters
+        ----------
+        channel : Channel
+            The input's.
+        path : str or Path
+        """
+        if Path(path).suffix == ".npz":
+            Signal("next-experiment", self.dt, self.u, channel.unit).save(path)
+            return
+        rows = (
+            (f"{k * self.dt:.9g}", f"{value:.9g}") for k, value in enumerate(self.u)
         )
-        return f"{self.kind.replace('-', ' ')} ({told})"
+        columns = ["time_s", column_name(channel.name, channel.unit)]
+        write_csv(Path(path), columns, rows)
 
 
 def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:
@@ -77,122 +181,106 @@ def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:
         Each within range and rate; one that is too fast at full amplitude is made
         smaller.
     """
-    made = [*_sines(limits, unit), *_wide_bands(limits, unit), *_slow(limits, unit)]
-    found = [item for item in made if _feasible(item, limits)]
+    makers = [(make, limits) for make in (_sines, _wide_bands, _slow)]
     if limits.duration_s > LONGEST * limits.dt:
         # What is slow is sampled more coarsely, so that it lasts as long as it may.
-        coarse = replace(limits, dt=limits.duration_s / LONGEST)
-        found += [item for item in _slow(coarse, unit) if _feasible(item, coarse)]
-    return tuple(found)
+        makers.append((_slow, replace(limits, dt=limits.duration_s / LONGEST)))
+    return tuple(
+        item
+        for make, own in makers
+        for item in make(own, unit)
+        if _feasible(item.u, own)
+    )
 
 
-def write_experiment(
-    excitation: Excitation, channel: Channel, path: str | Path
-) -> None:
-    """Write an excitation as a signal file.
-
-    A table of time in seconds and the input, its column named as those of datasets are;
-    or, by a path that ends in ``.npz``, an archive as the workflow's signals are, which
-    ``hystbench simulate`` runs a model on.
-
-    Parameters
-    ----------
-    excitation : Excitation
-    channel : Channel
-        The input's.
-    path : str or Path
-        Written whole or not at all.
-    """
-    if Path(path).suffix == ".npz":
-        made = Signal("next-experiment", excitation.dt, excitation.u, channel.unit)
-        made.save(path)
-        return
-    unit = channel.unit.replace("/", "_per_")
-    name = f"{channel.name.replace(' ', '_')}_{unit}"
-    time = np.arange(len(excitation.u)) * excitation.dt
-    with atomic_path(path) as temporary, temporary.open("w", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(["time_s", name])
-        writer.writerows(
-            (f"{t:.9g}", f"{value:.9g}")
-            for t, value in zip(time, excitation.u, strict=True)
-        )
-
-
-def _feasible(item: Excitation, limits: Limits) -> bool:
+def _feasible(u: FloatArray, limits: Limits) -> bool:
     slack = 1e-6 * (limits.high - limits.low)
-    within = limits.low - slack <= item.u.min() and item.u.max() <= limits.high + slack
-    steps = np.abs(np.diff(item.u))
-    fast = float(steps.max()) > limits.rate * limits.dt * (1 + 1e-6)
-    return bool(within and not fast and steps.max() > 0)
+    within = limits.low - slack <= u.min() and u.max() <= limits.high + slack
+    fastest = float(np.abs(np.diff(u)).max())
+    return bool(within and 0 < fastest <= limits.rate * limits.dt * (1 + 1e-6))
 
 
-def _common(limits: Limits) -> dict[str, float]:
-    return {
-        "duration_s": min(limits.duration_s, LONGEST * limits.dt),
-        "sampling_frequency_hz": 1 / limits.dt,
-    }
-
-
-def _ranges(limits: Limits) -> tuple[float, float]:
-    """Middle and half width of the input's range."""
-    middle, half = (limits.high + limits.low) / 2, (limits.high - limits.low) / 2
-    return (0.0 if abs(middle) < 1e-9 * half else middle), half
-
-
-def _frequencies(limits: Limits) -> FloatArray:
-    """From a few periods in a record to the bandwidth, equal ratios apart."""
-    lowest = PERIODS / _common(limits)["duration_s"]
-    highest = min(limits.bandwidth_hz, 0.2 / limits.dt)
-    if highest <= lowest:
-        return np.array([lowest])
-    return np.geomspace(lowest, highest, FREQUENCIES)
+def _made(
+    kind: str,
+    limits: Limits,
+    u: FloatArray,
+    **about: tuple[float | list[float], str],
+) -> Excitation:
+    """Put a signal about the middle of the range."""
+    parameters = {**about, "duration_s": (len(u) * limits.dt, "s")}
+    return Excitation(kind, parameters, limits.dt, limits.middle + u)
 
 
 def _sines(limits: Limits, unit: str) -> Iterator[Excitation]:
-    middle, half = _ranges(limits)
-    common = _common(limits)
-    for frequency in map(float, _frequencies(limits)):
-        most = min(half, limits.rate / (2 * np.pi * frequency))
+    bias = (limits.middle, unit)
+    for frequency in limits.frequencies.tolist():
+        most = min(limits.half, limits.rate / (2 * np.pi * frequency))
+        wave = np.sin(2 * np.pi * frequency * limits.time)
+        own = {"frequency_hz": (frequency, "Hz")}
         for part in AMPLITUDES:
-            amplitude = part * most
-            u = middle + Sine.samples(
-                frequency_hz=frequency, amplitude=amplitude, **common
+            size = (part * most, unit)
+            yield _made(
+                "sine", limits, part * most * wave, **own, amplitude=size, bias=bias
             )
-            about: Parameters = {
-                "frequency_hz": (frequency, "Hz"),
-                "amplitude": (amplitude, unit),
-                "bias": (middle, unit),
-            }
-            yield _made("sine", about, limits, u)
-        # half of the rate moves between levels, half is left for the loops
-        amplitude = min(half / BIASES, most / 2)
-        levels = np.linspace(-1, 1, BIASES) * (half - amplitude)
-        u = middle + _minor_loops(frequency, amplitude, levels, limits)
-        about = {
-            "frequency_hz": (frequency, "Hz"),
-            "amplitude": (amplitude, unit),
-            "bias_levels": ((middle + levels).tolist(), unit),
-        }
-        yield _made("biased-minor-loops", about, limits, u)
+        # Half of the rate moves between levels, half is left for the loops.
+        amplitude = min(limits.half / BIASES, most / 2)
+        levels = np.linspace(-1, 1, BIASES) * (limits.half - amplitude)
+        u = _through(levels, limits, part=0.5) + amplitude * wave
+        at = ((limits.middle + levels).tolist(), unit)
+        size = (amplitude, unit)
+        yield _made(
+            "biased-minor-loops", limits, u, **own, amplitude=size, bias_levels=at
+        )
 
 
-def _minor_loops(
-    frequency_hz: float, amplitude: float, levels: FloatArray, limits: Limits
-) -> FloatArray:
-    """Small sines on top of levels."""
-    common = _common(limits)
-    count = round(common["duration_s"] / limits.dt)
-    path = _through(levels, count, limits, part=0.5)
-    loops = Sine.samples(frequency_hz=frequency_hz, amplitude=1.0, **common)
-    return np.asarray(path + amplitude * loops[: len(path)])
+def _wide_bands(limits: Limits, unit: str) -> Iterator[Excitation]:
+    frequencies, bias = limits.frequencies, (limits.middle, unit)
+    low, high = float(frequencies[0]), float(frequencies[-1])
+    amplitude = min(limits.half, limits.rate / (2 * np.pi * high))
+    u = Chirp.samples(
+        from_hz=low,
+        to_hz=high,
+        amplitude=amplitude,
+        duration_s=len(limits.time) * limits.dt,
+        sampling_frequency_hz=1 / limits.dt,
+    )
+    ends = {"from_hz": (low, "Hz"), "to_hz": (high, "Hz")}
+    yield _made("chirp", limits, u, **ends, amplitude=(amplitude, unit), bias=bias)
+    raw = np.sin(2 * np.pi * np.outer(limits.time, frequencies)).sum(axis=1)
+    fastest = float(np.abs(np.diff(raw)).max()) / limits.dt
+    each = min(limits.half / float(np.abs(raw).max()), limits.rate / fastest)
+    lines = (frequencies.tolist(), "Hz")
+    size = (each, unit)
+    yield _made(
+        "multisine",
+        limits,
+        each * raw,
+        frequencies_hz=lines,
+        amplitude_each=size,
+        bias=bias,
+    )
 
 
-def _through(
-    levels: FloatArray, count: int, limits: Limits, part: float = 1.0
-) -> FloatArray:
+def _slow(limits: Limits, unit: str) -> Iterator[Excitation]:
+    count = len(limits.time)
+    seconds = count * limits.dt
+    for part in AMPLITUDES:
+        levels = part * limits.half * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
+        at = ((limits.middle + levels).tolist(), unit)
+        hold = (seconds / len(levels), "s")
+        u = _through(levels, limits)
+        yield _made("steps-with-holds", limits, u, levels=at, hold_s=hold)
+        corners = np.linspace(0, count - 1, len(levels))
+        u = np.interp(np.arange(count), corners, levels)
+        size, bias = (part * limits.half, unit), (limits.middle, unit)
+        period = (seconds, "s")
+        yield _made("slow-ramp", limits, u, amplitude=size, bias=bias, period_s=period)
+
+
+def _through(levels: FloatArray, limits: Limits, part: float = 1.0) -> FloatArray:
     """Hold levels for equal times, moving between them at a part of the rate."""
-    # corners of the path, in samples: where a move begins, and where it ends
+    # Corners of the path, in samples: where a move begins, and where it ends.
+    count = len(limits.time)
     hold, step = count / len(levels), part * limits.rate * limits.dt
     corners, values, at = [], [], 0.0
     for place, level in enumerate(levels):
@@ -203,69 +291,9 @@ def _through(
     return np.asarray(np.interp(np.arange(count), corners, values))
 
 
-def _wide_bands(limits: Limits, unit: str) -> Iterator[Excitation]:
-    middle, half = _ranges(limits)
-    common = _common(limits)
-    frequencies = _frequencies(limits)
-    low, high = float(frequencies[0]), float(frequencies[-1])
-    amplitude = min(half, limits.rate / (2 * np.pi * high))
-    about: Parameters = {"from_hz": (low, "Hz"), "to_hz": (high, "Hz")}
-    u = Chirp.samples(from_hz=low, to_hz=high, amplitude=amplitude, **common)
-    about |= {"amplitude": (amplitude, unit), "bias": (middle, unit)}
-    yield _made("chirp", about, limits, middle + u)
-    raw = SumOfSines.samples(
-        frequencies_hz=frequencies.tolist(),
-        amplitudes=[1.0] * len(frequencies),
-        gain=1.0,
-        **common,
-    )
-    fastest = float(np.abs(np.diff(raw)).max()) / limits.dt
-    each = min(half / float(np.abs(raw).max()), limits.rate / fastest)
-    about = {
-        "frequencies_hz": (frequencies.tolist(), "Hz"),
-        "amplitude_each": (each, unit),
-        "bias": (middle, unit),
-    }
-    yield _made("multisine", about, limits, middle + each * raw)
-
-
-def _slow(limits: Limits, unit: str) -> Iterator[Excitation]:
-    middle, half = _ranges(limits)
-    count = round(_common(limits)["duration_s"] / limits.dt)
-    for part in AMPLITUDES:
-        levels = part * half * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
-        about: Parameters = {
-            "levels": ((middle + levels).tolist(), unit),
-            "hold_s": (count * limits.dt / len(levels), "s"),
-        }
-        u = middle + _through(levels, count, limits)
-        yield _made("steps-with-holds", about, limits, u)
-        corners = np.linspace(0, count - 1, 5)
-        u = middle + np.interp(np.arange(count), corners, levels)
-        about = {
-            "amplitude": (part * half, unit),
-            "bias": (middle, unit),
-            "period_s": (count * limits.dt, "s"),
-        }
-        yield _made("slow-ramp", about, limits, u)
-
-
-def _made(
-    kind: str,
-    about: Parameters,
-    limits: Limits,
-    u: FloatArray,
-) -> Excitation:
-    parameters = {**about, "duration_s": (len(u) * limits.dt, "s")}
-    return Excitation(kind, parameters, limits.dt, np.ascontiguousarray(u))
-
-
-def _plain(name: str) -> str:
-    """Name of a parameter without its unit."""
-    return name.removesuffix("_hz").removesuffix("_s").replace("_", " ")
-
-
-def _number(value: float | list[float]) -> str:
-    if isinstance(value, list):
-        return ", ".join(f"{item:.3g}" for item in value)
-    return f"{value:.3g}"
+def _bandwidth(record: Record) -> float:
+    """Frequency below which nearly all of the input's power lies."""
+    power = np.square(np.abs(np.fft.rfft(record.u - record.u.mean())))
+    total = np.cumsum(power)
+    line = int(np.searchsorted(total, IN_BAND * total[-1])) if total[-1] > 0 else 1
+    return max(line, 1) / (len(record) * record.dt)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple, Protocol
@@ -11,9 +11,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.records.residual import rms
+from hystbench.gap.records.sample import rms
 from hystbench.model import Model
 from hystbench.record import FloatArray
+
+CHANGE = 1e-3
+"""Relative change of a parameter in a refit; of 0 an absolute one."""
 
 
 class Simulator(Protocol):
@@ -24,8 +27,11 @@ class Simulator(Protocol):
         ...
 
 
-#: Directions in which a refit may move an output: shape (n, m) from u, dt and output.
-Tangents = Callable[[FloatArray, float, FloatArray], FloatArray]
+class Run(NamedTuple):
+    """Output of a rival, shape (n,), and the directions of a refit, shape (n, m)."""
+
+    output: FloatArray
+    tangents: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,16 +41,57 @@ class Rival:
     Parameters
     ----------
     model : Simulator
-    tangents : callable, optional
-        What a refit of it may change besides gain and offset.
+    neighbours : tuple of Simulator
+        What a refit of it may move towards, besides another gain and offset.
     """
 
     model: Simulator
-    tangents: Tangents | None = None
+    neighbours: tuple[Simulator, ...] = ()
+
+    @classmethod
+    def of(cls, model: Model, names: Sequence[str]) -> Rival:
+        """Let a refit change parameters; lists of numbers by a common factor.
+
+        Without them a single sine seems to tell a lag from a delay that another time
+        constant would imitate.
+        """
+        found = []
+        for name in names:
+            value = model.value(name)
+            new: float | list[float]
+            if isinstance(value, str):
+                raise InputError(
+                    f"{name}: {value!r} is no number; expected one to refit"
+                )
+            if isinstance(value, tuple):
+                new = [item * (1 + CHANGE) for item in value]
+            else:
+                new = value * (1 + CHANGE) if value else CHANGE
+            # A zero that stands for "none" has no neighbour: the block refuses it.
+            with suppress(InputError):
+                found.append(model.with_values({name: new}))
+        return cls(model, tuple(found))
+
+    def run(self, u: FloatArray, dt: float) -> Run | None:
+        """Simulate it and its neighbours; None where they do not run to the end.
+
+        As where a simulator of somebody's own refuses an input.
+        """
+        tangents = np.zeros((len(u), len(self.neighbours)))
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                output = self.model.simulate(u, dt)
+                if not np.isfinite(output).all():
+                    return None
+                for k, other in enumerate(self.neighbours):
+                    tangents[:, k] = other.simulate(u, dt) - output
+        except InputError:
+            return None
+        return Run(output, tangents) if np.isfinite(tangents).all() else None
 
 
-#: Rivals by name, of each effect in whose place they are. A name may be in two sets.
 Sets = Mapping[str, Mapping[str, Rival]]
+"""Rivals by name, of each effect in whose place they are. A name may be in two sets."""
 
 
 class Pair(NamedTuple):
@@ -55,59 +102,38 @@ class Pair(NamedTuple):
     names: tuple[str, str]
 
 
-def pairs_of(sets: Sets) -> tuple[Pair, ...]:
-    """Give all pairs within a set; what is in two sets needs no telling apart."""
-    return tuple(
-        Pair(of, names)
-        for of, members in sets.items()
-        for names in combinations(members, 2)
-    )
-
-
-def separation(
-    first: FloatArray,
-    second: FloatArray,
-    noise_floor: float,
-    tangents: FloatArray | None = None,
-) -> float:
+def separation(first: Run, second: Run, noise_floor: float) -> float:
     """RMS difference of two outputs that no refit takes away, in noise floors.
 
     The part of ``first - second`` orthogonal to an offset, to a gain (the mean of the
-    two outputs) and to the tangents that are given.
+    two outputs) and to the tangents of both.
 
     Parameters
     ----------
-    first, second : ndarray, shape (n,)
+    first, second : Run
     noise_floor : float
         RMS, in the outputs' unit.
-    tangents : ndarray, shape (n, m), optional
-
-    Returns
-    -------
-    float
     """
-    columns = [np.ones_like(first), (first + second) / 2]
-    if tangents is not None:
-        columns += list(tangents.T)
-    basis = np.column_stack(columns)
+    a, b = first.output, second.output
+    basis = np.column_stack(
+        [np.ones_like(a), (a + b) / 2, first.tangents, second.tangents]
+    )
     size = np.sqrt(np.mean(np.square(basis), axis=0))
     basis = basis / np.where(size > 0, size, 1.0)
-    difference = first - second
-    weights, *_ = np.linalg.lstsq(basis, difference, rcond=1e-9)
-    return rms(difference - basis @ weights) / noise_floor
+    weights, *_ = np.linalg.lstsq(basis, a - b, rcond=1e-9)
+    return rms(a - b - basis @ weights) / noise_floor
 
 
 def separations(
     sets: Sets, u: FloatArray, dt: float, noise_floor: float
 ) -> dict[Pair, float]:
-    """Give the separation of each pair within a set, every rival simulated once.
+    """Give the separation of each pair within a set.
 
-    A pair may be refitted along the tangents of both its models, and of no other.
+    What is in two sets needs no telling apart.
 
     Parameters
     ----------
     sets : mapping of str to mapping of str to Rival
-        A rival may stand in several of them.
     u : ndarray, shape (n,)
     dt : float
         Sampling interval in seconds.
@@ -119,74 +145,11 @@ def separations(
     dict of Pair to float
         In noise floors, without those of which one does not run to the end.
     """
-    rivals = {id(x): x for members in sets.values() for x in members.values()}
-    ran = {key: _run(rival, u, dt) for key, rival in rivals.items()}
     found = {}
-    for pair in pairs_of(sets):
-        first, second = (ran[id(sets[pair.of][name])] for name in pair.names)
-        if first is not None and second is not None:
-            free = np.hstack([first.tangents, second.tangents])
-            found[pair] = separation(first.output, second.output, noise_floor, free)
+    for of, members in sets.items():
+        runs = {name: rival.run(u, dt) for name, rival in members.items()}
+        for one, other in combinations(members, 2):
+            first, second = runs[one], runs[other]
+            if first is not None and second is not None:
+                found[Pair(of, (one, other))] = separation(first, second, noise_floor)
     return found
-
-
-class _Ran(NamedTuple):
-    output: FloatArray
-    tangents: FloatArray
-
-
-def _run(rival: Rival, u: FloatArray, dt: float) -> _Ran | None:
-    """Simulate a rival and its tangents; None where they do not run to the end.
-
-    As where a simulator of somebody's own refuses an input.
-    """
-    tangents = np.zeros((len(u), 0))
-    try:
-        with np.errstate(over="ignore", invalid="ignore"):
-            output = rival.model.simulate(u, dt)
-            if rival.tangents is not None and np.isfinite(output).all():
-                tangents = rival.tangents(u, dt, output)
-    except InputError:
-        return None
-    whole = np.isfinite(output).all() and np.isfinite(tangents).all()
-    return _Ran(output, tangents) if whole else None
-
-
-CHANGE = 1e-3
-"""Relative change by which a direction is taken; of 0 an absolute one."""
-
-
-def parameter_tangents(model: Model, names: Sequence[str]) -> Tangents:
-    """Directions in which a refit of named parameters moves a model's output.
-
-    Without them a single sine seems to tell a lag from a delay that another time
-    constant would imitate.
-
-    Parameters
-    ----------
-    model : Model
-    names : sequence of str
-        Its parameters that a refit may change; numbers, or lists of them that are
-        changed together, by a common factor.
-    """
-
-    def beside(name: str) -> Iterator[Model]:
-        value = model.value(name)
-        new: float | list[float]
-        if isinstance(value, str):
-            raise InputError(f"{name}: {value!r} is no number; expected one to refit")
-        if isinstance(value, tuple):
-            new = [item * (1 + CHANGE) for item in value]
-        else:
-            new = value * (1 + CHANGE) if value else CHANGE
-        # A zero that stands for "none" has no neighbour: the block refuses it.
-        with contextlib.suppress(InputError):
-            yield model.with_values({name: new})
-
-    moved = [other for name in names for other in beside(name)]
-
-    def tangents(u: FloatArray, dt: float, output: FloatArray) -> FloatArray:
-        columns = [other.simulate(u, dt) - output for other in moved]
-        return np.column_stack(columns) if columns else np.zeros((len(u), 0))
-
-    return tangents

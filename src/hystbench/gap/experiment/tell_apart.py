@@ -1,18 +1,19 @@
-"""Effects that the records cannot tell apart, and the experiment that can."""
+"""The next experiment: which excitation tells rival effects apart, and by how much.
+
+Rivals of a named effect are those that it cannot be told from, each as it was fitted
+beside the same other effects.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Any
 
 from hystbench.errors import InputError
-from hystbench.gap.experiment.limits import Limits
-from hystbench.gap.experiment.next_experiment import (
-    Experiment,
-    new_in_every_record,
-    next_experiment,
-)
-from hystbench.gap.experiment.separation import Rival, pairs_of, parameter_tangents
+from hystbench.gap.experiment.excitations import Excitation, Limits, candidates
+from hystbench.gap.experiment.separation import Pair, Rival, Sets, separations
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming.name import Named
@@ -20,11 +21,200 @@ from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.model import Model
 from hystbench.record import Record
 
+CLEAR = 3.0
+"""A pair that differs by so many floors is told apart: more of it helps no other."""
+TOLD = 1.0
+"""A pair that differs by less is not told apart."""
+SHOWN = 3
+"""Pairs that a sentence names: all of them are in the table."""
+REFITTED = "after both are refitted"
 ELSEWHERE = (
     "the base holds the output of a simulator that ran elsewhere, which answers to no "
     "other input"
 )
 """Why no experiment is computed."""
+
+
+@dataclass(frozen=True, repr=False)
+class Experiment:
+    """The excitation that separates rivals best, those of all sets at once.
+
+    Parameters
+    ----------
+    excitation : Excitation
+    pairs : dict of Pair to float
+        Separation of each pair of rivals, in noise floors.
+    existing : dict of Pair to float
+        The same for the existing record that is best for the pair.
+    largest : dict of Pair to float
+        The same for the excitation that is best for the pair.
+    left_out : tuple of (str, str)
+        Members of sets that no input brings out, each with the effect whose set it is.
+    """
+
+    excitation: Excitation
+    pairs: dict[Pair, float]
+    existing: dict[Pair, float]
+    largest: dict[Pair, float]
+    left_out: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """What to do and what it gives, in words."""
+        told = [pair for pair, size in self.pairs.items() if size >= TOLD]
+        return " ".join([self._lead(told), *self._not_told(told)])
+
+    def _lead(self, told: Sequence[Pair]) -> str:
+        lead, count = f"Try {self.excitation.words}", len(self.pairs)
+        if not told:
+            lead = f"The best feasible excitation is {self.excitation.words}"
+        elif _merit(self.existing) >= _merit(self.pairs):
+            lead = (
+                "The existing records do as well as the best feasible excitation, "
+                f"{self.excitation.words}"
+            )
+        choose = min if told else max
+        shown = choose(told or self.pairs, key=lambda pair: self.pairs[pair])
+        apart = f"{self._words(shown)} by {self.pairs[shown]:.2g} noise floors"
+        if count > 1:
+            many = f"{len(told) or 'none'} of {count}"
+            many = f"all {count}" if len(told) == count else many
+            apart = (
+                f"{many} pairs by a noise floor or more, {self._words(shown)} "
+                f"{'least' if told else 'most'}, by {self.pairs[shown]:.2g}"
+            )
+        return (
+            f"{lead}: it separates {apart} {REFITTED}; the best of the existing "
+            f"records reaches {self.existing[shown]:.2g}."
+        )
+
+    def _not_told(self, told: Sequence[Pair]) -> list[str]:
+        """Say what the excitation does not tell, and who would."""
+        rest = [pair for pair in self.pairs if pair not in told]
+        known = [pair for pair in rest if self.existing[pair] >= TOLD]
+        unknown = [pair for pair in rest if pair not in known]
+        never = [pair for pair in unknown if self.largest[pair] < TOLD]
+        other = [pair for pair in unknown if pair not in never]
+        found = [
+            f"{who} {self._listed(pairs)}."
+            for who, pairs in (
+                ("The existing records tell", known),
+                ("No feasible excitation tells", never),
+                ("Another excitation would tell", other),
+            )
+            if pairs
+        ]
+        if self.left_out:
+            found.append(f"{new_in_every_record(self.left_out)}.")
+        return found
+
+    def _words(self, pair: Pair) -> str:
+        several = len({each.of for each in self.pairs}) > 1
+        place = f" in the place of {pair.of}" if several else ""
+        return " from ".join(pair.names) + place
+
+    def _listed(self, pairs: Sequence[Pair]) -> str:
+        shown = [self._words(pair) for pair in pairs[:SHOWN]]
+        more = len(pairs) - len(shown)
+        return ", ".join(shown) + (f" and {more} more" if more else "")
+
+    def mapping(self) -> dict[str, Any]:
+        """Give what gap.json holds under ``next_experiment``."""
+        return {
+            "excitation": self.excitation.kind,
+            "parameters": {
+                name: {"value": value, "unit": unit}
+                for name, (value, unit) in self.excitation.parameters.items()
+            },
+            "sampling_interval_s": self.excitation.dt,
+            "separation": min(self.pairs.values()),
+            "existing_separation": min(self.existing.values()),
+            "pairs": [
+                {
+                    "of": pair.of,
+                    "names": list(pair.names),
+                    "separation": size,
+                    "existing_separation": self.existing[pair],
+                    "largest_separation": self.largest[pair],
+                }
+                for pair, size in self.pairs.items()
+            ],
+            "left_out": [{"of": of, "name": name} for of, name in self.left_out],
+            "sentence": self.sentence,
+        }
+
+
+def new_in_every_record(left_out: Sequence[tuple[str, str]]) -> str:
+    """Say which members of sets no input brings out."""
+    names = list(dict.fromkeys(name for _, name in left_out))
+    are, them = ("is", "it") if len(names) == 1 else ("are", "them")
+    return (
+        f"{' and '.join(names)} {are} new in every record: no input brings {them} out"
+    )
+
+
+def next_experiment(
+    sets: Sets,
+    records: Sequence[Record],
+    noise_floor: float,
+    limits: Limits | None = None,
+    excitations: Sequence[Excitation] | None = None,
+) -> Experiment:
+    """Choose the excitation that tells rival models apart best.
+
+    Parameters
+    ----------
+    sets : mapping of str to mapping of str to Rival
+        By the effect that they are rivals of, and by name; each fitted to the records.
+        One of the sets has two or more.
+    records : sequence of Record
+        The fit records: what they separate is the measure, and their inputs are the
+        limits where none are given.
+    noise_floor : float
+        RMS in output units, above zero.
+    limits : Limits, optional
+    excitations : sequence of Excitation, optional
+        Instead of :func:`~hystbench.gap.experiment.excitations.candidates`.
+
+    Returns
+    -------
+    Experiment
+        Of the excitations that tell most pairs apart, the one that separates all pairs
+        most, each counted up to ``CLEAR``; of equals, the hardest pair decides.
+
+    Raises
+    ------
+    InputError
+        If no excitation keeps within the limits and lets every rival run.
+    """
+    every = [Pair(of, x) for of, each in sets.items() for x in combinations(each, 2)]
+    if excitations is None:
+        limits = Limits.of(records) if limits is None else limits
+        excitations = candidates(limits, records[0].input.unit)
+    tried = [
+        (item, separations(sets, item.u, item.dt, noise_floor)) for item in excitations
+    ]
+    run = [(item, pairs) for item, pairs in tried if len(pairs) == len(every)]
+    if not run:
+        raise InputError(
+            f"next experiment: none of {len(tried)} excitations keeps within the "
+            "limits and gives finite outputs; expected wider limits"
+        )
+    excitation, pairs = max(run, key=lambda each: _merit(each[1]))
+    reached = [separations(sets, item.u, item.dt, noise_floor) for item in records]
+    return Experiment(
+        excitation,
+        pairs,
+        {pair: max(each.get(pair, 0.0) for each in reached) for pair in every},
+        {pair: max(each[pair] for _, each in run) for pair in every},
+    )
+
+
+def _merit(pairs: dict[Pair, float]) -> tuple[int, float, float]:
+    """Rank by pairs told apart, then by how clearly, then by the hardest."""
+    sizes = list(pairs.values())
+    told = sum(size >= TOLD for size in sizes)
+    return told, sum(min(size, CLEAR) for size in sizes), min(sizes)
 
 
 def tell_apart(
@@ -35,9 +225,6 @@ def tell_apart(
     limits: Limits | None,
 ) -> tuple[Experiment | None, str]:
     """Look for the one excitation that tells all sets of likely effects apart.
-
-    A set is a named effect and those that it cannot be told from, each as it was fitted
-    beside the same other effects.
 
     Parameters
     ----------
@@ -56,72 +243,41 @@ def tell_apart(
         Why there is none though effects cannot be told apart; else empty.
     """
     alike = {
-        item.effect: members
+        (item.effect, name): state
         for item in named.state.added
-        if (members := _alike(item.effect, named.reasons.get(item.effect, ())))
+        for name, state in _alike(
+            item.effect, named.reasons.get(item.effect, ())
+        ).items()
     }
     if not alike:
         return None, ""
     if not all(block.reruns for block in base.chain):
         return None, ELSEWHERE
-    left_out = tuple(
-        (of, name)
-        for of, members in alike.items()
-        for name, state in members.items()
-        if _is_beside(name, state)
-    )
-    rivals = _Rivals(base)
-    sets = {
-        of: {
-            name: rivals.of(state)
-            for name, state in members.items()
-            if (of, name) not in left_out
-        }
-        for of, members in alike.items()
-    }
+    sets: dict[str, dict[str, Rival]] = {}
+    left_out = []
+    for (of, name), state in alike.items():
+        if any(beside.effect == name for beside, _ in state.beside):
+            left_out.append((of, name))
+            continue
+        # What other effects put beside the chain is new in every record too.
+        model = augmented(base, replace(state, beside=()))
+        sets.setdefault(of, {})[name] = Rival.of(model, model.free)
     unseen = new_in_every_record(left_out) if left_out else ""
-    if not pairs_of(sets):
+    if all(len(members) < 2 for members in sets.values()):
         return None, unseen
     try:
         found = next_experiment(sets, records, floor_rms, limits)
     except InputError as error:
         return None, "; ".join(filter(None, [str(error), unseen]))
-    return replace(found, left_out=left_out), ""
+    return replace(found, left_out=tuple(left_out)), ""
 
 
 def _alike(effect: str, ranking: Sequence[Candidate]) -> dict[str, ModelState]:
     """Give an effect and those that cannot be told from it, if there are any."""
     own = next((x for x in ranking if x.effect == effect), None)
     names = () if own is None else near(own, ranking)
-    if not names:
-        return {}
     return {
         x.effect: x.state
         for x in ranking
-        if x.effect in (effect, *names) and x.state is not None
+        if names and x.effect in (effect, *names) and x.state is not None
     }
-
-
-def _is_beside(effect: str, state: ModelState) -> bool:
-    """Tell whether an effect is a signal of each record, which no input brings out."""
-    return any(beside.effect == effect for beside, _ in state.beside)
-
-
-class _Rivals:
-    """Gives states as rivals, the same one for the same model: it runs once then.
-
-    What other effects put beside the chain is left out, as it is new in every record.
-    """
-
-    def __init__(self, base: Model) -> None:
-        self._base = base
-        self._known: list[tuple[Model, Rival]] = []
-
-    def of(self, state: ModelState) -> Rival:
-        model = augmented(self._base, replace(state, beside=()))
-        for known, rival in self._known:
-            if known == model:
-                return rival
-        rival = Rival(model, parameter_tangents(model, model.free))
-        self._known.append((model, rival))
-        return rival

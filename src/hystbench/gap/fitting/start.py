@@ -10,8 +10,7 @@ from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.floor import Floor, noise_floor
-from hystbench.gap.records.residual import Compared
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.sample import Compared, Sample
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record

@@ -9,7 +9,7 @@ import numpy as np
 from hystbench.gap.fitting.refit import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.residual import rms
+from hystbench.gap.records.sample import rms
 from hystbench.gap.simulation.simulation import Simulation
 
 

@@ -1,28 +1,26 @@
-"""A decision after the hold-out records were read."""
+"""A decision after the hold-out records were read: they lead its reason, or take back.
+
+They choose nothing. A model that is worse on them than the base goes as a whole: to
+keep those of its effects that do better there would be to choose by hold-out records.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
-from hystbench.gap.behaviour import with_device
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.base import Effect
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.start import run_base
-from hystbench.gap.holdout.shortfall import shortfall
 from hystbench.gap.holdout.show import FitResult, as_recorded, nuisance_of, show
-from hystbench.gap.holdout.shrink import ladder
-from hystbench.gap.holdout.withdrawal import (
-    first_figure,
-    with_built_in,
-    with_what_was_asked,
-    withdrawal,
-    without_names,
-)
+from hystbench.gap.holdout.shrink import left_rms
 from hystbench.gap.naming.built_in import BuiltIn
-from hystbench.gap.naming.ladder import BASE
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.vocabulary import Vocabulary
+from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.vocabulary import Vocabulary, with_device
 from hystbench.model import Model
 from hystbench.record import FloatArray
 
@@ -107,8 +105,259 @@ def as_asked(
         outputs = run_base(built_in.alone, records, evidence.hold)
         mine = as_recorded(fitted.own, records, outputs, fitted.floor)
         nuisance = nuisance_of(fitted.state, fitted.own)
-        ((_, alone),) = ladder(records, [(BASE, mine)], nuisance)
+        alone = left_rms(records, mine, nuisance)
         assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
         content = with_built_in(content, built_in, alone)
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
+
+
+LEAST = 5e-4
+"""Share that is told as none: it would read 0.0 %."""
+
+
+def first_figure(content: Mapping[str, Any]) -> str:
+    """Say what is gone on the hold-out records, and of what it is a share.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+    """
+    gap, unit = content["gap"], content["unit"]
+    sizes = f"{gap['before']:.3g} to {gap['after']:.3g} {unit} rms"
+    share = gap["explained"]
+    if share is None:
+        return f"on the hold-out records the base leaves no more than noise: {sizes}"
+    ends = share if isinstance(share, list | tuple) else [share]
+    told = " to ".join(dict.fromkeys(f"{100 * end:.1f} %" for end in ends))
+    if max(ends) < LEAST:
+        told = "none"
+    return (
+        f"on the hold-out records {told} of the gap's power above the noise floor is "
+        f"gone, {sizes}"
+    )
+
+
+def withdrawal(content: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Tell what the hold-out records take back, if the model is worse on them.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json would hold if nothing were taken back.
+
+    Returns
+    -------
+    dict or None
+        ``withdrawn`` of gap.json: ``names``, empty where only the base was re-tuned;
+        ``verdict`` and ``effects`` as the fit records decided; ``before`` and
+        ``after``, RMS on the hold-out records together, and of each in ``records``;
+        ``why``.
+    """
+    gap, unit = content["gap"], content["unit"]
+    before, after = gap["before"], gap["after"]
+    if after is not None and after**2 <= (1 + UNNAMED_SHARE) * before**2:
+        return None
+    names = [item["name"] for item in content["effects"]]
+    what = " and ".join(names) or "the re-tuning of the base"
+    if after is None:
+        lost = " and ".join(item["record"] for item in content["runs_away"])
+        shown = f"with it the model cannot be run to the end of {lost}"
+    else:
+        shown = (
+            f"with it the gap grows there, from {before:.3g} to {after:.3g} {unit} rms"
+        )
+    return {
+        "names": names,
+        "verdict": content["verdict"],
+        "effects": content["effects"],
+        "before": before,
+        "after": after,
+        "records": [
+            {key: item[key] for key in ("name", "before", "after")}
+            for item in content["records"]
+        ],
+        "why": f"the hold-out records take {what} back: {shown}, so that the model "
+        "stays the base as it was given",
+    }
+
+
+def without_names(
+    content: Mapping[str, Any], taken: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Give what gap.json holds once names are withdrawn."""
+    numbers = {
+        name: item | {"after": item["before"]}
+        for name, item in content["base_parameters"].items()
+    }
+    no_gap = taken["verdict"] == "no-gap"  # of the base re-tuned: there was no name
+    return {
+        **content,
+        "verdict": "no-gap" if no_gap else "unnamed",
+        "reason": content["reason"] if no_gap else taken["why"],
+        "effects": [],
+        "withdrawn": dict(taken),
+        "base_parameters": numbers,
+    }
+
+
+def with_what_was_asked(
+    content: Mapping[str, Any], vocabulary: Vocabulary
+) -> dict[str, Any]:
+    """Tell in the reason which effects the user put in or left out.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+    vocabulary : Vocabulary
+    """
+    words = vocabulary.words()
+    if not words:
+        return dict(content)
+    reason = "; ".join([content["reason"], *words])
+    return {**content, "reason": reason, "asked": vocabulary.mapping()}
+
+
+def with_built_in(
+    content: Mapping[str, Any], built_in: BuiltIn, alone: float
+) -> dict[str, Any]:
+    """Tell what the effects that the user put in do, apart from what was found.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds; its ``gap`` begins with the effects that were put in.
+    built_in : BuiltIn
+    alone : float
+        RMS residual of the simulator without them on the hold-out records.
+    """
+    names = " and ".join(built_in.names)
+    first, *rest = content["ladder"]
+    after, unit = content["gap"]["before"], content["unit"]
+    told = {
+        "effects": list(built_in.effects),
+        "before": alone,
+        "after": after,
+        "sentence": (
+            f"You put {names} into the simulator; on the hold-out records the residual "
+            f"of the simulator alone is {alone:.3g} {unit} rms, with {names} "
+            f"{after:.3g} {unit}. Nothing of that counts as found."
+        ),
+    }
+    ladder = [
+        {"name": first["name"], "rms": alone},
+        {"name": f"{names} (you put it in)", "rms": after},
+        *rest,
+    ]
+    return {**content, "built_in": told, "ladder": ladder}
+
+
+WORTH_A_WORD = 0.15
+"""Share of the gap's power that is gone on fit records alone, to be worth a word."""
+WORTH_A_REASON = 0.05
+"""Share that what is new in every record takes, to be named as a reason."""
+
+
+def shortfall(content: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Compare what is gone on the hold-out records with what is gone on the fit ones.
+
+    Parameters
+    ----------
+    content : mapping
+        What gap.json holds.
+
+    Returns
+    -------
+    dict or None
+        ``fit`` and ``hold_out``, the shares of the power above the floor that are
+        gone (None where there was none), and a ``sentence``; None where the hold-out
+        records keep the promise and no effect widens the gap there.
+    """
+    promised, kept = content["fit"]["explained"], content["gap"]["explained"]
+    if not isinstance(kept, int | float) and kept is not None:
+        kept = max(kept)  # a range keeps the promise if it may
+    sentences = [_less(content, promised, kept), *_widens(content)]
+    told = " ".join(sentence for sentence in sentences if sentence)
+    return {"fit": promised, "hold_out": kept, "sentence": told} if told else None
+
+
+def _less(
+    content: Mapping[str, Any], promised: float | None, kept: float | None
+) -> str:
+    """Say by how much less is gone than was promised, and why."""
+    names = [item["name"] for item in content["effects"]]
+    if not names or promised is None or kept is None or promised - kept < WORTH_A_WORD:
+        return ""
+    sentence = (
+        f"On the fit records {100 * promised:.0f} % of the gap's power above the noise "
+        f"floor is gone, on the hold-out records {100 * kept:.0f} %"
+    )
+    reasons = [
+        *_runs_away(content),
+        *_new_in_every_record(content, names),
+        *_outside(content),
+    ]
+    if reasons:
+        sentence += f": {'; '.join(reasons)}"
+    return f"{sentence}."
+
+
+SPELLED = 3
+"""Records that are told by name, at most."""
+SHOWS = 1.01
+"""RMS over that of the step before, from which a step up is worth a sentence."""
+
+
+def _widens(content: Mapping[str, Any]) -> list[str]:
+    """Say which step down the ladder is a step up on the hold-out records."""
+    return [
+        f"On the hold-out records {step['name']} widens the gap, from "
+        f"{last['rms']:.3g} to {step['rms']:.3g} {content['unit']}."
+        for last, step in pairwise(content["ladder"])
+        if last["rms"] and step["rms"] and step["rms"] > SHOWS * last["rms"]
+    ]
+
+
+def _runs_away(content: Mapping[str, Any]) -> list[str]:
+    found = []
+    for what, refused in (("runs away", False), ("cannot be run", True)):
+        names = [
+            item["record"]
+            for item in content.get("runs_away", [])
+            if (item["refused"] is not None) is refused
+        ]
+        found += [f"the model {what} on {' and '.join(names)}"] if names else []
+    return found
+
+
+def _new_in_every_record(content: Mapping[str, Any], names: list[str]) -> list[str]:
+    share = content["fit"]["new_in_every_record"]
+    beside = [name for name in names if _is_beside(effects().get(name))]
+    if share < WORTH_A_REASON or not beside:
+        return []
+    return [
+        f"{100 * share:.0f} % of it was taken by {' and '.join(beside)}, which is new "
+        "in every record and predicts no other"
+    ]
+
+
+def _is_beside(effect: Effect | None) -> bool:
+    """Tell whether an effect can be a signal beside the chain."""
+    return effect is not None and type(effect).describe is not Effect.describe
+
+
+def _outside(content: Mapping[str, Any]) -> list[str]:
+    records = (content.get("black_box") or {}).get("records", [])
+    alike: dict[str, list[str]] = {}
+    for item in records:
+        if item["outside"]:
+            alike.setdefault(" and ".join(item["outside"]), []).append(item["name"])
+    return [
+        f"{' and '.join(names)} {'lies' if len(names) == 1 else 'lie'} outside the fit "
+        f"records in {how}"
+        if len(names) <= SPELLED
+        else f"{len(names)} records lie outside the fit records in {how}"
+        for how, names in alike.items()
+    ]

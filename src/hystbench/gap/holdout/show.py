@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,16 +12,7 @@ from hystbench.errors import InputError
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.start import run_base
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.holdout.black_box import black_box_mapping
-from hystbench.gap.holdout.runs_away import RunsAway, bounded, reach
-from hystbench.gap.holdout.shrink import (
-    RecordShrink,
-    Shrink,
-    ladder,
-    mapping,
-    records_mapping,
-    shrink,
-)
+from hystbench.gap.holdout.shrink import RecordShrink, Shrink, left_rms, shrink
 from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.floor import Floor
@@ -30,6 +21,7 @@ from hystbench.gap.records.nuisance import (
     degree_that_carries_on,
     path_and_mains,
 )
+from hystbench.gap.records.sample import rms
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -104,24 +96,14 @@ def show(fitted: FitResult, records: tuple[Record, ...]) -> Shown:
     found_after, lost = _run(_name(base, state), state, records, usual)
     after = as_recorded(own, records, found_after, floor)
     found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
-    stages = [
-        (
-            rung.name,
-            as_recorded(
-                own,
-                records,
-                _run(_name(base, rung.state), rung.state, records, usual)[0],
-                floor,
-            ),
-        )
-        for rung in fitted.rungs
-    ]
     content = {
-        "gap": mapping(found),
-        "records": records_mapping(found),
+        "gap": found.mapping(),
+        "records": [item.mapping() for item in found.records],
         "ladder": [
-            {"name": name, "rms": value}
-            for name, value in ladder(records, stages, nuisance)
+            {"name": rung.name, "rms": left_rms(records, outputs, nuisance)}
+            for rung in fitted.rungs
+            for ran, _ in [_run(_name(base, rung.state), rung.state, records, usual)]
+            for outputs in [as_recorded(own, records, ran, floor)]
         ],
         "runs_away": [item.mapping() for item in lost],
         "black_box": black_box_mapping(
@@ -199,3 +181,142 @@ def _run(
 def _name(base: Model, state: ModelState) -> str:
     effects = " and ".join(item.effect for item in state.added)
     return f"{base.name} with {effects}" if effects else base.name
+
+
+FAR = 1e6
+"""Times as far as the base ever goes: an output beyond it runs away, finite or not."""
+
+
+class RunsAway(NamedTuple):
+    """A record on which a model has no bounded output, and from when on."""
+
+    model: str
+    record: str
+    from_s: float
+    refused: str | None = None
+    """What the simulator said that refused the record, if one did."""
+
+    def mapping(self) -> dict[str, Any]:
+        """Give what gap.json holds under ``runs_away``."""
+        what = (
+            f"runs away on {self.record} from {self.from_s:g} s on: there its output "
+            "is not bounded"
+        )
+        if self.refused is not None:
+            what = f"cannot be run on {self.record}: {self.refused}"
+        told = f"{self.model} {what}, and nothing of the gap counts as closed."
+        return {
+            "record": self.record,
+            "from_s": self.from_s,
+            "refused": self.refused,
+            "sentence": told,
+        }
+
+
+def reach(outputs: Sequence[FloatArray], floor_rms: float) -> float:
+    """Give how far a base's outputs go on all records, and the noise."""
+    return max(float(np.abs(output).max()) for output in outputs) + floor_rms
+
+
+def bounded(
+    model: str,
+    records: Sequence[Record],
+    outputs: Sequence[FloatArray],
+    usual: float,
+    refused: Mapping[str, str] | None = None,
+) -> tuple[list[FloatArray | None], list[RunsAway]]:
+    """Tell on which records a model runs away.
+
+    Parameters
+    ----------
+    model : str
+        What it is called.
+    records : sequence of Record
+    outputs : sequence of ndarray, shape (n,) each
+    usual : float
+        How far the base goes.
+    refused : mapping of str to str, optional
+        By record, why there is no output, which is NaN there.
+
+    Returns
+    -------
+    outputs : list of ndarray or None
+        None where the model runs away.
+    found : list of RunsAway
+    """
+    kept: list[FloatArray | None] = []
+    found = []
+    for record, output in zip(records, outputs, strict=True):
+        # What is no number is not within either.
+        beyond = np.flatnonzero(~(np.abs(output) <= FAR * usual))
+        kept.append(None if len(beyond) else output)
+        if len(beyond):
+            why = (refused or {}).get(record.name)
+            start = float(beyond[0] * record.dt)
+            found.append(RunsAway(model, record.name, start, why))
+    return kept, found
+
+
+def black_box_mapping(
+    box: BlackBox,
+    records: Sequence[Record],
+    simulated: Sequence[FloatArray],
+    named: Shrink,
+    nuisance: Nuisance | None = None,
+) -> dict[str, Any]:
+    """Give what gap.json holds under ``black_box``.
+
+    Parameters
+    ----------
+    box : BlackBox
+    records : sequence of Record
+        The hold-out records.
+    simulated : sequence of ndarray, shape (n,) each
+        Output of the base, which the black box corrects.
+    named : Shrink
+        What the named effects reach on the same records.
+    nuisance : callable, optional
+        The same as for ``named``.
+
+    Returns
+    -------
+    dict
+        ``explained_on_folds``, and on hold-out records ``after`` (RMS), ``explained``,
+        both with an interval, and ``records``; each of these has ``named`` (RMS after
+        the named effects) and ``outside`` (in what the record lies outside the training
+        range). ``outside`` has RMS over those that lie outside, None where none does.
+        ``after`` and ``named`` are None where a model runs away.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        corrected = [
+            output + box.predict(record, output)
+            for record, output in zip(records, simulated, strict=True)
+        ]
+    usual = reach(simulated, named.noise_floor)
+    kept, _ = bounded("the black box", records, corrected, usual)
+    reached = shrink(
+        records, simulated, kept, named.noise_floor, named.floor_method, nuisance
+    )
+    rows = [item.mapping() for item in reached.records]
+    for row, record, other in zip(rows, records, named.records, strict=True):
+        row["named"] = other.after
+        row["outside"] = list(box.outside(record))
+    about = reached.mapping()
+    keys = ("after", "explained", "after_interval", "interval")
+    return {
+        "explained_on_folds": box.explained_on_folds,
+        **{key: about[key] for key in keys if key in about},
+        "records": rows,
+        "outside": _together([row for row in rows if row["outside"]]),
+    }
+
+
+def _together(rows: Sequence[dict[str, Any]]) -> dict[str, float | None] | None:
+    """RMS over records alike, of the base, the black box and the named effects."""
+    if not rows:
+        return None
+    found: dict[str, float | None] = {}
+    for key in ("before", "after", "named"):
+        sizes = [row[key] for row in rows]
+        found[key] = None if None in sizes else rms(np.array(sizes))
+    return found

@@ -14,29 +14,20 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.holdout.share_explained import (
-    Explained,
-    resampled_rms,
-    rms_interval,
-    share_explained,
-    share_interval,
-)
 from hystbench.gap.records.nuisance import Nuisance, left_over
-from hystbench.gap.records.residual import rms
+from hystbench.gap.records.sample import rms
 from hystbench.record import FloatArray, Mask, Record
 
+#: Draws of the bootstrap, and the part of them that its interval holds.
+DRAWS = 400
+LEVEL = 0.95
+#: Blocks of a record that the bootstrap draws from: each longer than what a residual
+#: remembers, and enough of them to vary.
+BLOCKS = 12
 
-@dataclass(frozen=True, repr=False)
-class Spectra:
-    """Power spectral densities of a residual before and after, shape (m,) each.
-
-    In output units squared per hertz.
-    """
-
-    frequency_hz: FloatArray
-    before: FloatArray
-    after: FloatArray
-    floor: float
+#: Share of the power above the floor that is gone: a number, a range where the floor
+#: is only an upper bound, None where there is no power above it.
+Explained = float | list[float] | None
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,7 +39,7 @@ class RecordShrink:
     name : str
     before, after : float
         RMS residual in output units; no ``after`` where the model runs away.
-    explained : float, pair of float or None
+    explained : float, list of float or None
         Zero where the model runs away: nothing of the gap counts as gone.
     scored : ndarray of bool, shape (n,)
     residual_before, residual_after : ndarray, shape (n,)
@@ -63,6 +54,11 @@ class RecordShrink:
     residual_before: FloatArray
     residual_after: FloatArray | None
 
+    def mapping(self) -> dict[str, Any]:
+        """Give what gap.json holds in a row of ``records``."""
+        keys = ("name", "before", "after", "explained")
+        return {key: getattr(self, key) for key in keys}
+
 
 @dataclass(frozen=True, repr=False)
 class Shrink:
@@ -72,12 +68,12 @@ class Shrink:
     ----------
     before, after, noise_floor : float
         RMS in output units; no ``after`` where the model runs away on a record.
-    explained : float, pair of float or None
+    explained : float, list of float or None
         Share of the power above the floor that is gone; zero where the model runs away
         on a record.
-    before_interval, after_interval : pair of float
+    before_interval, after_interval : list of float
         95 % of the bootstrap's draws.
-    interval : pair of float or None
+    interval : list of float or None
         Of ``explained``, of the same draws; where the floor is an upper bound, of the
         whole range.
     records : tuple of RecordShrink
@@ -88,10 +84,17 @@ class Shrink:
     noise_floor: float
     floor_method: str
     explained: Explained
-    before_interval: tuple[float, float]
-    after_interval: tuple[float, float] | None
-    interval: tuple[float, float] | None
+    before_interval: list[float]
+    after_interval: list[float] | None
+    interval: list[float] | None
     records: tuple[RecordShrink, ...]
+
+    def mapping(self) -> dict[str, Any]:
+        """Give what gap.json holds under ``gap``; an interval that is none is not."""
+        keys = ("before", "after", "noise_floor", "floor_method", "explained")
+        ends = ("before_interval", "after_interval", "interval")
+        found = {key: getattr(self, key) for key in (*keys, *ends)}
+        return {k: v for k, v in found.items() if k in keys or v is not None}
 
 
 def shrink(
@@ -163,90 +166,158 @@ def shrink(
     )
 
 
-def spectra(
-    before: FloatArray, after: FloatArray, dt: float, noise_floor: float
-) -> Spectra:
-    """Power spectral densities by Welch's method, and a white floor's.
-
-    Parameters
-    ----------
-    before, after : ndarray, shape (n,)
-    dt : float
-        Sampling interval in seconds.
-    noise_floor : float
-        RMS; spread evenly up to half the sampling frequency.
-    """
-    from scipy.signal import welch
-
-    segment = min(len(before), max(16, len(before) // 4))
-    frequency, power_before = welch(before, 1 / dt, nperseg=segment, detrend=False)
-    _, power_after = welch(after, 1 / dt, nperseg=segment, detrend=False)
-    return Spectra(frequency, power_before, power_after, 2 * dt * noise_floor**2)
-
-
-def ladder(
+def left_rms(
     records: Sequence[Record],
-    stages: Sequence[tuple[str, Sequence[FloatArray | None]]],
+    simulated: Sequence[FloatArray | None],
     nuisance: Nuisance | None = None,
-) -> tuple[tuple[str, float | None], ...]:
-    """RMS residual after each effect that was added, over all records together.
+) -> float | None:
+    """RMS residual of a model over all records together.
 
     Parameters
     ----------
     records : sequence of Record
-    stages : sequence of (str, sequence of ndarray or None)
-        Name of a stage (the base first, then the effect added) and its simulated
-        output of each record; None where it runs away.
+    simulated : sequence of ndarray or None
+        Its output of each record; None where it runs away.
     nuisance : callable, optional
         As for :func:`shrink`.
 
     Returns
     -------
-    tuple of (str, float or None)
-        None where a stage runs away on a record.
+    float or None
+        None where the model runs away on a record.
     """
-    steps: list[tuple[str, float | None]] = []
-    for name, simulated in stages:
-        left = []
-        for record, output in zip(records, simulated, strict=True):
-            if output is not None:
-                residual, scored = left_over(record, output, nuisance)
-                left.append(residual[scored])
-        whole = len(left) == len(records)
-        steps.append((name, rms(np.concatenate(left)) if whole else None))
-    return tuple(steps)
-
-
-def mapping(shrunk: Shrink) -> dict[str, Any]:
-    """Give what gap.json holds under ``gap``."""
-    content: dict[str, Any] = {
-        "before": shrunk.before,
-        "after": shrunk.after,
-        "noise_floor": shrunk.noise_floor,
-        "floor_method": shrunk.floor_method,
-        "explained": plain(shrunk.explained),
-        "before_interval": list(shrunk.before_interval),
-    }
-    for key in ("after_interval", "interval"):
-        ends = getattr(shrunk, key)
-        if ends is not None:
-            content[key] = list(ends)
-    return content
-
-
-def records_mapping(shrunk: Shrink) -> list[dict[str, Any]]:
-    """Give what gap.json holds under ``records``."""
-    return [
-        {
-            "name": item.name,
-            "before": item.before,
-            "after": item.after,
-            "explained": plain(item.explained),
-        }
-        for item in shrunk.records
+    left = [
+        residual[scored]
+        for record, output in zip(records, simulated, strict=True)
+        if output is not None
+        for residual, scored in [left_over(record, output, nuisance)]
     ]
+    return rms(np.concatenate(left)) if len(left) == len(records) else None
 
 
-def plain(explained: Explained) -> float | list[float] | None:
-    """Give a share, or the ends of its range, as JSON holds it."""
-    return list(explained) if isinstance(explained, tuple) else explained
+def share_explained(
+    before: float, after: float, floor: float, upper_bound: bool = False
+) -> Explained:
+    """Share of the power above the floor that is gone.
+
+    ``(before^2 - after^2) / (before^2 - floor^2)``. Where the floor is only an upper
+    bound the truth lies between the share over no floor and the share over this one.
+
+    Parameters
+    ----------
+    before, after, floor : float
+        RMS in output units.
+    upper_bound : bool
+
+    Returns
+    -------
+    float, list of float or None
+        None where there is no power above the floor. Below zero where the gap grew.
+    """
+    gone = before**2 - after**2
+    if upper_bound:
+        if before == 0:
+            return None
+        least = gone / before**2
+        # With the floor as high as it may be, nothing says how much was left to gain.
+        above = before**2 - min(floor, after) ** 2
+        most = gone / above if above > 0 else least
+        return [min(least, most), max(least, most)]
+    above = before**2 - floor**2
+    return gone / above if above > 0 else None
+
+
+def resampled_rms(
+    residuals: Sequence[Sequence[FloatArray]],
+) -> FloatArray:
+    """RMS of residuals over all records, of draws of records and blocks within them.
+
+    Each draw takes as many records as there are, with replacement, and rebuilds each
+    from overlapping blocks drawn from it, whose end is followed by its beginning
+    (circular blocks, so that no sample is drawn less than another): neighbouring
+    samples of a residual are not independent, nor are the samples of one record.
+
+    Parameters
+    ----------
+    residuals : sequence of (ndarray, ...), shape (n,) each
+        Of each record, those of one or more models: the same draws serve them all.
+
+    Returns
+    -------
+    ndarray, shape (models, draws)
+
+    References
+    ----------
+    D. N. Politis, J. P. Romano, "A circular block-resampling procedure for stationary
+    data", in: Exploring the Limits of Bootstrap, Wiley, 1992.
+    """
+    random = np.random.default_rng(0)
+    lengths = np.array([len(models[0]) for models in residuals])
+    blocks = np.maximum(1, lengths // BLOCKS)
+    # Sums over a block are differences of cumulative sums.
+    sums = [
+        np.stack([_sums(np.square(each), block) for each in models])
+        for models, block in zip(residuals, blocks.tolist(), strict=True)
+    ]
+    counts = lengths // blocks
+    powers = np.zeros((len(sums), DRAWS, len(residuals[0])))
+    for place, total in enumerate(sums):
+        block, count = blocks[place], counts[place]
+        starts = random.integers(0, lengths[place], (DRAWS, count))
+        powers[place] = (total[:, starts + block] - total[:, starts]).sum(axis=-1).T
+        powers[place] *= lengths[place] / (block * count)
+    drawn = random.integers(0, len(sums), (DRAWS, len(sums)))
+    # A record that is drawn twice is rebuilt twice.
+    rebuilt = random.integers(0, DRAWS, drawn.shape)
+    power = powers[drawn, rebuilt].sum(axis=1)
+    power /= lengths[drawn].sum(axis=1)[:, None]
+    # Differences of sums may fall below zero by rounding.
+    drawn_rms: FloatArray = np.sqrt(np.maximum(power, 0.0)).T
+    return drawn_rms
+
+
+def rms_interval(drawn: FloatArray) -> list[float]:
+    """Interval that holds 95 % of the draws of an RMS, shape (draws,)."""
+    return _between(drawn, drawn)
+
+
+def share_interval(
+    before: FloatArray, after: FloatArray, floor: float, upper_bound: bool = False
+) -> list[float] | None:
+    """Interval of the share explained.
+
+    Parameters
+    ----------
+    before, after : ndarray, shape (draws,)
+        RMS residuals, of the same draws.
+    floor : float
+        RMS of the noise.
+    upper_bound : bool
+        Whether it is one.
+
+    Returns
+    -------
+    list of float or None
+        None where more draws than the interval leaves out have no power above the
+        floor.
+    """
+    pairs = zip(before.tolist(), after.tolist(), strict=True)
+    shares = [share_explained(old, new, floor, upper_bound) for old, new in pairs]
+    known = [each for each in shares if each is not None]
+    if len(known) < LEVEL * len(shares):
+        return None
+    ends = np.array(
+        [each if isinstance(each, list) else [each, each] for each in known]
+    )
+    return _between(ends[:, 0], ends[:, 1])
+
+
+def _between(lowest: FloatArray, highest: FloatArray) -> list[float]:
+    outside = (1 - LEVEL) / 2
+    ends = np.quantile(lowest, outside), np.quantile(highest, 1 - outside)
+    return [float(end) for end in ends]
+
+
+def _sums(values: FloatArray, block: int) -> FloatArray:
+    """Give cumulative sums from zero on, the first block of values once more behind."""
+    return np.concatenate([[0.0], np.cumsum(np.concatenate([values, values[:block]]))])

@@ -24,8 +24,7 @@ from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.inside.modes import modes
 from hystbench.gap.inside.stores import stores
-from hystbench.gap.records.residual import rms
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.sample import Sample, rms
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.quantities import Quantities

@@ -1,4 +1,4 @@
-"""Where the gap is: one module a view, from samples to what an engineer reads."""
+"""Where the gap is: views, from samples to what an engineer reads."""
 
 from __future__ import annotations
 
@@ -6,20 +6,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hystbench.gap.locate.amplitude import amplitude
-from hystbench.gap.locate.branch import branch
-from hystbench.gap.locate.contribution import Contribution
-from hystbench.gap.locate.delay import delay
 from hystbench.gap.locate.frequency import frequency
 from hystbench.gap.locate.level import level
-from hystbench.gap.locate.rate import rate
-from hystbench.gap.locate.record import record
-from hystbench.gap.locate.samples import take_samples
-from hystbench.gap.locate.slow_time import slow_time
+from hystbench.gap.locate.samples import Contribution, take_samples
 from hystbench.gap.locate.unexplained import unexplained
 from hystbench.gap.locate.view import View
+from hystbench.gap.locate.views import (
+    amplitude,
+    branch,
+    delay,
+    rate,
+    record,
+    slow_time,
+)
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.sample import Compared
 
 __all__ = ["LEVEL", "Contribution", "View", "Where", "locate", "ranked"]
 

@@ -41,6 +41,8 @@ class FittedForm:
     freedom : float
     saved : float
         Description length saved, in nats.
+    share : float
+        Of the gap's power, what noise buys taken off.
     weights : ndarray, shape (columns,)
         Of the last record, where each has its own.
     added : tuple of ndarray
@@ -52,6 +54,7 @@ class FittedForm:
     explained: float
     freedom: float
     saved: float
+    share: float
     weights: FloatArray
     added: tuple[FloatArray, ...] = ()
 
@@ -109,7 +112,8 @@ def fit_form(
         freedom += int(rank)
     explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
     gained = saved(samples, explained, freedom)
-    return FittedForm(words, fitted, explained, freedom, gained, found / scale)
+    share = samples.share(explained, freedom)
+    return FittedForm(words, fitted, explained, freedom, gained, share, found / scale)
 
 
 def best(forms: Sequence[FittedForm]) -> FittedForm:

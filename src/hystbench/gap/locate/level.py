@@ -1,22 +1,197 @@
-"""The view by level: how modes move when the input grows."""
+"""The view by level: how modes move when the input grows, and the class that follows.
+
+A linear device has the same modes at every level. What moves, and how, tells the class
+of what is missing [1]_ [2]_.
+
+References
+----------
+.. [1] K. Worden, G. R. Tomlinson, Nonlinearity in Structural Dynamics, IOP Publishing,
+   2001, chapters 2 and 3.
+.. [2] L. Lauwers, J. Schoukens, R. Pintelon, M. Enqvist, "A nonlinear block structure
+   identification procedure using frequency response function measurements", IEEE Trans.
+   Instrumentation and Measurement 57 (2008) 2257-2264.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from scipy import special
 
-from hystbench.gap.locate.dominant import find_modes
 from hystbench.gap.locate.forms import saved
-from hystbench.gap.locate.lines import Lines, lines_of
-from hystbench.gap.locate.mode import LINES, Mode, fit_mode
-from hystbench.gap.locate.moving import Moving
+from hystbench.gap.locate.mode import LINES, Lines, Mode, find_modes, fit_mode, lines_of
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
-from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.sample import Compared
 from hystbench.quantities import quantity_of
+from hystbench.record import FloatArray
+
+Class = Literal[
+    "hardening",
+    "softening",
+    "clearance",
+    "micro-slip or hysteresis",
+    "Coulomb friction",
+    "damping that grows with speed",
+    "a static curve before or behind",
+    "none",
+]
+WORDS: dict[Class, str] = {
+    "hardening": "hardening, as of a spring that stiffens or a stop",
+    "softening": "softening, as of a spring that yields",
+    "clearance": "a clearance, as the frequency rises from the lowest levels",
+    "micro-slip or hysteresis": "micro-slip or hysteresis, as of a joint that slips",
+    "Coulomb friction": "Coulomb friction, which matters less in a larger motion",
+    "damping that grows with speed": "damping that grows with speed, as drag does",
+    "a static curve before or behind": "a static curve before or behind the dynamics",
+    "none": "a linear mode, as far as these levels show",
+}
+
+SURE = 3.0
+"""Standard errors by which a number has to move."""
+STEADY = np.array([1e-4, 1e-2, 1e-2, 1e-2])
+"""Smallest relative error of frequency, damping twice, and gain that is believed: from
+one record to the next temperature alone moves them by as much."""
+BENDS = 0.75
+"""Share of a rise in frequency squared that lies in the lower half of the mean square
+of the motion: half of it of a cubic spring, next to all of it of a clearance."""
+
+
+@dataclass(frozen=True)
+class Moving:
+    """A mode at several levels of the input.
+
+    Parameters
+    ----------
+    inputs : ndarray, shape (levels,)
+        RMS of the input, rising.
+    modes : tuple of Mode
+    integrals : int
+        How often the output has to be integrated for a position.
+    levels : int
+        Levels that there are; at some of them the mode may have no peak.
+    """
+
+    inputs: FloatArray
+    modes: tuple[Mode, ...]
+    integrals: int
+    levels: int
+
+    @property
+    def numbers(self) -> FloatArray:
+        """Frequency, damping ratio of the pole, that by power, gain: (levels, 4)."""
+        return np.array(
+            [[m.frequency, m.damping, m.power_damping, m.gain] for m in self.modes]
+        )
+
+    @property
+    def errors(self) -> FloatArray:
+        """Relative standard errors of the numbers, shape (levels, 4)."""
+        found = np.array([mode.errors for mode in self.modes])
+        return np.asarray(np.maximum(found, STEADY))
+
+    @property
+    def rates(self) -> FloatArray:
+        """Damping by power as a rate of decay, which no stiffness changes."""
+        return np.asarray(self.numbers[:, 2] * self.numbers[:, 0])
+
+    def moves(self, values: FloatArray, errors: FloatArray) -> int:
+        """Tell whether a number grows (1), falls (-1) or stays (0) with the level.
+
+        Parameters
+        ----------
+        values, errors : ndarray, shape (levels,)
+            Errors are relative to the values.
+        """
+        # A value that noise made negative is next to nothing.
+        size = np.log(np.maximum(values, 1e-3 * np.max(np.abs(values))))
+        away = (size - size[0]) / np.hypot(errors, errors[0])
+        away[0] = 0.0
+        most = float(away[np.argmax(np.abs(away))])
+        return int(np.sign(most)) if abs(most) > SURE else 0
+
+    @property
+    def moved(self) -> tuple[int, int, int]:
+        """How frequency, damping by power and gain move."""
+        columns = (self.numbers[:, 0], self.rates, self.numbers[:, 3])
+        errors = self.errors[:, [0, 2, 3]].T
+        frequency, damping, gain = map(self.moves, columns, errors)
+        return frequency, damping, gain
+
+    @property
+    def kind(self) -> Class:
+        """The class that follows from what moves."""
+        frequency, damping, gain = self.moved
+        if damping < 0:
+            return "Coulomb friction"
+        if frequency > 0:
+            return "clearance" if self.bend > BENDS else "hardening"
+        if frequency < 0:
+            return "micro-slip or hysteresis" if damping > 0 else "softening"
+        if damping > 0:
+            return "damping that grows with speed"
+        return "a static curve before or behind" if gain else "none"
+
+    @property
+    def bend(self) -> float:
+        """Share of the rise of frequency squared in the lower half of the motion."""
+        frequency = self.numbers[:, 0]
+        reach = np.array([mode.reach for mode in self.modes])
+        motion = (reach / frequency**self.integrals) ** 2
+        order = np.argsort(motion)
+        motion, square = motion[order], frequency[order] ** 2
+        middle = np.interp((motion[0] + motion[-1]) / 2, motion, square)
+        return float((middle - square[0]) / (square[-1] - square[0]))
+
+    @property
+    def chi_square(self) -> tuple[float, int]:
+        """How far all numbers are from the same at every level, and the freedom."""
+        values = np.column_stack([self.numbers[:, 0], self.rates, self.numbers[:, 3]])
+        weights = self.errors[:, [0, 2, 3]] ** -2
+        means = np.sum(weights * values, axis=0) / np.sum(weights, axis=0)
+        away = np.sum(weights * (values / means - 1) ** 2)
+        return float(away), 3 * (len(values) - 1)
+
+    @property
+    def sentence(self) -> str:
+        """What moves by how much, and the class."""
+        first, last = self.numbers[0], self.numbers[-1]
+        errors = np.hypot(self.errors[0], self.errors[-1])
+        frequency, damping, gain = self.moved
+        change = 100 * (last[0] / first[0] - 1)
+        by = _with_error(abs(change), 100 * float(errors[0]))
+        moved = f"stays (it moves by {by} %)"
+        if frequency:
+            moved = f"{'rises' if change > 0 else 'falls'} by {by} %"
+        low, *_, high = (
+            _with_error(100 * mode.power_damping, 100 * mode.power_damping * error)
+            for mode, error in zip(self.modes, self.errors[:, 2], strict=True)
+        )
+        told = f"{low} to {high} %"
+        damped = f"{_verb(damping)} {told}" if damping else f"stays ({told})"
+        ratio = _with_error(last[3] / first[3], last[3] / first[3] * float(errors[3]))
+        held = f"its gain {_verb(gain)} 1 to {ratio}" if gain else "its gain stays"
+        seen = len(self.modes)
+        at = "" if seen == self.levels else f" ({seen} of {self.levels} levels)"
+        return (
+            f"the mode at {number(first[0])} Hz {moved}, its damping ratio {damped}, "
+            f"{held}{at}: {WORDS[self.kind]}"
+        )
+
+
+def _verb(way: int) -> str:
+    return "grows from" if way > 0 else "falls from"
+
+
+def _with_error(value: float, error: float) -> str:
+    """Write a number and its standard error, which has one digit."""
+    decimals = max(0, -int(np.floor(np.log10(max(error, 1e-9)))))
+    return f"{value:.{decimals}f} ± {error:.{decimals}f}"
+
 
 APART = 1.2
 """Of two input levels, rms over rms, at least."""

@@ -1,4 +1,4 @@
-"""One mode in the frequency domain, fitted in a band around it, level by level.
+"""Modes of one level of the input: lines of records, the strongest peaks, their fits.
 
 In a band around a lightly damped mode a spectrum obeys ``Y = (B U + T) / D`` with
 ``D = s^2 + 2 zeta w s + w^2``; the polynomials B and T are short and complex, as they
@@ -15,11 +15,78 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
 
-from hystbench.gap.locate.lines import ComplexArray, Lines
+from hystbench.gap.records.sample import Compared, whole_periods
 from hystbench.record import FloatArray
+
+ComplexArray = NDArray[np.complex128]
+
+EXCITED = 1e-3
+"""Of the strongest line's input power, that an excited line holds."""
+ENOUGH = 2**15
+"""Samples of a record without periods that are looked at, from its end on."""
+
+
+class Lines(NamedTuple):
+    """Spectral lines of one record.
+
+    Parameters
+    ----------
+    frequency : ndarray, shape (m,)
+        In Hz.
+    u, y, missed : ndarray of complex, shape (m,)
+        Input, output and what the simulation misses of it. The sum of ``|y|^2`` is the
+        mean square about the mean.
+    ends : bool
+        Whether the record's ends leave a transient in the lines.
+    """
+
+    frequency: FloatArray
+    u: ComplexArray
+    y: ComplexArray
+    missed: ComplexArray
+    ends: bool
+
+    def within(self, chosen: NDArray[np.bool_]) -> Lines:
+        """Give some of the lines."""
+        return Lines(
+            self.frequency[chosen],
+            self.u[chosen],
+            self.y[chosen],
+            self.missed[chosen],
+            self.ends,
+        )
+
+    @property
+    def excited(self) -> NDArray[np.bool_]:
+        """Lines that the input excites."""
+        power = np.abs(self.u) ** 2
+        return np.asarray(power > EXCITED * float(np.max(power, initial=0.0)))
+
+
+def lines_of(compared: Compared) -> Lines:
+    """Transform a record: its settled periods, or its end where none repeat."""
+    record = compared.record
+    period = record.period_samples
+    signals = np.stack([record.u, record.y, compared.residual])
+    repeats = period is not None and len(record) >= 2 * period
+    if period is not None and repeats:
+        runs = whole_periods(signals, period)
+        # Of two periods the first still holds the way from rest.
+        signals = runs[:, -1] if runs.shape[1] == 2 else runs.mean(axis=1)
+    else:
+        signals = signals[:, -ENOUGH:]
+    n = signals.shape[1]
+    centred = signals - signals.mean(axis=1, keepdims=True)
+    u, y, missed = np.asarray(fft.rfft(centred))[:, 1:] * (np.sqrt(2) / n)
+    frequency = np.asarray(fft.rfftfreq(n, record.dt))[1:]
+    return Lines(frequency, u, y, missed, not repeats)
+
 
 DEGREE = 2
 """Of the local polynomials, in the distance from the middle of the band."""
@@ -235,3 +302,56 @@ class _Band:
 
 def _square(values: FloatArray) -> float:
     return float(values @ values)
+
+
+PEAKS = 6
+"""Of the output's spectrum, that are tried."""
+WIDTH = 0.03
+"""Of a frequency, over which lines are averaged before peaks are sought."""
+GUESS = 0.01
+"""Damping ratio from which a peak is fitted: in a narrow band, away from others."""
+LEAST_SHARE = 0.1
+"""Of the output's power, that a mode worth a picture holds."""
+
+
+def find_modes(level: Sequence[Lines], integrals: int) -> tuple[Mode, ...]:
+    """Find the one or two modes that hold most of the output of a level.
+
+    Parameters
+    ----------
+    level : sequence of Lines
+        Records of one level.
+    integrals : int
+        How often the output has to be integrated for a position.
+
+    Returns
+    -------
+    tuple of Mode
+        The one that explains most of the output first; each a width of it apart.
+    """
+    whole = sum(float(np.sum(np.abs(one.y) ** 2)) for one in level)
+    fits = [fit_mode(level, peak, GUESS, integrals) for peak in _peaks(level[0])]
+    shares = [(float(mode.held - mode.left), mode) for mode in fits if mode is not None]
+    found: list[Mode] = []
+    for share, mode in sorted(shares, key=lambda item: -item[0]):
+        apart = [abs(one.frequency - mode.frequency) for one in found]
+        width = 2 * mode.damping * mode.frequency
+        if share >= LEAST_SHARE * whole and all(each > width for each in apart):
+            found.append(mode)
+    return tuple(found[:2])
+
+
+def _peaks(lines: Lines) -> list[float]:
+    """Give the frequencies of the strongest peaks, in Hz."""
+    from scipy.signal import find_peaks  # late: it takes long to load
+
+    at, power = lines.frequency[lines.excited], np.abs(lines.y[lines.excited]) ** 2
+    if not len(at):
+        return []
+    ends = np.searchsorted(at, [at * (1 - WIDTH / 2), at * (1 + WIDTH / 2)], "right")
+    sums = np.concatenate([[0.0], np.cumsum(power)])
+    smooth = (sums[ends[1]] - sums[ends[0]]) / (ends[1] - ends[0])
+    # A mode may be highest at an end of the band.
+    tops, _ = find_peaks(np.concatenate([[0.0], smooth, [0.0]]))
+    strongest = tops[np.argsort(-smooth[tops - 1])][:PEAKS] - 1
+    return [float(at[top]) for top in strongest]

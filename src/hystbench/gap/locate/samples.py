@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.errors import InputError
-from hystbench.gap.locate.contribution import Contribution
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.sample import Compared
+from hystbench.gap.view_kinds import ViewKind
 from hystbench.operators import play
 from hystbench.record import FloatArray
 
@@ -24,6 +24,27 @@ FEWEST = 32
 PRIMES = (1, 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61)
 TURNS = 0.01
 """Of the input's range, that it moves before a turn counts: noise is no turn."""
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """What a named effect adds to the output of the base on each record.
+
+    Parameters
+    ----------
+    effect : str
+    view : str, optional
+        Where it shows, what an engineer looks at first; None where that is not known.
+    added : tuple of ndarray, shape (n,)
+        In the unit of the output, a record each.
+    freedom : float
+        Numbers that were fitted for it.
+    """
+
+    effect: str
+    view: ViewKind | None
+    added: tuple[FloatArray, ...]
+    freedom: float = 1.0
 
 
 @dataclass(frozen=True)

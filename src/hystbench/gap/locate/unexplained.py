@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hystbench.gap.locate.forms import best, fit_form, named_or, narrowest, p_value_of
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.locate.view import View, number, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.nuisance import shows_a_path
 from hystbench.record import FloatArray
@@ -70,21 +70,13 @@ def unexplained(samples: ViewSamples) -> View:
         start, end = max(hertz - resolution, 0.0), hertz + resolution
         axis, unit, within = "frequency", "Hz", f"at {number(hertz)} Hz"
     p_value = min(1.0, 2 * min(line_p, p_value_of(samples, drift)))
-    share = samples.share(form.explained, form.freedom)
-    return View(
-        view="unexplained",
-        axis=axis,
-        start=start,
-        end=end,
-        unit=unit,
-        share_of_gap_power=share,
-        p_value=p_value_of(samples, form) if form.named else p_value,
-        sentence=(
-            f"{percent(share)} of the gap is {form.words}, which the input does not "
-            f"explain, between {number(start)} and {number(end)} {unit} {within}."
-        ),
-        saved=form.saved,
-        named=form.named,
+    told = (
+        f"is {form.words}, which the input does not explain, between {number(start)} "
+        f"and {number(end)} {unit} {within}."
+    )
+    ends = (start, end)
+    return view_of(
+        samples, "unexplained", form, axis, ends, unit, told, p_value=p_value
     )
 
 

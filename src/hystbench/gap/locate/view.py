@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from hystbench.gap.locate.forms import FittedForm, p_value_of
 from hystbench.gap.locate.picture import Picture
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.view_kinds import ViewKind
 
 SIGNIFICANT = 0.01
@@ -69,6 +72,57 @@ class View:
             "p_value": self.p_value,
             "sentence": self.sentence,
         }
+
+
+def view_of(
+    samples: ViewSamples,
+    view: ViewKind,
+    form: FittedForm,
+    axis: str,
+    ends: tuple[float | str, float | str],
+    unit: str,
+    sentence: str,
+    tests: Sequence[FittedForm] = (),
+    pictures: Sequence[Picture] = (),
+    not_drawn: Sequence[str] = (),
+    share: float | None = None,
+    p_value: float | None = None,
+) -> View:
+    """Give the view that a form tells.
+
+    Parameters
+    ----------
+    samples, view, axis, unit
+        As for :class:`View`.
+    form : FittedForm
+    ends : tuple of (float or str, float or str)
+        Of the range.
+    sentence : str
+        What it says behind "so much of the gap".
+    tests : sequence of FittedForm
+        Whose p-value counts where no effect is named; by default the form's own.
+    pictures, not_drawn
+        As for :class:`View`.
+    share, p_value : float, optional
+        Those of the form and its tests by default.
+    """
+    share = form.share if share is None else share
+    if p_value is None or form.named:
+        p_value = p_value_of(samples, form, tests)
+    return View(
+        view=view,
+        axis=axis,
+        start=ends[0],
+        end=ends[1],
+        unit=unit,
+        share_of_gap_power=share,
+        p_value=p_value,
+        sentence=f"{percent(share)} of the gap {sentence}",
+        saved=form.saved,
+        named=form.named,
+        pictures=tuple(pictures),
+        not_drawn=tuple(not_drawn),
+    )
 
 
 def percent(share: float) -> str:

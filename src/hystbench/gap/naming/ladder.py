@@ -11,7 +11,7 @@ from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate import Contribution
 from hystbench.gap.naming.name import Named
-from hystbench.gap.records.residual import Compared
+from hystbench.gap.records.sample import Compared
 
 BASE = "base"
 RETUNED = "base re-tuned"

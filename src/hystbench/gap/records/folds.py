@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.record import FloatArray, Mask, Record
+from hystbench.record import Mask, Record
 
 #: With so many records whole ones are held out; with fewer, blocks of each.
 RECORDS = 3
@@ -92,23 +92,6 @@ def make_folds(
     return tuple(
         Fold(_measured(fold.train, records), _measured(fold.validation, records))
         for fold in folds
-    )
-
-
-def chosen(values: Sequence[FloatArray], masks: Sequence[Mask]) -> FloatArray:
-    """Join the masked samples of all records.
-
-    Parameters
-    ----------
-    values : sequence of ndarray, shape (n,) or (n, m) each
-    masks : sequence of ndarray of bool, shape (n,) each
-
-    Returns
-    -------
-    ndarray, shape (chosen samples,) or (chosen samples, m)
-    """
-    return np.concatenate(
-        [item[mask] for item, mask in zip(values, masks, strict=True)]
     )
 
 

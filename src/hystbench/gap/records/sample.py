@@ -1,8 +1,8 @@
-"""Which samples are scored: about a thousand of each record.
+"""A record beside its simulation, and which of its samples are scored.
 
-Model error is not white, so more samples of a record say little more; fewer make a
-refit cheap. Simulation always runs over the whole record. Samples that were not
-measured are never scored.
+Model error is not white, so more than about a thousand samples of a record say little
+more; fewer make a refit cheap. Simulation always runs over the whole record. Samples
+that were not measured are never scored.
 """
 
 from __future__ import annotations
@@ -121,3 +121,51 @@ def without(signal: FloatArray, column: FloatArray) -> FloatArray:
     return signal - (
         column @ (column.T @ signal.reshape(len(signal), -1)) / square
     ).reshape(signal.shape)
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A record and what a model says of it, in free run from the input alone.
+
+    Parameters
+    ----------
+    record : Record
+    simulated : ndarray, shape (n,)
+        In the unit of the record's output.
+    """
+
+    record: Record
+    simulated: FloatArray
+
+    @property
+    def residual(self) -> FloatArray:
+        """Measured minus simulated, shape (n,).
+
+        Without what an unknown velocity at the first sample does.
+        """
+        return without(self.record.y - self.simulated, self.record.of_start)
+
+
+def rms(values: FloatArray) -> float:
+    """Give the root of the mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def whole_periods(values: FloatArray, period: int) -> FloatArray:
+    """Give the whole periods at the end of signals, one behind the other.
+
+    The first of them holds the way from rest: it is left out, given two others.
+
+    Parameters
+    ----------
+    values : ndarray, shape (..., n)
+    period : int
+        Samples of a period, at most n.
+
+    Returns
+    -------
+    ndarray, shape (..., periods, period)
+    """
+    count = values.shape[-1] // period
+    used = count - 1 if count > 2 else count
+    return values[..., -used * period :].reshape(*values.shape[:-1], used, period)

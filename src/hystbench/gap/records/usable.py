@@ -74,13 +74,24 @@ def _check_output(file: Path, record: Record) -> None:
         if sum(last - first for first, last in stretches) <= STUCK * len(y):
             continue
         first, last = stretches[0]
-        at_end = y[first] in ends
-        raise InputError(
-            f"{file}: row {first + 2}: {record.output.name} is {y[first]:g} "
-            f"{record.output.unit} for {last - first} samples while the input moves; "
-            f"expected a channel that is not {'clipped' if at_end else 'stuck'}"
-            + REAL.format("output")
-        )
+        how = "clipped" if y[first] in ends else "stuck"
+        raise _refusal(file, record, "output", first, last, how)
+
+
+def _refusal(
+    file: Path, record: Record, side: str, first: int, last: int, how: str
+) -> InputError:
+    """Say which stretch of a channel stands still, and what to say if it is real."""
+    channel, values, other = (
+        (record.input, record.u, "output goes on")
+        if side == "input"
+        else (record.output, record.y, "input moves")
+    )
+    return InputError(
+        f"{file}: row {first + 2}: {channel.name} is {values[first]:g} {channel.unit} "
+        f"for {last - first} samples while the {other}; expected a channel that is not "
+        f"{how}{REAL.format(side)}"
+    )
 
 
 def _quantum(y: FloatArray) -> float:
@@ -98,27 +109,16 @@ def _check_input(file: Path, record: Record) -> None:
     while the output turns half way, was clipped.
     """
     u, y = record.u, record.y
-    name = record.input.name
-    flat = _flat(u)
-    said = f"{record.input.unit} for {{}} samples while the output goes on; expected"
-    reach = float(np.ptp(y))
+    flat, reach = _flat(u), float(np.ptp(y))
     for first, last in flat:
         on = last < len(u) and _jumps(u, last) and _unmoved(y, last, last - first)
         if on and _moves(y[first:last], reach):
-            raise InputError(
-                f"{file}: row {first + 2}: {name} is {u[first]:g} "
-                f"{said.format(last - first)} a channel that is not stuck"
-                + REAL.format("input")
-            )
+            raise _refusal(file, record, "input", first, last, "stuck")
     for end in (u.min(), u.max()):
-        own = [y[a:b] for a, b in flat if u[a] == end and b < len(u)]
-        if len(own) > 1 and all(_turns_half_way(part, reach) for part in own):
+        own = [(a, b) for a, b in flat if u[a] == end and b < len(u)]
+        if len(own) > 1 and all(_turns_half_way(y[a:b], reach) for a, b in own):
             first, last = next((a, b) for a, b in flat if u[a] == end)
-            raise InputError(
-                f"{file}: row {first + 2}: {name} is {end:g} "
-                f"{said.format(last - first)} a channel that is not clipped"
-                + REAL.format("input")
-            )
+            raise _refusal(file, record, "input", first, last, "clipped")
 
 
 def _flat(u: FloatArray) -> list[tuple[int, int]]:

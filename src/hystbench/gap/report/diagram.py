@@ -11,8 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, FancyBboxPatch
 
 from hystbench.figures.style import BLACK, BLUE, GREY, ORANGE, PAGE, axis_label
-from hystbench.gap.report.diagram_layout import layout
-from hystbench.gap.report.diagram_shapes import (
+from hystbench.gap.report.diagram_layout import (
     NAME,
     NAME_LINE,
     NUMBER,
@@ -20,12 +19,12 @@ from hystbench.gap.report.diagram_shapes import (
     PAD,
     RADIUS,
     Box,
-    Diagram,
-    Label,
     Line,
+    Shape,
     Sum,
+    layout,
 )
-from hystbench.gap.report.parts import Part, Stage, Whose, in_one_line, stages
+from hystbench.gap.report.parts import Stage, Whose, in_one_line, stages
 from hystbench.model import Model
 
 #: Edge, face and width of the edge of a box. Added boxes differ by their edges too.
@@ -67,8 +66,8 @@ def figure_of(model: Model, gap: Mapping[str, Any]) -> Figure:
     axes.set_axis_off()
     axes.set_xlim(0.0, diagram.width)
     axes.set_ylim(-KEY, diagram.height)
-    paint(axes, diagram)
-    _key(axes, sorted_parts(found))
+    _paint(axes, diagram.shapes)
+    _key(axes, _whose(found))
     return figure
 
 
@@ -77,45 +76,38 @@ def words_of(model: Model, gap: Mapping[str, Any]) -> str:
     return f"Block diagram: {in_one_line(model, stages(model, gap))}"
 
 
-def sorted_parts(found: Sequence[Stage]) -> list[Whose]:
+def _whose(found: Sequence[Stage]) -> list[Whose]:
     """Give whose parts there are, in the order of the key."""
-    there = {part.whose for stage in found for part in _parts(stage)}
+    there = {part.whose for stage in found for part in stage.parts}
     return [whose for whose in LOOKS if whose in there]
 
 
-def _parts(stage: Stage) -> list[Part]:
-    spilt = [stage.spilt] if stage.spilt else []
-    attached = (*stage.within, *stage.around, *stage.fed_back, *stage.beside)
-    return [stage.core, *attached, *spilt]
-
-
-def paint(axes: Axes, diagram: Diagram) -> None:
+def _paint(axes: Axes, shapes: Sequence[Shape]) -> None:
     """Draw what was laid out, larger boxes first: they may hold others."""
-    drawn = diagram.drawn
-    for box in sorted(drawn.boxes, key=lambda box: -box.width * box.height):
+    boxes = [one for one in shapes if isinstance(one, Box)]
+    for box in sorted(boxes, key=lambda box: -box.width * box.height):
         _box(axes, box)
-    for line in drawn.lines:
-        _line(axes, line)
-    for item in drawn.sums:
-        _sum(axes, item)
-    for label in drawn.labels:
-        _label(axes, label)
+    for one in shapes:
+        if isinstance(one, Line):
+            _line(axes, one)
+        elif isinstance(one, Sum):
+            _sum(axes, one)
+
+
+def _frame(
+    axes: Axes, x: float, y: float, width: float, height: float, whose: Whose
+) -> None:
+    edge, face, thick = LOOKS[whose]
+    style = "round,pad=0,rounding_size=0.04"
+    look: dict[str, Any] = {"edgecolor": edge, "facecolor": face, "linewidth": thick}
+    axes.add_patch(FancyBboxPatch((x, y), width, height, boxstyle=style, **look))
 
 
 def _box(axes: Axes, box: Box) -> None:
-    edge, face, width = LOOKS[box.whose]
-    axes.add_patch(
-        FancyBboxPatch(
-            (box.x, box.y),
-            box.width,
-            box.height,
-            boxstyle="round,pad=0,rounding_size=0.04",
-            edgecolor=edge,
-            facecolor=face,
-            linewidth=width,
-        )
-    )
-    y = box.y + box.height - PAD
+    y = box.y + box.height
+    if box.whose is not None:  # else a label, which has no edge
+        _frame(axes, *box[:4], box.whose)
+        y -= PAD
     for lines, size, step in (
         (box.words, NAME, NAME_LINE),
         (box.numbers, NUMBER, NUMBER_LINE),
@@ -171,25 +163,10 @@ def _sum(axes: Axes, item: Sum) -> None:
         axes.add_line(Line2D((x, x + 1.2 * arm), (y, y), **look))
 
 
-def _label(axes: Axes, label: Label) -> None:
-    y = label.y + NAME_LINE * len(label.words)
-    for text in label.words:
-        _text(axes, label.x + label.width / 2, y - NAME_LINE / 2, text, NAME)
-        y -= NAME_LINE
-
-
 def _key(axes: Axes, there: Sequence[Whose]) -> None:
     """Say below the diagram whose each colour is."""
     x = PAD
     for whose in there:
-        edge, face, width = LOOKS[whose]
-        look: dict[str, Any] = {
-            "edgecolor": edge,
-            "facecolor": face,
-            "linewidth": width,
-        }
-        axes.add_patch(
-            FancyBboxPatch((x, -0.17), 0.16, 0.1, boxstyle="square,pad=0", **look)
-        )
+        _frame(axes, x, -0.17, 0.16, 0.1, whose)
         axes.text(x + 0.22, -0.12, SAID[whose], fontsize=NUMBER, va="center")
         x += 1.5

@@ -8,30 +8,25 @@ that a force inside a mechanism that has other modes beside it needs no rule of 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
 from textwrap import wrap
+from typing import NamedTuple
 
-from hystbench.gap.report.diagram_shapes import (
-    NAME,
-    NAME_LETTERS,
-    NAME_LINE,
-    NUMBER,
-    NUMBER_LETTERS,
-    NUMBER_LINE,
-    PAD,
-    RADIUS,
-    Box,
-    Diagram,
-    Drawn,
-    Label,
-    Line,
-    Point,
-    Sum,
-    text_width,
-)
-from hystbench.gap.report.parts import Part, Stage
+from hystbench.gap.report.parts import Part, Stage, Whose
 
+#: Type of names and of numbers (points), and the height of a line (inches).
+NAME, NUMBER = 8.0, 7.0
+NAME_LINE, NUMBER_LINE = 0.15, 0.13
+#: Letters of a line, at most: longer words are broken.
+NAME_LETTERS, NUMBER_LETTERS = 18, 24
+#: Widths of letters, in times of the type's size. Most are narrower than this says.
+NARROW, USUAL, BROAD = 0.42, 0.67, 1.0
+_NARROW, _BROAD = frozenset("ijltfrI.,:;'|()[]/- ·"), frozenset("mwMWOQ@%&")
+
+PAD = 0.07
+"""Between a box and what stands in it."""
+RADIUS = 0.07
+"""Of the circle where signals are summed."""
 LEAD = 0.2
 """Length of a line with an arrow."""
 STUB = 0.1
@@ -43,8 +38,62 @@ ROWS = 0.22
 MARGIN = 0.06
 
 
-@dataclass(frozen=True)
-class _Group:
+Point = tuple[float, float]
+
+
+class Box(NamedTuple):
+    """A box with words and numbers below each other, from its upper edge on.
+
+    Parameters
+    ----------
+    x, y : float
+        Its left lower corner.
+    width, height : float
+    words, numbers : tuple of str
+        Lines of text.
+    whose : {"simulator", "added", "put in"}, optional
+        None of what has no edge: a label.
+    """
+
+    x: float
+    y: float
+    width: float
+    height: float
+    words: tuple[str, ...]
+    numbers: tuple[str, ...] = ()
+    whose: Whose | None = None
+
+
+class Sum(NamedTuple):
+    """A circle where signals are summed.
+
+    With ``minus`` what comes from below is subtracted.
+    """
+
+    x: float
+    y: float
+    minus: bool = False
+
+
+class Line(NamedTuple):
+    """A line through points; with an arrow at its end or without."""
+
+    points: tuple[Point, ...]
+    arrow: bool = False
+
+
+Shape = Box | Sum | Line
+
+
+class Diagram(NamedTuple):
+    """A whole diagram, in inches from its left lower corner."""
+
+    width: float
+    height: float
+    shapes: tuple[Shape, ...]
+
+
+class _Group(NamedTuple):
     """A piece that the signal passes from (0, 0) to (width, 0).
 
     ``up`` and ``down`` are how far it reaches; ``arrow`` is whether a line may end at
@@ -54,8 +103,30 @@ class _Group:
     width: float
     up: float
     down: float
-    drawn: Drawn
+    shapes: tuple[Shape, ...]
     arrow: bool = True
+
+    def at(self, x: float, y: float = 0.0) -> tuple[Shape, ...]:
+        """Give what it is drawn of, moved to the right and up."""
+        return _moved(self.shapes, x, y)
+
+
+def _moved(shapes: Sequence[Shape], x: float, y: float) -> tuple[Shape, ...]:
+    return tuple(
+        Line(tuple((a + x, b + y) for a, b in one.points), one.arrow)
+        if isinstance(one, Line)
+        else one._replace(x=one.x + x, y=one.y + y)
+        for one in shapes
+    )
+
+
+def text_width(text: str, size: float) -> float:
+    """Tell how wide a line of text is at most, in inches, for type of some points."""
+    letters = (
+        NARROW if letter in _NARROW else BROAD if letter in _BROAD else USUAL
+        for letter in text
+    )
+    return sum(letters) * size / 72
 
 
 def layout(stages: Sequence[Stage], source: str, output: str, page: float) -> Diagram:
@@ -75,14 +146,15 @@ def layout(stages: Sequence[Stage], source: str, output: str, page: float) -> Di
     """
     groups = [_label(source), *map(_group, stages), _label(output)]
     rows = _rows(groups, page - 2 * (MARGIN + STUB))
-    drawn, below = Drawn(), 0.0
+    drawn: tuple[Shape, ...] = ()
+    below = 0.0
     ends: list[tuple[Point, Point, float]] = []
     for k, row in enumerate(rows):
         middle = below - (2 * ROWS if k else 0.0) - max(group.up for group in row)
         # A single row stands in the middle of the page, several begin below another.
         width = _width(row)
         x = MARGIN + STUB if len(rows) > 1 else (page - width) / 2
-        drawn += _series(row).drawn.moved(x, middle)
+        drawn += _series(row).at(x, middle)
         ends.append(((x, middle), (x + width, middle), below - ROWS))
         below = middle - max(group.down for group in row)
     for ((_, last, _), (first, _, between)), row in zip(
@@ -96,9 +168,9 @@ def layout(stages: Sequence[Stage], source: str, output: str, page: float) -> Di
             (MARGIN, first[1]),
             first,
         )
-        drawn += Drawn(lines=(Line(way, row[0].arrow),))
+        drawn += (Line(way, row[0].arrow),)
     height = 2 * MARGIN - below
-    return Diagram(page, height, drawn.moved(0.0, height - MARGIN))
+    return Diagram(page, height, _moved(drawn, 0.0, height - MARGIN))
 
 
 def _rows(groups: Sequence[_Group], most: float) -> list[list[_Group]]:
@@ -117,10 +189,10 @@ def _width(row: Sequence[_Group]) -> float:
 
 def _series(row: Sequence[_Group]) -> _Group:
     """Put groups behind one another."""
-    drawn, x = row[0].drawn, row[0].width
+    drawn, x = row[0].shapes, row[0].width
     for group in row[1:]:
         way = Line(((x, 0.0), (x + LEAD, 0.0)), group.arrow)
-        drawn += Drawn(lines=(way,)) + group.drawn.moved(x + LEAD, 0.0)
+        drawn += (way, *group.at(x + LEAD))
         x += LEAD + group.width
     up, down = (max(getattr(group, key) for group in row) for key in ("up", "down"))
     return _Group(x, up, down, drawn, row[0].arrow)
@@ -142,8 +214,8 @@ def _label(text: str) -> _Group:
     words = _lines(text, NAME_LETTERS)
     width = max(text_width(line, NAME) for line in words)
     height = NAME_LINE * len(words)
-    label = Label(STUB / 2, -height / 2, width, words)
-    return _Group(width + STUB, height / 2, height / 2, Drawn(labels=(label,)))
+    label = Box(STUB / 2, -height / 2, width, height, words)
+    return _Group(width + STUB, height / 2, height / 2, (label,))
 
 
 def _lines(text: str, letters: int) -> tuple[str, ...]:
@@ -168,13 +240,13 @@ def _core(part: Part, within: Sequence[Part]) -> _Group:
     box, inner = _box(part), [_box(item) for item in within]
     width = max([box.width, *(item.width + 2 * PAD for item in inner)])
     height = box.height + sum(item.height + PAD for item in inner)
-    drawn = Drawn(boxes=(replace(box, width=width, height=height, y=-height / 2),))
+    drawn = [box._replace(width=width, height=height, y=-height / 2)]
     top = height / 2 - box.height
     for item in inner:
-        placed = replace(item, x=(width - item.width) / 2, y=top - item.height)
-        drawn += Drawn(boxes=(placed,))
+        x = (width - item.width) / 2
+        drawn.append(item._replace(x=x, y=top - item.height))
         top -= item.height + PAD
-    return _Group(width, height / 2, height / 2, drawn)
+    return _Group(width, height / 2, height / 2, tuple(drawn))
 
 
 def _with_frame(group: _Group, part: Part) -> _Group:
@@ -183,13 +255,12 @@ def _with_frame(group: _Group, part: Part) -> _Group:
     width = max(group.width + 2 * STUB, box.width)
     left = (width - group.width) / 2
     up, down = group.up + box.height, group.down + PAD
-    frame = replace(box, width=width, height=up + down, y=-down)
-    ways = (
+    drawn = (
+        box._replace(width=width, height=up + down, y=-down),
         Line(((0.0, 0.0), (left, 0.0)), group.arrow),
         Line(((left + group.width, 0.0), (width, 0.0))),
     )
-    drawn = Drawn(boxes=(frame,), lines=ways) + group.drawn.moved(left, 0.0)
-    return _Group(width, up, down, drawn, arrow=False)
+    return _Group(width, up, down, drawn + group.at(left), arrow=False)
 
 
 def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
@@ -202,14 +273,12 @@ def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
     end = start + RADIUS + LEAD + inner + STUB
     width = end + STUB
     loop, reach = _branches(boxes, end, start, -group.down)
-    drawn = group.drawn.moved(left, 0.0) + Drawn(
-        lines=(
-            Line(((start + RADIUS, 0.0), (left, 0.0)), group.arrow),
-            Line(((left + group.width, 0.0), (width, 0.0))),
-        ),
-        sums=(Sum(start, 0.0, minus=True),),
+    ways = (
+        Line(((start + RADIUS, 0.0), (left, 0.0)), group.arrow),
+        Line(((left + group.width, 0.0), (width, 0.0))),
+        Sum(start, 0.0, minus=True),
     )
-    return _Group(width, group.up, -reach, drawn + loop)
+    return _Group(width, group.up, -reach, group.at(left) + ways + loop)
 
 
 def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
@@ -219,19 +288,18 @@ def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
     left = STUB + LEAD + (inner - group.width) / 2
     end = STUB + LEAD + inner + LEAD + RADIUS
     above, reach = _branches(boxes, STUB, end, group.up)
-    drawn = group.drawn.moved(left, 0.0) + Drawn(
-        lines=(
-            Line(((0.0, 0.0), (left, 0.0)), group.arrow),
-            Line(((left + group.width, 0.0), (end - RADIUS, 0.0)), arrow=True),
-        ),
-        sums=(Sum(end, 0.0),),
+    drawn = (
+        *group.at(left),
+        Line(((0.0, 0.0), (left, 0.0)), group.arrow),
+        Line(((left + group.width, 0.0), (end - RADIUS, 0.0)), arrow=True),
+        Sum(end, 0.0),
     )
     return _Group(end + RADIUS, reach, group.down, drawn + above, arrow=False)
 
 
 def _branches(
     boxes: Sequence[Box], tap: float, total: float, edge: float
-) -> tuple[Drawn, float]:
+) -> tuple[tuple[Shape, ...], float]:
     """Stack boxes on ways from where a signal is tapped to where they are summed.
 
     Parameters
@@ -244,13 +312,14 @@ def _branches(
 
     Returns
     -------
-    drawn : Drawn
+    drawn : tuple of Shape
     reach : float
         How far from the line it ends.
     """
     up = 1 if edge > 0 else -1
     onward = 1 if total > tap else -1
-    drawn, before = Drawn(), 0.0
+    drawn: list[Shape] = []
+    before = 0.0
     for k, box in enumerate(boxes):
         middle = edge + up * (SPACE + box.height / 2)
         x = (tap + total - box.width) / 2
@@ -260,15 +329,13 @@ def _branches(
         if k == len(boxes) - 1:
             ways.append(((far, middle), (total, middle), head))
         else:  # what comes from further out is added first
-            lines = (
-                Line(((far, middle), (total - onward * RADIUS, middle)), arrow=True),
-                Line(((total, middle - up * RADIUS), head), arrow=True),
-            )
-            drawn += Drawn(lines=lines, sums=(Sum(total, middle),))
-        placed = replace(box, x=x, y=middle - box.height / 2)
-        drawn += Drawn((placed,), tuple(Line(way, arrow=True) for way in ways))
+            ways.append(((far, middle), (total - onward * RADIUS, middle)))
+            ways.append(((total, middle - up * RADIUS), head))
+            drawn.append(Sum(total, middle))
+        drawn.append(box._replace(x=x, y=middle - box.height / 2))
+        drawn += [Line(way, arrow=True) for way in ways]
         edge, before = middle + up * box.height / 2, middle
-    return drawn, edge
+    return tuple(drawn), edge
 
 
 def _with_spill(group: _Group, part: Part, caught: bool) -> _Group:
@@ -278,20 +345,22 @@ def _with_spill(group: _Group, part: Part, caught: bool) -> _Group:
     left, x = (inner - group.width) / 2, (inner - box.width) / 2
     foot = group.up + LEAD
     middle = foot + box.height / 2
-    rise = Line(((inner / 2, group.up), (inner / 2, foot)), arrow=True)
-    drawn = group.drawn.moved(left, 0.0) + Drawn(
-        boxes=(replace(box, x=x, y=foot),), lines=(rise,)
-    )
+    drawn = [
+        *group.at(left),
+        box._replace(x=x, y=foot),
+        Line(((inner / 2, group.up), (inner / 2, foot)), arrow=True),
+    ]
     if left:
-        drawn += Drawn(lines=(Line(((0.0, 0.0), (left, 0.0)), arrow=True),))
-    up, out = foot + box.height, left + group.width
-    if not caught:
-        drawn += Drawn(lines=(Line(((out, 0.0), (inner, 0.0))),) if left else ())
-        return _Group(inner, up, group.down, drawn, arrow=not left)
-    end = inner + LEAD + RADIUS
-    ways = (
-        Line(((out, 0.0), (end - RADIUS, 0.0)), arrow=True),
-        Line(((x + box.width, middle), (end, middle), (end, RADIUS)), arrow=True),
-    )
-    drawn += Drawn(lines=ways, sums=(Sum(end, 0.0),))
-    return _Group(end + RADIUS, up, group.down, drawn, arrow=not left)
+        drawn.append(Line(((0.0, 0.0), (left, 0.0)), arrow=True))
+    up, out, end = foot + box.height, left + group.width, inner
+    if caught:
+        end = inner + LEAD + RADIUS
+        drawn += [
+            Line(((out, 0.0), (end - RADIUS, 0.0)), arrow=True),
+            Line(((x + box.width, middle), (end, middle), (end, RADIUS)), arrow=True),
+            Sum(end, 0.0),
+        ]
+        end += RADIUS
+    elif left:
+        drawn.append(Line(((out, 0.0), (inner, 0.0))))
+    return _Group(end, up, group.down, tuple(drawn), arrow=not left)

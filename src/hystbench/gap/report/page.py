@@ -6,67 +6,33 @@ from collections.abc import Iterable, Mapping
 from itertools import groupby
 from typing import Any
 
-from hystbench.figures.style import COLUMN, in_style, unit_text
-from hystbench.gap.behaviour import for_readers
+from hystbench.figures.style import BLUE, COLUMN, GREY, in_style, unit_text
 from hystbench.gap.locate import LEVEL
 from hystbench.gap.report import diagram, pictures, words
 from hystbench.gap.report.pictures import Picture, draw, embedded
 from hystbench.gap.report.read import Content
 from hystbench.gap.report.where_pictures import pictures_of
+from hystbench.gap.schema import LEFT_OUT
+from hystbench.gap.vocabulary import for_readers
 from hystbench.record import column_name
 from hystbench.report.markup import one_micro
 
 TEMPLATE = "report.html.j2"
-#: What gap.json may leave out.
-OPTIONAL: dict[str, Any] = {
-    "records": [],
-    "ladder": [],
-    "black_box": None,
-    "base_parameters": {},
-    "taken_out": [],
-    "shortfall": None,
-    "withdrawn": None,
-    "record_values": None,
-    "no_experiment": "",
-    "not_tried": [],
-    "runs_away": [],
-    "warnings": [],
-    "fit": None,
-    "unnamed": None,
-    "simulator": None,
-    "calls_used_up": None,
-    "asked": None,
-    "built_in": None,
-    "device": None,
-    "command": None,
-}
-#: And its parts with figures, where a bootstrap tells nothing.
+#: Functions of ``words`` that the template uses.
+FILTERS = (
+    *("number", "size", "with_error", "percent", "explained", "p_value", "bound"),
+    *("unit", "listed"),
+)
+#: Of the parts of gap.json with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
 
 
 def page(content: Content) -> str:
     """Make the page of what was read."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from hystbench.report.layout import page_environment
 
-    environment = Environment(
-        loader=PackageLoader("hystbench.gap.report", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    for name in (
-        "number",
-        "size",
-        "with_error",
-        "percent",
-        "explained",
-        "p_value",
-        "bound",
-    ):
-        environment.filters[name] = getattr(words, name)
-    environment.filters["unit"] = words.unit
-    environment.filters["listed"] = words.listed
+    environment = page_environment("hystbench.gap.report")
+    environment.filters |= {name: getattr(words, name) for name in FILTERS}
     named = with_optional(content.gap)  # as the vocabulary has it
     gap = with_optional(for_readers(content.gap))
     drawn, missing = pictures_of(content.curves)
@@ -99,7 +65,7 @@ def page(content: Content) -> str:
 
 def with_optional(content: Mapping[str, Any]) -> dict[str, Any]:
     """Give what gap.json holds, with what it may leave out."""
-    gap = OPTIONAL | dict(content)
+    gap = LEFT_OUT | dict(content)
     gap["gap"] = INTERVALS | gap["gap"]
     if gap["black_box"]:
         gap["black_box"] = INTERVALS | gap["black_box"]
@@ -177,13 +143,14 @@ def _ranking(gap: dict[str, Any]) -> Picture | None:
     named = {(effect["name"], effect["place"]) for effect in gap["effects"]}
     names = [f"{item['name']} ({item['place']})" for item in ranked]
     picked = [(item["name"], item["place"]) in named for item in ranked]
+    colors = [BLUE if each else GREY for each in picked]
     gains = [item["gain"] for item in ranked]
     return draw(
         pictures.bars,
         names,
         gains,
         "gain in the score that ranks",
-        picked,
+        colors,
         words="Gain over the base of each effect, tried alone; named effects blue",
         height=0.6 + 0.2 * len(names),
     )
@@ -236,15 +203,19 @@ def _declined(gap: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _ladder(gap: dict[str, Any]) -> Picture | None:
-    rungs = [(item["name"], item["rms"]) for item in gap["ladder"]]
+    rungs = [
+        (f"+ {item['name']}" if k else item["name"], item["rms"])
+        for k, item in enumerate(gap["ladder"])
+    ]
     if not rungs:
         return None
     return draw(
-        pictures.steps,
+        pictures.sizes,
         rungs,
         gap["gap"]["noise_floor"],
         gap["unit"],
         words="RMS residual on hold-out records after each effect was added",
+        height=0.8 + 0.35 * len(rungs),
     )
 
 

@@ -77,6 +77,13 @@ class Stage:
     spilt: Part | None = None
     caught: bool = False
 
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All of them."""
+        spilt = (self.spilt,) if self.spilt else ()
+        attached = (*self.within, *self.around, *self.fed_back, *self.beside)
+        return (self.core, *attached, *spilt)
+
 
 @dataclass(frozen=True)
 class _Owner:

@@ -24,7 +24,6 @@ from hystbench.figures.style import (
     plain_ticks,
     unit_text,
 )
-from hystbench.gap.holdout.shrink import spectra
 from hystbench.gap.report.read import HoldOut
 from hystbench.record import FloatArray
 
@@ -83,50 +82,38 @@ def bars(
     names: Sequence[str],
     values: Sequence[float],
     about: str,
-    picked: Sequence[bool] | None = None,
+    colors: Sequence[str],
 ) -> None:
-    """Draw horizontal bars, the first on top; those that were picked are blue."""
+    """Draw horizontal bars, the first on top."""
     (panel,) = axes
     places = np.arange(len(names))
-    chosen = [True] * len(names) if picked is None else picked
-    colors = [BLUE if each else GREY for each in chosen]
-    panel.barh(places, values, color=colors, height=0.7)
+    panel.barh(places, values, color=colors, height=0.65)
     panel.set_yticks(places, names)
-    panel.invert_yaxis()
+    panel.set_ylim(max(len(names), 2) - 0.5, -0.5)  # one bar is no thicker than two
     panel.set_xlabel(about)
     panel.grid(visible=False, axis="y")
     panel.axvline(0, color=BLACK, linewidth=0.6)
 
 
-def steps(
-    axes: Any,
-    rungs: Sequence[tuple[str, float | None]],
+def sizes(
+    axes: Sequence[Axes],
+    rows: Sequence[tuple[str, float | None]],
     floor: float,
     unit: str,
 ) -> None:
-    """Draw the RMS after each effect that was added, against the floor."""
-    (panel,) = axes
-    names = [name for name, _ in rungs]
+    """Draw the gap of each model as a bar, against the noise floor."""
     # A model that runs away has no size: a word stands where its bar would.
-    sizes = [0.0 if size is None else size for _, size in rungs]
-    shown = ["unbounded" if size is None else f"{size:.3g}" for _, size in rungs]
-    places = np.arange(len(rungs))
-    colors = [BEFORE, *[AFTER] * (len(rungs) - 1)]
-    panel.bar(places, sizes, color=colors, width=0.6)
-    for place, size, text in zip(places, sizes, shown, strict=True):
-        panel.annotate(
-            text,
-            (place, size),
-            (0, 2),
-            textcoords="offset points",
-            ha="center",
-        )
-    panel.axhline(floor, color=FLOOR, linestyle="--", label="noise floor")
-    added = [names[0], *(f"+ {name}" for name in names[1:])]
-    panel.set_xticks(places, added)
-    panel.set_ylabel(f"rms residual ({unit_text(unit)})")
-    panel.set_ylim(0, 1.15 * max(*sizes, floor))
-    panel.grid(visible=False, axis="x")
+    widths = [0.0 if size is None else size for _, size in rows]
+    named = [
+        f"{name}\n" + ("unbounded" if size is None else f"{size:.3g} {unit_text(unit)}")
+        for name, size in rows
+    ]
+    about = f"rms residual, all hold-out records ({unit_text(unit)})"
+    bars(axes, named, widths, about, [BEFORE, *[AFTER] * (len(rows) - 1)])
+    panel: Any = axes[0]
+    panel.axvline(floor, color=FLOOR, linestyle="--", label=f"noise floor: {floor:.3g}")
+    panel.xaxis.set_major_locator(MaxNLocator(TICKS))
+    panel.set_xlim(0, 1.05 * max(*widths, floor))
     legend_above(panel.figure, panel.get_legend_handles_labels()[0])
 
 
@@ -142,67 +129,34 @@ def worst(tables: Sequence[HoldOut]) -> HoldOut | None:
 def glimpse(axes: Any, table: HoldOut, unit: str, after: str | None) -> None:
     """Draw a few periods of a record: measured, the simulator before and after."""
     (panel,) = axes
-    part = _window(table)
-    time = table.time_s[part]
-    behind: dict[str, Any] = {"color": GREY, "linewidth": 2.6, "label": "measured"}
-    panel.plot(time, table.measured[part], **behind)
-    panel.plot(time, table.before[part], "--", color=BEFORE, label="simulator")
-    if after is not None:
-        panel.plot(time, table.after[part], color=AFTER, label=after)
+    _outputs(panel, table, unit, "simulator", after)
     panel.xaxis.set_major_locator(MaxNLocator(TICKS))
-    panel.set_xlabel("time (s)")
-    panel.set_ylabel(f"output ({unit_text(unit)})")
-    lines = panel.get_legend_handles_labels()[0]
-    legend_above(panel.figure, lines)
-
-
-def sizes(
-    axes: Any,
-    rows: Sequence[tuple[str, float | None]],
-    floor: float,
-    unit: str,
-) -> None:
-    """Draw the gap before and after as bars, against the noise floor."""
-    (panel,) = axes
-    places = np.arange(len(rows))
-    # A model that runs away has no size: a word stands where its bar would.
-    widths = [0.0 if size is None else size for _, size in rows]
-    colors = [BEFORE, *[AFTER] * (len(rows) - 1)]
-    panel.barh(places, widths, color=colors, height=0.55)
-    panel.axvline(floor, color=FLOOR, linestyle="--", label=f"noise floor: {floor:.3g}")
-    shown = [
-        "unbounded" if x is None else f"{x:.3g} {unit_text(unit)}" for _, x in rows
-    ]
-    labels = [f"{name}\n{text}" for (name, _), text in zip(rows, shown, strict=True)]
-    panel.set_yticks(places, labels)
-    panel.set_ylim(max(len(rows), 2) - 0.5, -0.5)  # one bar is no thicker than two
-    panel.xaxis.set_major_locator(MaxNLocator(TICKS))
-    panel.set_xlim(0, 1.05 * max(*widths, floor))
-    panel.set_xlabel(f"rms residual, all hold-out records ({unit_text(unit)})")
-    panel.grid(visible=False, axis="y")
     legend_above(panel.figure, panel.get_legend_handles_labels()[0])
 
 
 def series(axes: Any, tables: Sequence[HoldOut], floor: float, unit: str) -> None:
     """Draw hold-out records: outputs, residuals and their spectra, a row each."""
     for (outputs, residuals, spectrum), table in zip(axes, tables, strict=True):
-        part = _window(table)
-        time = table.time_s[part]
-        outputs.plot(
-            time, table.measured[part], color=GREY, linewidth=2.6, label="measured"
-        )
-        for name, values, color, line in (
-            ("before", table.before, BEFORE, "--"),
-            ("after", table.after, AFTER, "-"),
-        ):
-            outputs.plot(time, values[part], line, color=color, label=name)
+        _outputs(outputs, table, unit, "before", "after")
         outputs.set_title(table.name)
-        outputs.set_xlabel("time (s)")
-        outputs.set_ylabel(f"output ({unit_text(unit)})")
         _residuals(residuals, table, slice(None), floor, unit)
         _spectrum(spectrum, table, floor, unit)
     lines = axes[0][0].get_legend_handles_labels()[0]
     legend_above(axes[0][0].figure, lines)
+
+
+def _outputs(
+    panel: Axes, table: HoldOut, unit: str, before: str, after: str | None
+) -> None:
+    part = _window(table)
+    time = table.time_s[part]
+    behind: dict[str, Any] = {"color": GREY, "linewidth": 2.6, "label": "measured"}
+    panel.plot(time, table.measured[part], **behind)
+    panel.plot(time, table.before[part], "--", color=BEFORE, label=before)
+    if after is not None:
+        panel.plot(time, table.after[part], color=AFTER, label=after)
+    panel.set_xlabel("time (s)")
+    panel.set_ylabel(f"output ({unit_text(unit)})")
 
 
 def residual(axes: Any, table: HoldOut, floor: float, unit: str) -> None:
@@ -234,15 +188,19 @@ def _residuals(
 
 
 def _spectrum(panel: Axes, table: HoldOut, floor: float, unit: str) -> None:
-    left = (table.measured - table.before, table.measured - table.after)
-    dt = float(table.time_s[-1] - table.time_s[0]) / (len(table.time_s) - 1)
-    found = spectra(*left, dt, floor)
-    for power, color, line in (
-        (found.before, BEFORE, "--"),
-        (found.after, AFTER, "-"),
+    from scipy.signal import welch  # late: it takes long to load
+
+    count = len(table.time_s)
+    dt = float(table.time_s[-1] - table.time_s[0]) / (count - 1)
+    about = {"fs": 1 / dt, "nperseg": min(count, max(16, count // 4)), "detrend": False}
+    for output, color, line in (
+        (table.before, BEFORE, "--"),
+        (table.after, AFTER, "-"),
     ):
-        panel.plot(found.frequency_hz[1:], np.sqrt(power[1:]), line, color=color)
-    panel.axhline(np.sqrt(found.floor), color=FLOOR, linestyle=":")
+        frequency, power = welch(table.measured - output, **about)
+        panel.plot(frequency[1:], np.sqrt(power[1:]), line, color=color)
+    # White noise of one rms has this density up to half the sampling frequency.
+    panel.axhline(floor * np.sqrt(2 * dt), color=FLOOR, linestyle=":")
     logarithmic(panel, "xy")
     panel.set_title("residual, noise floor dotted")
     panel.set_xlabel("frequency (Hz)")

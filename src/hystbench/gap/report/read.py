@@ -10,50 +10,12 @@ from typing import Any
 import numpy as np
 
 from hystbench.errors import InputError, nearest
-from hystbench.gap.schema import NAMES, NUMBER, OPTIONAL, SCHEMA
+from hystbench.gap.schema import SCHEMA
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray
 from hystbench.schema import check_against_schema
 
 COLUMNS = ("time_s", "measured", "before", "after")
-
-
-def _items(**properties: Any) -> dict[str, Any]:
-    each = {"type": "object", "required": list(properties), "properties": properties}
-    return {"type": "array", "items": each}
-
-
-WORD = {"type": "string"}
-#: What the page needs of the parts that the contract leaves open.
-OPEN_PARTS: dict[str, Any] = {
-    "properties": {
-        "records": _items(name=WORD, before=NUMBER, after=OPTIONAL),
-        "ladder": _items(name=WORD, rms=OPTIONAL),
-        "base_parameters": {"type": "object"},
-        "black_box": {
-            "properties": {
-                "explained_on_folds": OPTIONAL,
-                "after": OPTIONAL,
-                "records": _items(
-                    name=WORD,
-                    before=NUMBER,
-                    after=OPTIONAL,
-                    named=OPTIONAL,
-                    outside=NAMES,
-                ),
-                "outside": {
-                    "type": ["object", "null"],
-                    "required": ["before", "after", "named"],
-                    "properties": {
-                        "before": NUMBER,
-                        "after": OPTIONAL,
-                        "named": OPTIONAL,
-                    },
-                },
-            }
-        },
-    }
-}
 
 
 @dataclass(frozen=True, repr=False)
@@ -103,7 +65,6 @@ def read_content(folder: Path) -> Content:
     place = folder / "gap.json"
     gap = _json(place)
     check_against_schema(gap, SCHEMA, str(place))
-    check_against_schema(gap, OPEN_PARTS, str(place))
     order = [item["name"] for item in gap.get("records", [])]
     tables = sorted(
         (folder / "holdout").glob("*.csv"),

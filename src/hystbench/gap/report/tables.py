@@ -1,4 +1,4 @@
-"""The verdicts on several datasets side by side, for the documentation."""
+"""The verdicts on several datasets side by side: tables, sentences and pictures."""
 
 from __future__ import annotations
 
@@ -6,12 +6,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from matplotlib.figure import Figure
+
 from hystbench.blocks.parameter import SETTINGS
-from hystbench.files import write_csv
+from hystbench.errors import InputError
+from hystbench.figures import style
+from hystbench.files import write_csv, write_text
 from hystbench.gap.fitting.parameter_units import unit_at
+from hystbench.gap.report import diagram, pictures, words
+from hystbench.gap.report.page import with_optional
+from hystbench.gap.report.read import Content, read_content
 from hystbench.model import Model
 
-Content = Mapping[str, Any]
+Told = Mapping[str, Any]
+"""What gap.json holds."""
 
 COLUMNS = (
     "dataset",
@@ -47,12 +55,12 @@ EFFECT_COLUMNS = (
 ADDS_COLUMNS = ("block", "parameter", "value", "unit")
 
 
-def write_summary(contents: Sequence[Content], path: Path) -> None:
+def write_summary(contents: Sequence[Told], path: Path) -> None:
     """Write one row a dataset: the verdict, and RMS over its hold-out records."""
     write_csv(path, COLUMNS, [_row(content) for content in contents])
 
 
-def write_records(contents: Sequence[Content], path: Path) -> None:
+def write_records(contents: Sequence[Told], path: Path) -> None:
     """Write one row a hold-out record: RMS, and in what it is outside what was fitted.
 
     There a black box knows nothing, and effects that are the right ones still hold.
@@ -70,7 +78,7 @@ def write_records(contents: Sequence[Content], path: Path) -> None:
     write_csv(path, RECORD_COLUMNS, rows)
 
 
-def write_effects(contents: Sequence[Content], path: Path) -> None:
+def write_effects(contents: Sequence[Told], path: Path) -> None:
     """Write one row a parameter of each named effect."""
     rows = [row for content in contents for row in _effect_rows(content)]
     write_csv(path, EFFECT_COLUMNS, rows)
@@ -96,7 +104,7 @@ def write_adds(model: Model, path: Path) -> None:
     write_csv(path, ADDS_COLUMNS, rows)
 
 
-def _row(content: Content) -> list[str]:
+def _row(content: Told) -> list[str]:
     gap = content["gap"]
     return [
         content["dataset"],
@@ -116,7 +124,7 @@ def _row(content: Content) -> list[str]:
     ]
 
 
-def _effect_rows(content: Content) -> Iterator[list[str]]:
+def _effect_rows(content: Told) -> Iterator[list[str]]:
     for item in content["effects"]:
         shown = [
             content["dataset"],
@@ -154,3 +162,67 @@ def _rms(value: float | None) -> str:
 
 def _number(value: float) -> str:
     return f"{value:.4g}"
+
+
+FORMATS = ("svg", "png")
+
+
+def write_gallery(folder: str | Path) -> None:
+    """Write verdict.md and, as SVG and PNG, the pictures ``model`` and ``residual``.
+
+    They are made of gap.json, model.yaml and holdout/. ``model`` is the block diagram;
+    ``residual`` is what is left, before and after, of the hold-out record that the base
+    misses most.
+
+    Parameters
+    ----------
+    folder : str or Path
+        As the gap workflow left it.
+
+    Raises
+    ------
+    InputError
+        If one of these files is missing or cannot be read.
+    """
+    place = Path(folder)
+    content = read_content(place)
+    if content.model is None:
+        raise InputError(f"{place / 'model.yaml'}: no such file; expected a model file")
+    with style.in_style():
+        drawn = {
+            "model": diagram.figure_of(content.model, content.gap),
+            "residual": _residual(content, place),
+        }
+        for name, figure in drawn.items():
+            for suffix in FORMATS:
+                style.save(figure, place / f"{name}.{suffix}")
+    write_text(place / "verdict.md", words.verdict_text(with_optional(content.gap)))
+
+
+def write_sentences(contents: Sequence[Told], path: Path) -> None:
+    """Write one row a dataset: the verdict in a sentence.
+
+    Parameters
+    ----------
+    contents : sequence of mapping
+        What gap.json of each holds.
+    path : Path
+        CSV file.
+    """
+    rows = [
+        [content["dataset"], words.verdict_sentence(with_optional(content))]
+        for content in contents
+    ]
+    write_csv(path, ("dataset", "verdict in a sentence"), rows)
+
+
+def _residual(content: Content, place: Path) -> Figure:
+    table = pictures.worst(content.hold_out)
+    if table is None:
+        raise InputError(f"{place / 'holdout'}: no tables; expected one a record")
+    figure = Figure(figsize=(style.PAGE, 2.3))
+    gap = content.gap
+    pictures.residual(
+        figure.subplots(1, 2), table, gap["gap"]["noise_floor"], gap["unit"]
+    )
+    return figure

@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from hystbench.device_kinds import behaviour_of
 from hystbench.figures.style import unit_text
-from hystbench.gap.behaviour import in_words
+from hystbench.gap.vocabulary import in_words
 
 #: A narrow space that does not break.
 NARROW = "\u202f"
