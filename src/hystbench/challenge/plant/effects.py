@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from hystbench.challenge.plant import drive, material, mechanics, sensor, unlisted
-from hystbench.challenge.plant.kind import Kind
+from hystbench.challenge.plant.kind import Kind, read_kinds
 
-VOCABULARY: dict[str, Kind] = {
-    kind.name: kind
-    for kind in (*drive.KINDS, *material.KINDS, *mechanics.KINDS, *sensor.KINDS)
-}
-UNLISTED: dict[str, Kind] = {kind.name: kind for kind in unlisted.KINDS}
-KINDS: dict[str, Kind] = VOCABULARY | UNLISTED
+KINDS: dict[str, Kind] = read_kinds("actuator_effects.yaml")
+VOCABULARY = {name: kind for name, kind in KINDS.items() if kind.use == "vocabulary"}
+UNLISTED = {name: kind for name, kind in KINDS.items() if kind.use != "vocabulary"}
 
 #: One effect or the other, never both: the data could not tell which is there, or one
 #: takes the place of the other.
