@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from hystbench.challenge.plant import drive, material, mechanics, sensor, unlisted
 from hystbench.challenge.plant.kind import Kind, read_kinds
 
-KINDS: dict[str, Kind] = read_kinds("actuator_effects.yaml")
+KINDS: dict[str, Kind] = read_kinds(
+    "actuator_effects.yaml", drive, material, mechanics, sensor, unlisted
+)
 VOCABULARY = {name: kind for name, kind in KINDS.items() if kind.use == "vocabulary"}
 UNLISTED = {name: kind for name, kind in KINDS.items() if kind.use != "vocabulary"}
 

@@ -5,6 +5,8 @@ The effects and their forces stand in ``machine_effects.yaml``.
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 
 from hystbench.challenge.plant.kind import Parameters, Reach, read_kinds
@@ -29,7 +31,7 @@ def bent(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     return np.asarray(y * (1.0 + p["quadratic"] * z + p["cubic"] * z**2))
 
 
-EFFECTS = read_kinds("machine_effects.yaml")
+EFFECTS = read_kinds("machine_effects.yaml", sys.modules[__name__])
 MACHINES = ("mass-spring", "free-mass", "pendulum", "impedance", "tank")
 
 

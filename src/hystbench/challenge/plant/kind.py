@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from pkgutil import resolve_name
+from types import ModuleType
 from typing import Any, Literal
 
 import numpy as np
@@ -287,25 +287,35 @@ def draw(
     return Effect(kind, form, values)
 
 
-def read_kinds(table: str) -> dict[str, Kind]:
+def read_kinds(table: str, *modules: ModuleType) -> dict[str, Kind]:
     """Read effects from a table beside this module, by name and in its order.
 
-    A form names the functions of this package that it calls (``act``, ``curve``,
+    A form names the functions of these modules that it calls (``act``, ``curve``,
     ``told``); ``also`` are words that are told beside its parameters, and ``numbers``
     products such as ``share * machine.stiffness / machine.position^2``, whose factors
     are its parameters and those of :class:`Reach`.
     """
     kinds = load_yaml(Path(__file__).with_name(table))
-    return {name: _kind(name, **about) for name, about in kinds.items()}
+    known = {
+        f"{module.__name__.rpartition('.')[2]}.{key}": item
+        for module in modules
+        for key, item in vars(module).items()
+    }
+    return {name: _kind(known, name, **about) for name, about in kinds.items()}
 
 
-def _kind(name: str, forms: Mapping[str, Any], **about: Any) -> Kind:
+def _kind(
+    known: Mapping[str, Any], name: str, forms: Mapping[str, Any], **about: Any
+) -> Kind:
     lists = {key: tuple(about.pop(key, ())) for key in ("views", "families")}
-    about |= lists | {"forms": {form: _form(**said) for form, said in forms.items()}}
+    about |= lists | {
+        "forms": {form: _form(known, **said) for form, said in forms.items()}
+    }
     return Kind(name, **about)
 
 
 def _form(
+    known: Mapping[str, Any],
     ranges: Mapping[str, Any] = {},
     numbers: Mapping[str, str] | None = None,
     also: Mapping[str, str] | None = None,
@@ -313,7 +323,7 @@ def _form(
 ) -> Form:
     for key in ("act", "curve", "told"):
         if key in about:
-            about[key] = resolve_name(f"{__package__}.{about[key]}")
+            about[key] = known[about[key]]
     if numbers:
         about["numbers"] = partial(_numbers, numbers)
     if also:
