@@ -40,9 +40,6 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
 
     name: ClassVar = "gpi"
     place: ClassVar[Place] = "base"
-    reference: ClassVar = (
-        "Al Janaideh, Rakheja, Su, IEEE/ASME Trans. Mechatronics 16 (2011) 734-744"
-    )
 
     envelope: tuple[float, ...] = numbers(
         "-, 1/U, -, -",
@@ -100,12 +97,9 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Give Eq. 9."""
-        constants = {
-            "envelope": np.array(self.envelope),
-            "count": len(self.weights),
-            "thresholds": np.array(self.thresholds),
-            "weights": np.array(self.weights),
-        }
+        count = {"count": len(self.weights)}
+        plays = self.constants("thresholds", "weights")
+        constants = self.constants("envelope") | count | plays
         past = PASSED if self.start == "settled" else ""
         states = {"w": len(self.weights)}
         return Step("gpi", constants, states, grows=True, past=past)

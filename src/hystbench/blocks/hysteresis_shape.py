@@ -33,7 +33,6 @@ class HysteresisShape(WrappingBlock):
 
     name: ClassVar = "hysteresis-shape"
     place: ClassVar = "material"
-    reference: ClassVar = "Kuhnen, European Journal of Control 9 (2003) 407-418"
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
     weights: tuple[float, ...] = numbers(

@@ -36,9 +36,6 @@ class PrandtlIshlinskii(HystereticBlock):
 
     name: ClassVar = "prandtl-ishlinskii"
     place: ClassVar[Place] = "material"
-    reference: ClassVar = (
-        "Brokate, Sprekels, Hysteresis and Phase Transitions, 1996, Section 2.4"
-    )
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
     weights: tuple[float, ...] = numbers(
