@@ -6,7 +6,7 @@ from hystbench.challenge.plant import drive, material, mechanics, sensor, unlist
 from hystbench.challenge.plant.kind import Kind, read_kinds
 
 KINDS: dict[str, Kind] = read_kinds(
-    "actuator_effects.yaml", drive, material, mechanics, sensor, unlisted
+    "effects.yaml", drive, material, mechanics, sensor, unlisted
 )
 VOCABULARY = {name: kind for name, kind in KINDS.items() if kind.use == "vocabulary"}
 UNLISTED = {name: kind for name, kind in KINDS.items() if kind.use != "vocabulary"}

@@ -1,6 +1,6 @@
 """What can be hidden in a machine: forces inside, and curves before and behind it.
 
-The effects and their forces stand in ``machine_effects.yaml``.
+The effects and their forces stand in ``inside.yaml``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def bent(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     return np.asarray(y * (1.0 + p["quadratic"] * z + p["cubic"] * z**2))
 
 
-EFFECTS = read_kinds("machine_effects.yaml", sys.modules[__name__])
+EFFECTS = read_kinds("inside.yaml", sys.modules[__name__])
 MACHINES = ("mass-spring", "free-mass", "pendulum", "impedance", "tank")
 
 
