@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -108,14 +109,25 @@ class Envelope:
         InputError
             If a name is missing or unknown.
         """
-        known = [field.name for field in fields(cls)]
-        for name in parameters:
-            if name not in known:
-                raise InputError(f"envelope.{name}: unknown; {nearest(name, known)}")
-        for name in known:
-            if name not in parameters:
-                raise InputError(f"envelope.{name}: missing")
-        return cls(**{name: float(parameters[name]) for name in known})
+        check_names(cls, parameters, "envelope")
+        return cls(**{name: float(value) for name, value in parameters.items()})
+
+
+def check_names(model: type, parameters: Mapping[str, Any], place: str) -> None:
+    """Refuse parameters that a dataclass has not, or one that it lacks.
+
+    Raises
+    ------
+    InputError
+        If a name is missing or unknown.
+    """
+    known = [field.name for field in fields(model)]
+    for name in parameters:
+        if name not in known:
+            raise InputError(f"{place}.{name}: unknown; {nearest(name, known)}")
+    for field in fields(model):
+        if field.default is MISSING and field.name not in parameters:
+            raise InputError(f"{place}.{field.name}: missing")
 
 
 PUBLISHED_ENVELOPE = Envelope(
