@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Place
-from hystbench.blocks.parameter import HUGE, choice, numbers
+from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
@@ -51,9 +51,7 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     thresholds: tuple[float, ...] = numbers(
         "-", "r_i, in the unit of the envelope functions", 0.0, HUGE
     )
-    weights: tuple[float, ...] = numbers(
-        "Y", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
-    )
+    weights: tuple[float, ...] = a_threshold("Y", "w_i", optional=False)
     start: str = choice("operators before the first sample", STARTS, "rest")
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
