@@ -31,23 +31,10 @@ def bent(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     return np.asarray(y * (1.0 + p["quadratic"] * z + p["cubic"] * z**2))
 
 
-EFFECTS = read_kinds("inside.yaml", sys.modules[__name__])
+EFFECTS, APART = read_kinds("inside.yaml", sys.modules[__name__])
 MACHINES = ("mass-spring", "free-mass", "pendulum", "impedance", "tank")
 
 
 def hidden_in(family: str) -> tuple[str, ...]:
     """Give the names of what can be hidden in a family of machines."""
     return tuple(name for name, kind in EFFECTS.items() if family in kind.families)
-
-
-#: One or the other, never both: records tell hardly which is there.
-APART = (
-    {"friction", "hysteretic-force"},
-    {"friction", "slider-with-gap"},
-    {"hysteretic-force", "slider-with-gap"},
-    {"stop", "slider-with-gap"},
-    {"stop", "stiffness-hardening"},
-    {"dead-zone", "friction"},
-    {"dead-zone", "drive-saturation"},
-    {"sensor-nonlinearity", "stiffness-hardening"},
-)

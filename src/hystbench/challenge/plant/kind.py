@@ -287,8 +287,12 @@ def draw(
     return Effect(kind, form, values)
 
 
-def read_kinds(table: str, *modules: ModuleType) -> dict[str, Kind]:
+def read_kinds(
+    table: str, *modules: ModuleType
+) -> tuple[dict[str, Kind], list[set[str]]]:
     """Read effects from a table beside this module, by name and in its order.
+
+    Beside them stand pairs of effects that are never hidden together.
 
     A form names the functions of these modules that it calls (``act``, ``curve``,
     ``told``); ``also`` are words that are told beside its parameters, and ``numbers``
@@ -296,12 +300,13 @@ def read_kinds(table: str, *modules: ModuleType) -> dict[str, Kind]:
     are its parameters and those of :class:`Reach`.
     """
     kinds = load_yaml(Path(__file__).with_name(table))
+    apart = [set(pair) for pair in kinds.pop("apart")]
     known = {
         f"{module.__name__.rpartition('.')[2]}.{key}": item
         for module in modules
         for key, item in vars(module).items()
     }
-    return {name: _kind(known, name, **about) for name, about in kinds.items()}
+    return {name: _kind(known, name, **about) for name, about in kinds.items()}, apart
 
 
 def _kind(
