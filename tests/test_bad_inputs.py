@@ -10,10 +10,12 @@ import sys
 
 import numpy as np
 import pytest
+import yaml
 
 from hystbench import cli
 from hystbench.dataset import load_dataset
 from hystbench.gap import run as gap_run
+from tests.conftest import ROOT
 
 COUNT = 600
 DT = 0.001
@@ -204,10 +206,6 @@ LOAD = ("load", "data", "one", "--out", "out")
 SIMULATE = ("simulate", "model.yaml", "data/one.csv", "--out", "out")
 
 
-def base(word):
-    return (*CHECK[:-1], word)
-
-
 # Laughs: nine levels of nine aliases each are 400 million items.
 LAUGHS = "a: &a [x, x]\n" + "".join(
     f"{b}: &{b} [{', '.join([f'*{a}'] * 9)}]\n"
@@ -255,238 +253,27 @@ BAD_RECORDS = {
     "too short to fit": (lines(lambda x: x[:9]), [FILE, "8 samples"]),
 }  # fmt: skip
 
-BAD_DATASETS = {
-    "a list": (written("data/dataset.yaml", "- a\n- b\n"), [YAML, "expected"]),
-    "nothing": (written("data/dataset.yaml", ""), [YAML, "expected a dataset.yaml"]),
-    "two documents": (about(("records", "---\nrecords")), [YAML, "line 5", "document"]),
-    "a tab": (about(("  - {file: one", "\t- {file: one")), [YAML, "line 6", "a tab"]),
-    "no end": (about(("unit: s}", "unit: s")), [YAML, "line"]),
-    "UTF-16": (recoded("data/dataset.yaml", "utf-16"), [YAML, "UTF-16"]),
-    "a key twice": (
-        about(("name: rig", "name: rig\nname: rig2")),
-        [YAML, "line 2", "'name'", "line 1 already", "once"],
-    ),
-    "a key twice inside": (
-        about(("unit: um", "unit: um, unit: mm")),
-        [YAML, "line 4", "'unit'", "once"],
-    ),
+CASES = yaml.safe_load((ROOT / "tests" / "bad_inputs.yaml").read_text())
+CHANGES = {"about": about, "model": model, "written": written, "recoded": recoded}
+
+
+def cases(table):
+    """Give what changes a file, and the words of the refusal, by the case's name."""
+    found = {}
+    for name, case in CASES[table].items():
+        says = case.pop("says")
+        ((how, given),) = case.items()
+        found[name] = CHANGES[how](*given), says
+    return found
+
+
+BAD_DATASETS, BAD_MODELS = cases("datasets"), cases("models")
+BAD_DATASETS |= {
     "laughs": (about(("name: rig", LAUGHS)), [YAML, "aliases", "100,000"]),
-    "anchors in a circle": (
-        about(("name: rig", "name: &a [*a]")),
-        [YAML, "line 1", "'*a' inside of what it names"],
-    ),
     "depth": (about(("name: rig", DEEP)), [YAML, "line 1", "50 levels"]),
-    "a tag": (
-        about(("name: rig", "name: !!python/object/apply:os.system ['touch pwned']")),
-        [YAML, "line 1", "a tag", "expected plain text"],
-    ),
-    "a key that is a list": (about(("name: rig", "[a]: rig")), [YAML, "line 1", "key"]),
-    "a date that is none": (about(("name: rig", "name: 2024-13-45")), [YAML, "month"]),
-    "a misspelt key": (
-        about(("records", "recrods")),
-        [YAML, "did you mean 'records'?"],
-    ),
-    "a misspelt role": (
-        about(("hold-out", "holdout")),
-        [YAML, "records: 2: use", "did you mean 'hold-out'?"],
-    ),
-    "a number for a name": (
-        about(("name: rig", "name: 12")),
-        [YAML, "name: 12", "word"],
-    ),
-    "a record twice": (
-        about(("file: two.csv", "file: one.csv")),
-        [YAML, "'one.csv'", "twice"],
-    ),
-    "two records of one name": (
-        about(("file: two.csv", "file: sub/one.csv")),
-        [YAML, "'sub/one.csv'", "both named 'one'"],
-    ),
-    "a file that is not there": (
-        about(("file: two.csv", "file: tow.csv")),
-        [YAML, "no file 'tow.csv'", "did you mean 'two.csv'?"],
-    ),
-    "a path out of the folder": (
-        about(("file: two.csv", "file: ../two.csv")),
-        [YAML, "no file '../two.csv'", "expected a CSV file", "has none"],
-    ),
-    "a folder that is not there": (
-        about(("file: two.csv", "file: sub/two.csv")),
-        [YAML, "no file 'sub/two.csv'", "no folder 'data/sub'"],
-    ),
-    "a file without a name": (about(("file: two.csv", "file: ..")), [YAML, "'..'"]),
-    "a name with braces": (
-        about(("file: two.csv", "file: '{two}.csv'")),
-        [YAML, "{two}.csv", "a name that begins with a letter or digit"],
-    ),
-    "a number for a file": (about(("file: two.csv", "file: 2")), [YAML, "1: file: 2"]),
-    "no record": (
-        about(("records:\n", "records: []\nx:\n")),
-        [YAML, "unknown key 'x'"],
-    ),
-    "none held out": (about(("hold-out", "fit")), [YAML, "none has 'use: hold-out'"]),
-    "all held out": (
-        about(*2 * [("use: fit", "use: hold-out")]),
-        [YAML, "at least one with 'use: fit'"],
-    ),
-    "two columns of time": (
-        about(("column: current_A", "column: time_s")),
-        [YAML, "'time_s' is named twice"],
-    ),
-    "a unit that is none": (
-        about(("unit: A", "unit: Ampere")),
-        [YAML, "input: unit: 'Ampere'", "did you mean 'ampere'?", "'-'"],
-    ),
-    "a unit of other letters": (
-        about(("unit: um", "unit: UM")),
-        [YAML, "output: unit", "did you mean 'um'?"],
-    ),
-    "a unit that would be worked out for ever": (
-        about(("unit: um", "unit: m**9**9**9")),
-        [YAML, "'m**9**9**9' is no unit"],
-    ),
-    "a unit with a factor": (about(("unit: um", "unit: 0.1 mm")), [YAML, "'0.1 mm'"]),
-    "a time in volts": (about(("unit: s", "unit: V")), [YAML, "'V' is no time"]),
-    "a period of one sample": (
-        about(("file: one.csv", "file: one.csv, period_samples: 1")),
-        [YAML, "period_samples: 1", "2 or more"],
-    ),
-    "a period that is longer than half of the record": (
-        about(("file: one.csv", "file: one.csv, period_samples: 100000000")),
-        [YAML, "period_samples", "at most 300"],
-    ),
-    "a period that is none": (
-        about(("file: one.csv", "file: one.csv, period_samples: 123")),
-        [YAML, "one.csv", "differs from one period to the next"],
-    ),
-    "noise below nothing": (
-        about(("records:", "noise_rms: -1\nrecords:")),
-        [YAML, "noise_rms: -1", "above 0"],
-    ),
-    "noise that is not a number": (
-        about(("records:", "noise_rms: .nan\nrecords:")),
-        [YAML, "noise_rms: nan", "a finite number"],
-    ),
-    "a hold that is none": (
-        about(("unit: A", "unit: A, hold: zoh")),
-        [YAML, "input: hold: 'zoh' is unknown", "zero-order"],
-    ),
-    "an identification that is held out": (
-        about(("records:", "identification: three\nrecords:")),
-        [YAML, "'three' is held out"],
-    ),
-    "what is meant and is none": (
-        about(("file: one.csv", "file: one.csv, meant: [copies]")),
-        [YAML, "did you mean 'copy'?"],
-    ),
 }
-
-BAD_MODELS = {
-    "a list": (written("model.yaml", "- a\n"), ["model.yaml", "a mapping of keys"]),
-    "nothing": (written("model.yaml", ""), ["model.yaml", "a mapping of keys"]),
-    "a key twice": (
-        model(("name: simulator", "name: a\nname: b")),
-        ["model.yaml", "line 2", "'name'"],
-    ),
-    "a missing key": (model(("name: simulator\n", "")), ["missing key 'name'"]),
-    "no blocks": (model(("chain:\n  - gain: {value: 12.0}", "chain: []")), [
-        "model.yaml", "chain", "at least one block"]),
-    "a chain that is a block": (model(("  - gain: {value: 12.0}", "  gain: 12")), [
-        "model.yaml", "a list of blocks"]),
-    "a misspelt block": (model(("gain", "gian")), [
-        "model.yaml", "block 1", "unknown block 'gian'; did you mean 'gain'?"]),
-    "a misspelt block as a word": (model(("gain: {value: 12.0}", "gian")), [
-        "model.yaml", "block 1", "did you mean 'gain'?"]),
-    "parameters beside the block": (
-        model(("gain: {value: 12.0}", "gain:\n    value: 12.0")),
-        ["model.yaml", "block 1", "2 keys (gain, value)", "deeper than its name"],
-    ),
-    "a block that is a number": (model(("gain: {value: 12.0}", "12")), [
-        "model.yaml", "block 1", "one block and its parameters"]),
-    "a misspelt parameter": (model(("value", "valeu")), ["did you mean 'value'?"]),
-    "a parameter that is a word": (model(("12.0", "much")), [
-        "block 1 (gain)", "value: expected a number, got 'much'"]),
-    "a parameter that is not a number": (model(("12.0", ".nan")), ["a finite number"]),
-    "a parameter out of bounds": (
-        model(("gain: {value: 12.0}", "drive-lag: {time_constant_s: -1}")),
-        ["block 1 (drive-lag)", "time_constant_s: -1 is out of bounds"],
-    ),
-    "a unit that is none": (model(("unit: A", "unit: Amps")), [
-        "model.yaml", "input: unit: 'Amps'", "did you mean 'amp'?"]),
-    "another unit": (model(("unit: um", "unit: mm")), [
-        "model.yaml", "'mm'", "'um'", "multiply"]),
-    "a free parameter that is none": (
-        model(("chain:", "free: [gain.valeu]\nchain:")),
-        ["model.yaml", "free", "did you mean 'gain.value'?"],
-    ),
-    "a wrapper that has nothing to wrap": (
-        model(("gain: {value", "hysteresis-shape: {thresholds: [1], weights: [1]} #")),
-        ["model.yaml", "block 1", "expected hysteresis just before it"],
-    ),
-}  # fmt: skip
-
 BAD_WORDS = {
-    "no command": (("gaap",), ["no command 'gaap'", "did you mean 'gap'?"]),
-    "no option": (
-        (*GAP, "--limit-hihg", "3"),
-        ["gap", "'--limit-hihg'", "--limit-high"],
-    ),
-    "no data": (("gap",), ["gap", "Missing argument 'DATASET'"]),
-    "no model": (("gap", "data", "--out", "out"), ["Missing option '--model'"]),
-    "a limit that is a word": ((*GAP, "--limit-low", "low"), ["--limit-low", "'low'"]),
-    "limits the wrong way round": (
-        (*GAP, "--limit-low", "1", "--limit-high", "-1"),
-        ["--limit-low 1", "--limit-high -1", "lower one first"],
-    ),
-    "a limit that is not a number": ((*GAP, "--limit-rate", "nan"), ["rate", "nan"]),
-    "a limit that is infinite": ((*GAP, "--limit-high", "inf"), ["high", "inf"]),
-    "a rate below nothing": ((*GAP, "--limit-rate", "-5"), ["rate", "-5"]),
-    "no such dataset": (("gap", "date", *GAP[2:]), ["date", "no such file"]),
-    "a record for a dataset": (
-        ("gap", "data/one.csv", *GAP[2:]),
-        [
-            "data/one.csv",
-            "expected a dataset.yaml",
-            "did you mean 'data/dataset.yaml'?",
-        ],
-    ),
-    "a folder without a dataset": (("gap", ".", *GAP[2:]), ["dataset.yaml"]),
-    "no such model": (base("modle.yaml"), ["modle.yaml", "did you mean 'model.yaml'?"]),
-    "a folder for a model": (base("data"), ["'data' is a folder", "a model file"]),
-    "a record for a model": (base("data/one.csv"), ["one.csv", "a mapping of keys"]),
-    "a dataset for a model": (base("data/dataset.yaml"), ["unknown key 'time'"]),
-    "a misspelt word": (base("liner"), ["did you mean 'linear'?"]),
-    "a column that is not there": (base("column"), ["no simulated output"]),
-    "a file of Python": (base("bad_fn.py"), ["package.module:function", "'bad_fn:"]),
-    "a function of a file": (base("bad_fn.py:nan"), ["here 'bad_fn:nan'"]),
-    "a module that is not there": (base("bad_fm:nan"), ["cannot import 'bad_fm'"]),
-    "a function that is not there": (base("bad_fn:nam"), ["did you mean 'nan'?"]),
-    "a function that is a number": (base("bad_fn:number"), ["expected a function"]),
-    "a function that raises": (
-        base("bad_fn:raises"),
-        ["raised KeyError", "600 samples"],
-    ),
-    "a function that leaves": (base("bad_fn:leaves"), ["raised SystemExit"]),
-    "a function of one argument": (base("bad_fn:one"), ["raised TypeError"]),
-    "a function that gives too few": (base("bad_fn:short"), ["shape (599,)", "(600,)"]),
-    "a function that gives no numbers": (base("bad_fn:nan"), ["nan at sample 0"]),
-    "a function that gives nothing": (base("bad_fn:nothing"), ["bad_fn:nothing"]),
-    "a function of complex numbers": (base("bad_fn:complex"), ["complex"]),
-    "a function that throws dice": (base("bad_fn:random"), ["the same one every time"]),
-    "no such record": (("load", "data", "oen", *LOAD[3:]), ["did you mean 'one'?"]),
-    "a record that is a model": (
-        ("simulate", "model.yaml", "model.yaml", "--out", "out"),
-        ["model.yaml", "no column 'time_s'"],
-    ),
-    "a hold that is none": ((*SIMULATE, "--hold", "zoh"), ["--hold", "zero-order"]),
-    "a model in the place of a record": (
-        ("simulate", "data/one.csv", "model.yaml", "--out", "out"),
-        ["one.csv", "a mapping of keys"],
-    ),
-    "an archive that is none": (
-        ("simulate", "model.yaml", "no.npz", "--out", "out"),
-        ["no.npz"],
-    ),
+    name: (case["arguments"], case["says"]) for name, case in CASES["words"].items()
 }
 
 

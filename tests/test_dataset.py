@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.dataset import load_dataset
-from hystbench.dataset_schema import SCHEMA
+from hystbench.dataset import load_dataset, schema
 from hystbench.record import load_record
 from tests.conftest import csv_text
 from tests.messages import message
@@ -187,7 +186,7 @@ def test_the_tutorial_names_every_key(root):
     text = (root / "docs" / "tutorial.md").read_text(encoding="utf-8")
     section = text.partition("## 2. A dataset.yaml")[2].partition("\n## ")[0]
     words = set(re.findall(r"\w+", section))
-    assert len(found := set(keys_of(SCHEMA))) > 10
+    assert len(found := set(keys_of(schema()))) > 10
     assert found <= words
 
 

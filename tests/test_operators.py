@@ -69,23 +69,6 @@ def test_published_envelope_is_the_papers():
     assert right == pytest.approx(0.3223 * np.tanh(1.2233 * u + 0.1104) - 0.0248)
 
 
-def test_published_envelopes_cross_where_the_facts_say():
-    low, high = PUBLISHED_ENVELOPE.crossings(-0.632, 0.632)
-    assert low == pytest.approx(0.384, abs=5e-4)
-    assert high == pytest.approx(0.439, abs=5e-4)
-    assert PUBLISHED_ENVELOPE.gap(-0.632, 0.632).min() == pytest.approx(
-        -9.3e-5, rel=0.01
-    )
-    assert not PUBLISHED_ENVELOPE.ordered(-0.632, 0.632)
-    assert PUBLISHED_ENVELOPE.ordered(-0.632, 0.38)
-
-
-def test_a_crossing_is_found_to_the_last_bits():
-    # tanh(v) and 0.5 tanh(v) + 0.25 meet where tanh(v) = 0.5
-    envelope = Envelope(1, 1, 0, 0, 0.5, 1, 0, 0.25)
-    assert envelope.crossings(-1, 1) == pytest.approx([np.arctanh(0.5)], rel=1e-15)
-
-
 def test_envelope_goes_to_a_dictionary_and_back():
     assert Envelope.from_dict(PUBLISHED_ENVELOPE.to_dict()) == PUBLISHED_ENVELOPE
 

@@ -6,16 +6,16 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from hystbench.dataset_schema import SCHEMA
-from hystbench.device_kinds import DeviceKind
+from hystbench.device_kinds import KINDS, DeviceKind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
-from hystbench.quantities import Quantities, Quantity, quantity_of
+from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
 from hystbench.reading import (
     UNIFORM_TOLERANCE,
     check_moves,
@@ -214,6 +214,17 @@ def load_dataset(path: str | Path) -> Dataset:
     return dataset_of(file, about)
 
 
+@cache
+def schema() -> dict[str, Any]:
+    """Give what a dataset.yaml may say, as a JSON Schema."""
+    found: dict[str, Any] = load_yaml(Path(__file__).with_suffix(".yaml"))
+    own = found["properties"]
+    for channel in ("input", "output"):
+        own[channel]["properties"]["quantity"]["enum"] = list(QUANTITIES)
+    own["device"]["properties"]["kind"]["enum"] = list(KINDS)
+    return found
+
+
 def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
     """Check what a dataset.yaml says, read or about to be written.
 
@@ -229,7 +240,7 @@ def dataset_of(file: Path, about: dict[str, Any]) -> Dataset:
     InputError
         If a key or a record's file is missing or wrong.
     """
-    check_against_schema(about, SCHEMA, str(file))
+    check_against_schema(about, schema(), str(file))
     dataset = Dataset(file, about["name"], about)
     files = dataset.record_files
     _check_files(file, about["records"])

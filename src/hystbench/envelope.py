@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -64,37 +65,6 @@ class Envelope:
         """Right envelope, Eq. 6, at each input."""
         return _curve(self.a4, self.a5, self.a6, self.a7, v)
 
-    def gap(self, low: float, high: float, points: int = 2001) -> FloatArray:
-        """Left minus right envelope on an even grid from ``low`` to ``high``.
-
-        Where it is negative the envelopes have crossed, and Eqs. 4 and 12 part.
-        """
-        v = np.linspace(low, high, points)
-        return self.left(v) - self.right(v)
-
-    def ordered(self, low: float, high: float, points: int = 2001) -> bool:
-        """Tell whether the left envelope lies above the right one on a range."""
-        return bool((self.gap(low, high, points) > 0).all())
-
-    def crossings(self, low: float, high: float, points: int = 2001) -> list[float]:
-        """Inputs between ``low`` and ``high`` where the envelopes cross.
-
-        Found by the changes of sign on an even grid, then by bisection to the
-        last bit; two crossings within one step of the grid go unseen.
-        """
-        v = np.linspace(low, high, points)
-        above = self.gap(low, high, points) > 0
-        found = []
-        for place in np.flatnonzero(above[1:] != above[:-1]):
-            start, stop = float(v[place]), float(v[place + 1])
-            while start < (middle := 0.5 * (start + stop)) < stop:
-                if (self.left(middle) > self.right(middle)) == above[place]:
-                    start = middle
-                else:
-                    stop = middle
-            found.append(start)
-        return found
-
     def to_dict(self) -> dict[str, float]:
         """Give the eight parameters by name."""
         return asdict(self)
@@ -108,14 +78,25 @@ class Envelope:
         InputError
             If a name is missing or unknown.
         """
-        known = [field.name for field in fields(cls)]
-        for name in parameters:
-            if name not in known:
-                raise InputError(f"envelope.{name}: unknown; {nearest(name, known)}")
-        for name in known:
-            if name not in parameters:
-                raise InputError(f"envelope.{name}: missing")
-        return cls(**{name: float(parameters[name]) for name in known})
+        check_names(cls, parameters, "envelope")
+        return cls(**{name: float(value) for name, value in parameters.items()})
+
+
+def check_names(model: type, parameters: Mapping[str, Any], place: str) -> None:
+    """Refuse parameters that a dataclass has not, or one that it lacks.
+
+    Raises
+    ------
+    InputError
+        If a name is missing or unknown.
+    """
+    known = [field.name for field in fields(model)]
+    for name in parameters:
+        if name not in known:
+            raise InputError(f"{place}.{name}: unknown; {nearest(name, known)}")
+    for field in fields(model):
+        if field.default is MISSING and field.name not in parameters:
+            raise InputError(f"{place}.{field.name}: missing")
 
 
 PUBLISHED_ENVELOPE = Envelope(

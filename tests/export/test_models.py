@@ -137,7 +137,7 @@ def test_the_python_module_stands_alone(augmented, tmp_path):
         for line in file.read_text().splitlines()
         if line.startswith(("import ", "from "))
     }
-    assert imported == {"math", "numpy"}
+    assert imported == {"math", "numpy", "types"}  # besides Python only NumPy
 
 
 @needs_compiler

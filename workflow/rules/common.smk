@@ -132,8 +132,9 @@ def code(*modules):
     for name in sorted(names):
         path = PACKAGE.joinpath(*name.split(".")[1:])
         files.append(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
-    if "hystbench.compare.claims" in names:
-        files.extend(sorted(PACKAGE.glob("compare/claims/*.yaml")))
+        # A table of a module, or of a package, stands in it under its name.
+        table = path / path.name if path.is_dir() else path
+        files.extend(filter(Path.is_file, [table.with_suffix(".yaml")]))
     if "hystbench.compare.verdict" in names:
         files.extend(sorted(PACKAGE.glob("compare/*.j2")))
     if "hystbench.kernels" in names:

@@ -26,7 +26,6 @@ class Backlash(Block):
 
     name: ClassVar = "backlash"
     place: ClassVar = "mechanics"
-    reference: ClassVar = "Krasnosel'skii, Pokrovskii, Systems with Hysteresis, 1989"
 
     half_width: float = number("Y", "half of the gap", 0.0, HUGE)
 
@@ -37,5 +36,5 @@ class Backlash(Block):
 
     def step(self, sampling: Sampling) -> Step:
         """Give the play operator that starts at its first sample."""
-        constants = {"half_width": self.half_width}
-        return Step("backlash", constants, {"started": 1, "w": 1})
+        states = {"started": 1, "w": 1}
+        return Step("backlash", self.constants("half_width"), states)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from hystbench.blocks.parameter import Parameter
-from hystbench.blocks.step import Sampling, Step
+from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.errors import InputError, nearest
 from hystbench.record import FloatArray
 
@@ -22,13 +22,12 @@ class Block(ABC):
     """One physical effect in the chain from input u to output y.
 
     A subclass is a frozen dataclass. Its fields are declared with
-    :func:`~hystbench.blocks.parameter.number` and its kin; it sets ``name``,
-    ``place`` and ``reference`` and says in its docstring what it computes.
+    :func:`~hystbench.blocks.parameter.number` and its kin; it sets ``name``
+    and ``place``, and says in its docstring what it computes and after whom.
     """
 
     name: ClassVar[str]
     place: ClassVar[Place]
-    reference: ClassVar[str]
     hysteretic: ClassVar[bool] = False
     """Whether a block that wraps hysteresis may follow."""
     reruns: ClassVar[bool] = True
@@ -110,6 +109,14 @@ class Block(ABC):
         """
         raise InputError(f"{self.name}: {self.no_step}")
 
+    def constants(self, *names: str) -> dict[str, Any]:
+        """Give parameters as constants of a step, a sequence as an array."""
+        values = {name: getattr(self, name) for name in names}
+        return {
+            name: np.array(value) if isinstance(value, tuple) else value
+            for name, value in values.items()
+        }
+
     @abstractmethod
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the block's output.
@@ -127,6 +134,27 @@ class Block(ABC):
         -------
         ndarray, shape (n,)
         """
+
+
+class PolynomialBlock(Block):
+    """A block whose output is a polynomial of what enters it."""
+
+    @property
+    @abstractmethod
+    def coefficients(self) -> tuple[float, ...]:
+        """Those of the polynomial, the constant first."""
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the polynomial by Horner's scheme."""
+        *lower, highest = self.coefficients
+        y: FloatArray = np.full(len(z), highest)
+        for coefficient in reversed(lower):
+            y = y * z + coefficient
+        return y
+
+    def step(self, sampling: Sampling) -> Step:
+        """Give the polynomial."""
+        return polynomial(*self.coefficients)
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,6 @@ class Butterfly(WrappingBlock):
 
     name: ClassVar = "butterfly"
     place: ClassVar = "material"
-    reference: ClassVar = "Drincic, Tan, Bernstein, Automatica 47 (2011) 2658-2664"
 
     coefficient: float = number("Y/U^2", "weight of the square", -HUGE, HUGE)
     threshold: float = number("U", "half the width of the play", 0.0, HUGE)
@@ -50,5 +49,5 @@ class Butterfly(WrappingBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Give what is added to the hysteresis inside."""
-        constants = {"coefficient": self.coefficient, "threshold": self.threshold}
+        constants = self.constants("coefficient", "threshold")
         return Step("butterfly", constants, {"w": 1}, grows=True)

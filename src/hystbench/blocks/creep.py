@@ -28,9 +28,6 @@ class Creep(LinearBlock):
 
     name: ClassVar = "creep"
     place: ClassVar = "mechanics"
-    reference: ClassVar = (
-        "Croft, Shed, Devasia, J. Dyn. Sys., Meas., Control 123 (2001) 35-43"
-    )
 
     magnitudes: tuple[float, ...] = numbers(
         "-", "m_j", -10.0, 10.0, as_many_as="time_constants_s"

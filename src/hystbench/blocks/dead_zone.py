@@ -27,7 +27,6 @@ class DeadZone(Block):
 
     name: ClassVar = "dead-zone"
     place: ClassVar = "drive"
-    reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
 
     half_width: float = number("U", "command at which motion starts", 0.0, HUGE)
 

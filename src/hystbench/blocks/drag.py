@@ -19,7 +19,6 @@ class Drag(Force):
     """
 
     name: ClassVar = "drag"
-    reference: ClassVar = "Batchelor, An Introduction to Fluid Dynamics, 1967"
 
     coefficient: float = number("U s^2/Q^2", "of the velocity squared", 0.0, HUGE)
 

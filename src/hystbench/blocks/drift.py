@@ -30,7 +30,6 @@ class Drift(Block):
 
     name: ClassVar = "drift"
     place: ClassVar = "sensor"
-    reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
 
     slope: float = number("Y/s", "steady rate", -HUGE, HUGE)
     path: tuple[float, ...] = numbers(

@@ -22,7 +22,6 @@ class DriveLag(LinearBlock):
 
     name: ClassVar = "drive-lag"
     place: ClassVar = "drive"
-    reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
 
     time_constant_s: float = number("s", "tau", 1e-7, 1e3)
 

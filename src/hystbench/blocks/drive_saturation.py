@@ -25,7 +25,6 @@ class DriveSaturation(Block):
 
     name: ClassVar = "drive-saturation"
     place: ClassVar = "drive"
-    reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
 
     limit: float = number("U", "largest current either way", TINY, HUGE)
 

@@ -45,7 +45,6 @@ class EddyDiffusion(LinearBlock):
 
     name: ClassVar = "eddy-diffusion"
     place: ClassVar = "drive"
-    reference: ClassVar = "Stoll, The Analysis of Eddy Currents, 1974"
 
     time_constant_s: float = number("s", "tau", 1e-12, 1e3)
     geometry: str = choice("shape of the conductor", GEOMETRIES, GEOMETRIES[0])

@@ -22,7 +22,6 @@ class ExponentialStiffness(Force):
     """
 
     name: ClassVar = "exponential-stiffness"
-    reference: ClassVar = "Lacarbonara, Nonlinear Structural Mechanics, 2013"
 
     coefficient: float = number("U/Q", "its linear part, which is left out", 0.0, HUGE)
     reach: float = number("Q", "distance beyond which it grows steeply", TINY, HUGE)

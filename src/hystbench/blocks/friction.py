@@ -30,9 +30,6 @@ class Friction(Block):
 
     name: ClassVar = "friction"
     place: ClassVar = "mechanics"
-    reference: ClassVar = (
-        "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994)"
-    )
 
     coulomb: float = number("Y", "force at high velocity", -HUGE, HUGE)
     velocity_scale: float = number(
@@ -48,8 +45,7 @@ class Friction(Block):
         """Take the rate from the curve through the input's newest samples."""
         points = max(sampling.points, sampling.late + 2)
         constants = {
-            "coulomb": self.coulomb,
-            "velocity_scale": self.velocity_scale,
+            **self.constants("coulomb", "velocity_scale"),
             "points": points,
             "rate": about_sample(CENTRAL, points, sampling.late) / sampling.dt,
         }

@@ -28,7 +28,6 @@ class FrictionForce(Force):
     """
 
     name: ClassVar = "friction-force"
-    reference: ClassVar = "Al-Bender et al., IEEE Trans. Autom. Control 50 (2005)"
 
     coulomb: float = number("U", "force of sliding", 0.0, HUGE)
     presliding_distance: float = number("Q", "way from rest to sliding", TINY, HUGE)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hystbench.blocks.base import Block
+from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import Sampling, Step, polynomial
-from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
-class Gain(Block):
+class Gain(PolynomialBlock):
     """Static gain with an offset: ``y = value z + offset``.
 
     References
@@ -22,15 +20,11 @@ class Gain(Block):
 
     name: ClassVar = "gain"
     place: ClassVar = "base"
-    reference: ClassVar = "by definition"
 
     value: float = number("Y/U", "static gain", -HUGE, HUGE)
     offset: float = number("Y", "output at zero", -HUGE, HUGE, default=0.0)
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the straight line."""
-        return self.value * z + self.offset
-
-    def step(self, sampling: Sampling) -> Step:
-        """Give the straight line."""
-        return polynomial(self.offset, self.value)
+    @property
+    def coefficients(self) -> tuple[float, ...]:
+        """Those of the polynomial, the constant first."""
+        return self.offset, self.value

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Place
-from hystbench.blocks.parameter import HUGE, choice, numbers
+from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
@@ -40,9 +40,6 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
 
     name: ClassVar = "gpi"
     place: ClassVar[Place] = "base"
-    reference: ClassVar = (
-        "Al Janaideh, Rakheja, Su, IEEE/ASME Trans. Mechatronics 16 (2011) 734-744"
-    )
 
     envelope: tuple[float, ...] = numbers(
         "-, 1/U, -, -",
@@ -54,9 +51,7 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     thresholds: tuple[float, ...] = numbers(
         "-", "r_i, in the unit of the envelope functions", 0.0, HUGE
     )
-    weights: tuple[float, ...] = numbers(
-        "Y", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
-    )
+    weights: tuple[float, ...] = a_threshold("Y", "w_i", optional=False)
     start: str = choice("operators before the first sample", STARTS, "rest")
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
@@ -100,12 +95,9 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
 
     def step(self, sampling: Sampling) -> Step:
         """Give Eq. 9."""
-        constants = {
-            "envelope": np.array(self.envelope),
-            "count": len(self.weights),
-            "thresholds": np.array(self.thresholds),
-            "weights": np.array(self.weights),
-        }
+        count = {"count": len(self.weights)}
+        plays = self.constants("thresholds", "weights")
+        constants = self.constants("envelope") | count | plays
         past = PASSED if self.start == "settled" else ""
         states = {"w": len(self.weights)}
         return Step("gpi", constants, states, grows=True, past=past)

@@ -19,7 +19,6 @@ class Gravity(Force):
     """
 
     name: ClassVar = "gravity"
-    reference: ClassVar = "Landau, Lifshitz, Mechanics, 1976"
 
     amplitude: float = number("U", "weight times its arm", -HUGE, HUGE)
     angle: float = number("rad", "of the arm to the vertical at q = 0", -3.2, 3.2, 0.0)

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from hystbench.blocks.parameter import HUGE, numbers
+from hystbench.blocks.parameter import HUGE, a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import Hysteresis, WrappingBlock
 from hystbench.operators import growing_play
@@ -33,20 +33,10 @@ class HysteresisShape(WrappingBlock):
 
     name: ClassVar = "hysteresis-shape"
     place: ClassVar = "material"
-    reference: ClassVar = "Kuhnen, European Journal of Control 9 (2003) 407-418"
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
-    weights: tuple[float, ...] = numbers(
-        "Y/U", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
-    )
-    square_weights: tuple[float, ...] = numbers(
-        "Y/U^2",
-        "s_i, one a threshold or none",
-        -HUGE,
-        HUGE,
-        optional=True,
-        as_many_as="thresholds",
-    )
+    weights: tuple[float, ...] = a_threshold("Y/U", "w_i", optional=False)
+    square_weights: tuple[float, ...] = a_threshold("Y/U^2", "s_i")
     powers: tuple[float, ...] = numbers(
         "Y/U^k", "c_k, from k = 1 on", -HUGE, HUGE, optional=True
     )

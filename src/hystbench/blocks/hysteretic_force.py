@@ -27,7 +27,6 @@ class HystereticForce(Force):
     """
 
     name: ClassVar = "hysteretic-force"
-    reference: ClassVar = "Ikhouane, Rodellar, Systems with Hysteresis, 2007"
 
     largest: float = number("U", "force at which it yields wholly", 0.0, HUGE)
     yield_distance: float = number("Q", "way in which it yields", TINY, HUGE)

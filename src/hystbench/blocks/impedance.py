@@ -81,7 +81,6 @@ class Impedance(HeldBlock):
 
     name: ClassVar = "impedance"
     place: ClassVar = "base"
-    reference: ClassVar = "Gardonio, Brennan, J. Sound Vib. 249 (2002)"
     smooths: ClassVar = False
 
     mass: float = number("Y s^2/U", "m", -HUGE, HUGE)
@@ -174,10 +173,7 @@ class Impedance(HeldBlock):
                     told += "; takes its forces at samples, without a low-pass filter"
         taps = low_pass_taps() if between else np.ones(1)
         constants = {
-            "mass": self.mass,
-            "damping": self.damping,
-            "stiffness": self.stiffness,
-            "bias": self.bias,
+            **self.constants(*NUMBERS),
             "velocity": int(self.input == "velocity"),
             "points": points,
             "ahead": ahead,

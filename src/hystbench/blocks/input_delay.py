@@ -32,9 +32,6 @@ class InputDelay(HeldBlock):
 
     name: ClassVar = "input-delay"
     place: ClassVar = "drive"
-    reference: ClassVar = (
-        "Laakso et al., IEEE Signal Processing Magazine 13 (1996) 30-60"
-    )
 
     own_hold: ClassVar[Hold] = "band-limited"
     smooths: ClassVar[bool] = False

@@ -53,7 +53,6 @@ class JilesAtherton(HystereticBlock):
 
     name: ClassVar = "jiles-atherton"
     place: ClassVar = "material"
-    reference: ClassVar = "Jiles, Atherton, J. Magn. Magn. Mater. 61 (1986) 48-60"
 
     saturation: float = number("Y", "output that m = 1 stands for, Ms", -HUGE, HUGE)
     shape: float = number("U", "a, width of the anhysteretic curve", TINY, HUGE)
@@ -109,12 +108,8 @@ class JilesAtherton(HystereticBlock):
     def step(self, sampling: Sampling) -> Step:
         """Integrate over the field; the states count from the bias."""
         finer = 1 - self.coupling / (3 * self.shape)
-        constants = {
-            "saturation": self.saturation,
-            "shape": self.shape,
-            "coupling": self.coupling,
-            "pinning": self.pinning,
-            "reversibility": self.reversibility,
+        names = ("saturation", "shape", "coupling", "pinning", "reversibility")
+        constants = self.constants(*names) | {
             "longest": min(self.shape, self.pinning) / STEPS * finer,
             "bias": self.bias,
             "start": self.anhysteretic(self.bias),

@@ -21,7 +21,7 @@ from hystbench.blocks.state_space import (
     moments_of,
 )
 from hystbench.blocks.step import Sampling, Step, smooth_curve
-from hystbench.record import ComplexArray, FloatArray
+from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
@@ -42,19 +42,6 @@ class LinearBlock(HeldBlock):
     def step(self, sampling: Sampling) -> Step:
         """Move the state over the interval that has passed."""
         return linear_step(self.continuous(), sampling, self.holding)
-
-    def frequency_response(self, frequency_hz: FloatArray) -> ComplexArray:
-        """Evaluate ``C (jwI - A)^-1 B + D`` of the block in continuous time.
-
-        Parameters
-        ----------
-        frequency_hz : ndarray, shape (n,)
-
-        Returns
-        -------
-        ndarray of complex, shape (n,)
-        """
-        return _response(self.continuous(), frequency_hz)
 
 
 def low_pass(
@@ -139,7 +126,7 @@ def linear_step(
         drive = np.concatenate([np.zeros((ahead, len(system.b))), drive])
     static = 0.0
     if settled:
-        static = float(system.d - system.c @ np.linalg.solve(system.a, system.b))
+        static = system.static_gain
     constants = {
         "size": len(system.b),
         "points": points,
@@ -229,28 +216,3 @@ def _step_by_step(
         return operators.modes(phi, b, c, d, v, first)
     y, _ = operators.state_space(phi, b, c, d, v, first)
     return y
-
-
-def _response(system: StateSpace, frequency_hz: FloatArray) -> ComplexArray:
-    """Evaluate the frequency response.
-
-    ``(jwI - A)^-1 B`` is solved by back substitution on A's Schur form, for all
-    frequencies at once.
-    """
-    s = 2j * np.pi * frequency_hz
-    if system.is_diagonal:
-        parts = system.b[:, None] / (s - np.diag(system.a)[:, None])
-        return np.asarray(system.d + system.c @ parts, dtype=np.complex128)
-    from scipy.linalg import schur  # late: a filter's process never needs it
-
-    triangle, basis = schur(system.a, output="complex")
-    b, c = basis.conj().T @ system.b, system.c @ basis
-    states: list[ComplexArray] = []  # the last first
-    response: ComplexArray = np.full(len(s), system.d, dtype=np.complex128)
-    for i in reversed(range(len(b))):
-        driven: ComplexArray = np.full(len(s), b[i], dtype=np.complex128)
-        for j, state in zip(range(len(b) - 1, i, -1), states, strict=True):
-            driven += triangle[i, j] * state
-        states.append(driven / (s - triangle[i, i]))
-        response += c[i] * states[-1]
-    return response

@@ -38,7 +38,6 @@ class LogarithmicCreep(LinearBlock):
 
     name: ClassVar = "logarithmic-creep"
     place: ClassVar = "mechanics"
-    reference: ClassVar = "Jung, Shim, Gweon, Rev. Sci. Instrum. 71 (2000) 3436-3440"
 
     magnitude: float = number("-", "displacement in all", -HUGE, HUGE)
     first_time_s: float = number("s", "shortest time constant", 1e-6, 1e6)

@@ -26,7 +26,6 @@ class MainsPickup(Block):
 
     name: ClassVar = "mains-pickup"
     place: ClassVar = "sensor"
-    reference: ClassVar = "Ott, Electromagnetic Compatibility Engineering, 2009"
 
     frequency_hz: float = number("Hz", "f, of the fundamental", 1e-3, 1e6)
     amplitudes: tuple[float, ...] = numbers("Y", "one a harmonic", -HUGE, HUGE)
@@ -48,7 +47,6 @@ class MainsPickup(Block):
         constants = {
             "cycles": self.frequency_hz * sampling.dt,
             "harmonics": len(self.amplitudes),
-            "amplitudes": np.array(self.amplitudes),
-            "phases": np.array(self.phases),
+            **self.constants("amplitudes", "phases"),
         }
         return Step("mains_pickup", constants, {"count": 1})

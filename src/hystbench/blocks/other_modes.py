@@ -37,7 +37,6 @@ class OtherModes(TransferFunction, AttachedBlock):
     name: ClassVar = "other-modes"
     place: ClassVar = "inside"
     hosts: ClassVar = "mechanism or a force inside one"
-    reference: ClassVar = "Ewins, Modal Testing, 2000"
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the response to ``z``.

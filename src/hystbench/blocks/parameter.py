@@ -159,5 +159,11 @@ def text(meaning: str, default: object = MISSING) -> Any:
     return _declare(Parameter("text", "-", meaning, may_be_empty=empty), default)
 
 
+def a_threshold(unit: str, name: str, optional: bool = True) -> Any:
+    """Declare weights of play operators, one a threshold; optional ones may be ()."""
+    meaning = f"{name}, one a threshold{' or none' if optional else ''}"
+    return numbers(unit, meaning, -HUGE, HUGE, (), optional, "thresholds")
+
+
 def _declare(parameter: Parameter, default: object) -> Any:
     return field(default=default, kw_only=True, metadata={"parameter": parameter})

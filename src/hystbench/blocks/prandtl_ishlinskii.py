@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.base import Place
-from hystbench.blocks.parameter import HUGE, numbers
+from hystbench.blocks.parameter import HUGE, a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.operators import growing_play
@@ -36,30 +36,11 @@ class PrandtlIshlinskii(HystereticBlock):
 
     name: ClassVar = "prandtl-ishlinskii"
     place: ClassVar[Place] = "material"
-    reference: ClassVar = (
-        "Brokate, Sprekels, Hysteresis and Phase Transitions, 1996, Section 2.4"
-    )
 
     thresholds: tuple[float, ...] = numbers("U", "r_i of the play operators", 0.0, HUGE)
-    weights: tuple[float, ...] = numbers(
-        "-", "w_i, one a threshold", -HUGE, HUGE, as_many_as="thresholds"
-    )
-    square_weights: tuple[float, ...] = numbers(
-        "1/U",
-        "s_i, one a threshold or none",
-        -HUGE,
-        HUGE,
-        optional=True,
-        as_many_as="thresholds",
-    )
-    cube_weights: tuple[float, ...] = numbers(
-        "1/U^2",
-        "c_i, one a threshold or none",
-        -HUGE,
-        HUGE,
-        optional=True,
-        as_many_as="thresholds",
-    )
+    weights: tuple[float, ...] = a_threshold("-", "w_i", optional=False)
+    square_weights: tuple[float, ...] = a_threshold("1/U", "s_i")
+    cube_weights: tuple[float, ...] = a_threshold("1/U^2", "c_i")
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Add the weighted plays."""

@@ -40,7 +40,6 @@ class Preisach(HystereticBlock):
 
     name: ClassVar = "preisach"
     place: ClassVar = "material"
-    reference: ClassVar = "Mayergoyz, Mathematical Models of Hysteresis, 1991"
 
     limit: float = number("U", "largest input at which a relay switches", TINY, HUGE)
     reversible: float = number("Y/U", "slope of the reversible part", -HUGE, HUGE)

@@ -55,10 +55,6 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
 
     name: ClassVar = "rate-dependent-hysteresis"
     place: ClassVar = "material"
-    reference: ClassVar = (
-        "Al Janaideh, Su, Rakheja, Smart Mater. Struct. 17 (2008) 035026; "
-        "Bertotti, IEEE Trans. Magn. 24 (1988) 621-630"
-    )
 
     smooths: ClassVar[bool] = False
 
@@ -125,8 +121,7 @@ class RateDependentHysteresis(HeldBlock, WrappingBlock):
         rates = _rate_weights(points, ahead, fine)
         constants = {
             "form": FORMS.index(self.form),
-            "coefficient": self.coefficient,
-            "exponent": self.exponent,
+            **self.constants("coefficient", "exponent"),
             "dt": sampling.dt / fine,
             "fine": fine,
             "points": points,

@@ -32,7 +32,6 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
 
     name: ClassVar = "rdgpi"
     place: ClassVar = "base"
-    reference: ClassVar = "Zhang and Ma, Table 4 and Section 4; docs/rdgpi.md"
 
     alpha1: float = number("-", "scale of the thresholds' spacing", -1e3, 1e3)
     beta1: float = number("-", "spacing at rest, inside the logarithm", 1.0, 1e3)
@@ -70,9 +69,7 @@ class RateDependentPrandtlIshlinskii(HystereticBlock):
             "spacing": np.array([self.c * self.alpha1, self.beta1, self.lambda1]),
             "loss": np.array([self.alpha2, self.beta2, self.lambda2]),
             "weight": self.rho / count,
-            "tau": self.tau,
-            "envelope_gain": self.envelope_gain,
-            "envelope_offset": self.envelope_offset,
+            **self.constants("tau", "envelope_gain", "envelope_offset"),
             "points": points,
             "ahead": ahead,
             "rate": about_sample(CENTRAL, points, ahead) / sampling.dt,

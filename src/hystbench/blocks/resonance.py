@@ -26,7 +26,6 @@ class Resonance(LinearBlock):
 
     name: ClassVar = "resonance"
     place: ClassVar = "mechanics"
-    reference: ClassVar = "Ewins, Modal Testing, 2nd ed., 2000"
 
     frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)
     damping_ratio: float = number("-", "zeta, share of critical damping", 1e-5, 10.0)

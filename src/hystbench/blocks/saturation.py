@@ -29,7 +29,6 @@ class Saturation(Block):
 
     name: ClassVar = "saturation"
     place: ClassVar = "material"
-    reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
 
     level: float = number("Y", "output that is never reached", TINY, HUGE)
 
@@ -56,5 +55,4 @@ class Saturation(Block):
 
     def step(self, sampling: Sampling) -> Step:
         """Give the curve."""
-        constants = {"level": self.level, "sharpness": self.sharpness}
-        return Step("saturation", constants)
+        return Step("saturation", self.constants("level", "sharpness"))

@@ -27,7 +27,6 @@ class SensorLag(LinearBlock):
 
     name: ClassVar = "sensor-lag"
     place: ClassVar = "sensor"
-    reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
 
     time_constant_s: float = number("s", "tau", 1e-7, 1e3)
 

@@ -27,7 +27,6 @@ class SensorNoise(RandomBlock):
 
     name: ClassVar = "sensor-noise"
     place: ClassVar = "sensor"
-    reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
 
     rms: float = number("Y", "standard deviation of a sample", 0.0, HUGE)
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from hystbench.blocks.base import Block
+from hystbench.blocks.base import PolynomialBlock
 from hystbench.blocks.parameter import HUGE, number
-from hystbench.blocks.step import Sampling, Step, polynomial
-from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
-class SensorNonlinearity(Block):
+class SensorNonlinearity(PolynomialBlock):
     """Static polynomial of the true output: ``y = z + quadratic z^2 + cubic z^3``.
 
     References
@@ -24,15 +22,11 @@ class SensorNonlinearity(Block):
 
     name: ClassVar = "sensor-nonlinearity"
     place: ClassVar = "sensor"
-    reference: ClassVar = "Fleming, Sensors and Actuators A 190 (2013) 106-126"
 
     quadratic: float = number("1/Y", "weight of the square", -HUGE, HUGE)
     cubic: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the polynomial."""
-        return z * (1.0 + z * (self.quadratic + self.cubic * z))
-
-    def step(self, sampling: Sampling) -> Step:
-        """Give the polynomial."""
-        return polynomial(0.0, 1.0, self.quadratic, self.cubic)
+    @property
+    def coefficients(self) -> tuple[float, ...]:
+        """Those of the polynomial, the constant first."""
+        return 0.0, 1.0, self.quadratic, self.cubic

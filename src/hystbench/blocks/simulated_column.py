@@ -37,7 +37,6 @@ class SimulatedColumn(Block):
 
     name: ClassVar = "simulated-column"
     place: ClassVar = "base"
-    reference: ClassVar = "by definition"
     reruns: ClassVar = False
     seen: ClassVar = False
     no_step: ClassVar = (

@@ -30,7 +30,6 @@ class Simulator(Block):
     """
 
     place: ClassVar[Place] = "base"
-    reference: ClassVar[str] = "by definition"
     seen: ClassVar[bool] = False
     no_step: ClassVar[str] = (
         "a simulator of somebody's own cannot be turned into code; expected --part "

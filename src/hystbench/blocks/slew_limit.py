@@ -30,7 +30,6 @@ class SlewLimit(Block):
 
     name: ClassVar = "slew-limit"
     place: ClassVar = "drive"
-    reference: ClassVar = "Astrom, Murray, Feedback Systems, 2nd ed., 2021"
 
     rate: float = number("U/s", "largest rate of the output", TINY, HUGE)
 

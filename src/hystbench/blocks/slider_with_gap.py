@@ -24,7 +24,6 @@ class SliderWithGap(Force):
     """
 
     name: ClassVar = "slider-with-gap"
-    reference: ClassVar = "Awrejcewicz, Lamarque, Nonsmooth Mechanical Systems, 2003"
 
     contact_stiffness: float = number("U/Q", "of the contact", TINY, HUGE)
     slip_force: float = number("U", "force at which it slides", 0.0, HUGE)

@@ -24,7 +24,6 @@ class SmoothFriction(Force):
     """
 
     name: ClassVar = "smooth-friction"
-    reference: ClassVar = "Spencer et al., J. Eng. Mech. 123 (1997)"
 
     coulomb: float = number("U", "force at high velocity", 0.0, HUGE)
     velocity_scale: float = number(

@@ -25,6 +25,11 @@ class StateSpace(NamedTuple):
         """Whether the states are modes, each by itself."""
         return not (self.a - np.diag(np.diag(self.a))).any()
 
+    @property
+    def static_gain(self) -> float:
+        """What an input that has stood for ever is multiplied by: ``D - C A^-1 B``."""
+        return float(self.d - self.c @ np.linalg.solve(self.a, self.b))
+
 
 def lag(time_constant_s: float) -> StateSpace:
     """First-order lag of static gain one, with its output as the state."""

@@ -22,7 +22,6 @@ class Stiffness(Force):
     """
 
     name: ClassVar = "stiffness"
-    reference: ClassVar = "Kovacic, Brennan, The Duffing Equation, 2011"
 
     quadratic: float = number("U/Q^2", "weight of the square", -HUGE, HUGE)
     cubic: float = number("U/Q^3", "weight of the cube", -HUGE, HUGE)

@@ -35,7 +35,6 @@ class StiffnessHardening(HeldBlock):
 
     name: ClassVar = "stiffness-hardening"
     place: ClassVar = "mechanics"
-    reference: ClassVar = "Kovacic, Brennan, The Duffing Equation, 2011"
 
     coefficient: float = number("1/Y^2", "weight of the cube", -HUGE, HUGE)
     frequency_hz: float = number("Hz", "undamped frequency wn / 2 pi", 1e-3, 1e6)

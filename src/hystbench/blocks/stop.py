@@ -25,7 +25,6 @@ class Stop(Force):
     """
 
     name: ClassVar = "stop"
-    reference: ClassVar = "Shaw, Holmes, J. Sound Vib. 90 (1983)"
 
     contact_stiffness: float = number("U/Q", "stiffness of the contact", 0.0, HUGE)
     gap: float = number("Q", "half of the clearance", 0.0, HUGE)

@@ -38,7 +38,6 @@ class Store(HeldBlock):
 
     name: ClassVar = "store"
     place: ClassVar = "base"
-    reference: ClassVar = "Schoukens et al., Cascaded tanks benchmark, 2016"
 
     gain: float = number("Q/(U s)", "of the inflow", -HUGE, HUGE)
     rate: float = number("Q^(1-e)/s", "of the outflow", 0.0, HUGE)
@@ -88,9 +87,7 @@ class Store(HeldBlock):
             **lines.constants,
             "parts": parts,
             "t": sampling.dt / lines.segments / parts,
-            "rate": self.rate,
-            "exponent": self.exponent,
-            "height": self.height,
+            **self.constants("rate", "exponent", "height"),
             "start": self.start_level,
             "outflow": int(self.output == "outflow"),
             "caught": self.caught,

@@ -31,7 +31,6 @@ class ThermalDrift(Block):
 
     name: ClassVar = "thermal-drift"
     place: ClassVar = "mechanics"
-    reference: ClassVar = "Engdahl, Handbook of Giant Magnetostrictive Materials, 2000"
 
     coefficient: float = number("Y/U^2", "expansion at a steady input", -HUGE, HUGE)
     time_constant_s: float = number("s", "tau of the warming", 1e-6, 1e6)

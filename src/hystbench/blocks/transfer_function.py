@@ -36,7 +36,6 @@ class TransferFunction(LinearBlock):
 
     name: ClassVar = "transfer-function"
     place: ClassVar[Place] = "base"
-    reference: ClassVar = "Kailath, Linear Systems, 1980"
 
     numerator: tuple[float, ...] = numbers(
         "powers of s", "n_0 to n_m, descending", -HUGE, HUGE

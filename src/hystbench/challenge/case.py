@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -89,7 +90,7 @@ def make_case(spec: CaseSpec) -> Case:
     fit = tuple(item for item in excitations if item.use == "fit")
     plant, drawn = _draw(spec, excitations)
     bare = Readings(plant.actuator(()), excitations)
-    size = _rms(bare.of(fit))
+    size = rms(bare.of(fit))
     effects = tuple(_resized(plant, effect, bare, fit, size) for effect in drawn)
     full = Readings(plant.actuator(effects), excitations)
     without = [
@@ -98,7 +99,7 @@ def make_case(spec: CaseSpec) -> Case:
         else Readings(plant.actuator((*effects[:k], *effects[k + 1 :])), excitations)
         for k in range(len(effects))
     ]
-    sizes = [_rms(full.minus(item, fit)) for item in without]
+    sizes = [rms(full.minus(item, fit)) for item in without]
     random = spec.random(NOISE)
     noise = float(np.exp(random.uniform(*np.log(PLAIN_NOISE))))
     if effects:
@@ -108,12 +109,15 @@ def make_case(spec: CaseSpec) -> Case:
     )
     linear = "hysteresis" in spec.effects
     model = base_model(plant.loop, plant.mode, excitations, linear)
-    truth = _told(spec, plant, noise, size)
+    noise_rms = float(np.hypot(noise, RESOLUTION / np.sqrt(12.0)))
+    truth = told_of(spec, OUTPUT.unit, noise_rms, size)
+    truth["mode"] = None if plant.mode is None else plant.mode.parameters()
+    truth["effects"] = []
     fit_records = [record for record in records if record.use == "fit"]
     for k, effect in enumerate(effects):
         difference = full.minus(without[k], fit)
         truth["effects"].append(
-            _effect_told(effect)
+            effect_told(effect)
             | {
                 "resized": effect is not drawn[k],
                 "rms": sizes[k],
@@ -127,18 +131,13 @@ def make_case(spec: CaseSpec) -> Case:
             }
         )
     gap = full.minus(bare, fit)
-    truth["ratio_all_db"] = _decibel(_rms(gap), noise) if effects else None
+    truth["ratio_all_db"] = _decibel(rms(gap), noise) if effects else None
     truth["ratio_all_retuned_db"] = _decibel(_retuned(gap, bare.of(fit)), noise)
     held_out = tuple(item for item in excitations if item.use == "hold-out")
     truth["hold_out"] = _hold_out(full, bare, held_out, model)
     base_error = _minus(bare.of(fit), _simulated(model, fit))
-    truth["base_error_fit_rms"] = _rms(base_error)
-    periods = {
-        item.name: item.period_samples
-        for item in excitations
-        if item.period_samples is not None
-    }
-    return Case(records, periods, model, truth)
+    truth["base_error_fit_rms"] = rms(base_error)
+    return Case(records, periods_of(excitations), model, truth)
 
 
 class Readings:
@@ -239,7 +238,7 @@ def _resized(
 
     def share(changed: Effect) -> float:
         readings = Readings(plant.actuator((changed,)), bare.excitations)
-        return _rms(readings.minus(bare, fit)) / size
+        return rms(readings.minus(bare, fit)) / size
 
     within = SMALLEST_EFFECT[plant.loop.family], LARGEST_EFFECT
     return effect.resized(share, within, margin=0.1, most=16.0)
@@ -257,24 +256,27 @@ def _record(
     return Record(item.name, item.dt, u, rounded, INPUT, OUTPUT, "twin", item.use)
 
 
-def _told(spec: CaseSpec, plant: Plant, noise: float, size: float) -> dict[str, Any]:
+def told_of(
+    spec: CaseSpec, unit: str, noise: float, size: float, **own: Any
+) -> dict[str, Any]:
+    """Give what the truth says of any case; ``own`` is what it says of this sort."""
     return {
         "seed": spec.seed,
         "kind": spec.kind,
         "family": spec.family,
         "spread": spec.spread,
         "campaign": spec.campaign,
-        "unit": OUTPUT.unit,
-        "noise_rms": float(np.hypot(noise, RESOLUTION / np.sqrt(12.0))),
+        "unit": unit,
+        **own,
+        "noise_rms": noise,
         "noise_set_by": "the effect that shows least" if spec.effects else "drawn",
         "ratio_db": spec.ratio_db if spec.effects else None,
         "output_rms": size,
-        "mode": None if plant.mode is None else plant.mode.parameters(),
-        "effects": [],
     }
 
 
-def _effect_told(effect: Effect) -> dict[str, Any]:
+def effect_told(effect: Effect, **own: Any) -> dict[str, Any]:
+    """Give what the truth says of any effect; ``own`` is what it says of this sort."""
     form = effect.law
     return {
         "name": effect.kind.name,
@@ -283,7 +285,17 @@ def _effect_told(effect: Effect) -> dict[str, Any]:
         "use": effect.kind.use,
         "parameters": form.told(effect.parameters),
         "units": {name: item.unit for name, item in form.ranges.items()},
+        **own,
         "views": list(effect.kind.views),
+    }
+
+
+def periods_of(excitations: Iterable[Excitation]) -> dict[str, int]:
+    """Give the periods of the records that have one, in samples."""
+    return {
+        item.name: item.period_samples
+        for item in excitations
+        if item.period_samples is not None
     }
 
 
@@ -293,9 +305,9 @@ def _hold_out(
     """Gap on the hold-out records: all of it, and what the effects explain."""
     base = _simulated(model, chosen)
     return {
-        "gap_rms": _rms(_minus(full.of(chosen), base)),
-        "explainable_rms": _rms(full.minus(bare, chosen)),
-        "base_error_rms": _rms(_minus(bare.of(chosen), base)),
+        "gap_rms": rms(_minus(full.of(chosen), base)),
+        "explainable_rms": rms(full.minus(bare, chosen)),
+        "base_error_rms": rms(_minus(bare.of(chosen), base)),
     }
 
 
@@ -314,7 +326,8 @@ def _retuned(difference: list[FloatArray], output: list[FloatArray]) -> float:
     return float(np.sqrt(np.mean((d - design @ np.linalg.lstsq(design, d)[0]) ** 2)))
 
 
-def _rms(parts: list[FloatArray]) -> float:
+def rms(parts: list[FloatArray]) -> float:
+    """RMS of all parts together."""
     pooled = np.concatenate(parts)
     return float(np.sqrt(np.mean(pooled**2)))
 

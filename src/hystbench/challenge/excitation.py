@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -178,156 +179,77 @@ def _levels(random: np.random.Generator, count: int, largest: float) -> list[flo
     return [float(value) for value in sizes * signs]
 
 
+def _of(use: Use) -> Callable[..., Excitation]:
+    """Give what makes commands of one use: name, rate, samples, function, period."""
+    return lambda name, *about: Excitation(name, use, *about)
+
+
+fit, held_out = _of("fit"), _of("hold-out")
+
+
 def standard(random: np.random.Generator) -> tuple[Excitation, ...]:
     """Eight records to fit and four held out, 70,000 samples in all."""
     low = int(random.choice([8, 10, 16, 20]))
     high = int(random.choice([80, 100, 125]))
     ripple = float(random.choice([5.0, 8.0, 10.0]))
-    uniform = random.uniform
+    uniform, tones = random.uniform, partial(multisine, random, 2)
+    levels = partial(_levels, random)
     slow = add(
-        staircase(_levels(random, 8, 0.4), 6.0, 0.3),
+        staircase(levels(8, 0.4), 6.0, 0.3),
         sine(uniform(0.3, 1.0), uniform(0.05, 0.2)),
     )
+    sine_low = sine(low, uniform(0.45, 0.6))
+    sine_high = sine(high, uniform(0.2, 0.35))
+    wide = tones(400, uniform(0.2, 0.3))
+    strong = tones(200, uniform(0.45, 0.6), colour=0.3)
+    minor = add(staircase(levels(6, 0.4), 0.67, 0.1), sine(ripple, uniform(0.06, 0.18)))
     return (
-        Excitation("slow-loop", "fit", RATE, 6000, sine(1.0, LARGEST), 2000),
-        Excitation(
-            "sine-low",
-            "fit",
-            RATE,
-            4000,
-            sine(low, uniform(0.45, 0.6)),
-            int(RATE) // low,
-        ),
-        Excitation(
-            "sine-high",
-            "fit",
-            FAST,
-            4000,
-            sine(high, uniform(0.2, 0.35)),
-            int(FAST) // high,
-        ),
-        Excitation(
-            "multisine-wide",
-            "fit",
-            FAST,
-            8000,
-            multisine(random, 2, 400, uniform(0.2, 0.3)),
-            2000,
-        ),
-        Excitation(
-            "multisine-strong",
-            "fit",
-            FAST,
-            8000,
-            multisine(random, 2, 200, uniform(0.45, 0.6), colour=0.3),
-            2000,
-        ),
-        Excitation(
-            "minor-loops",
-            "fit",
-            RATE,
-            8000,
-            add(
-                staircase(_levels(random, 6, 0.4), 0.67, 0.1),
-                sine(ripple, uniform(0.06, 0.18)),
-            ),
-        ),
-        Excitation(
-            "steps", "fit", 500.0, 6000, staircase(_levels(random, 8, 0.6), 1.5, 0.03)
-        ),
-        Excitation("long", "fit", 125.0, 6000, slow),
-        Excitation(
-            "chirp", "hold-out", FAST, 6000, chirp(2.0, 300.0, uniform(0.2, 0.4), 1.5)
-        ),
-        Excitation(
-            "multisine-other",
-            "hold-out",
-            FAST,
-            6000,
-            multisine(random, 2, 320, uniform(0.3, 0.5)),
-            2000,
-        ),
-        Excitation(
+        fit("slow-loop", RATE, 6000, sine(1.0, LARGEST), 2000),
+        fit("sine-low", RATE, 4000, sine_low, int(RATE) // low),
+        fit("sine-high", FAST, 4000, sine_high, int(FAST) // high),
+        fit("multisine-wide", FAST, 8000, wide, 2000),
+        fit("multisine-strong", FAST, 8000, strong, 2000),
+        fit("minor-loops", RATE, 8000, minor),
+        fit("steps", 500.0, 6000, staircase(levels(8, 0.6), 1.5, 0.03)),
+        fit("long", 125.0, 6000, slow),
+        held_out("chirp", FAST, 6000, chirp(2.0, 300.0, uniform(0.2, 0.4), 1.5)),
+        held_out("multisine-other", FAST, 6000, tones(320, uniform(0.3, 0.5)), 2000),
+        held_out(
             "two-tones",
-            "hold-out",
             RATE,
             4000,
             add(sine(2.0, uniform(0.45, 0.5)), sine(43.0, uniform(0.06, 0.1))),
         ),
-        Excitation(
-            "steps-other",
-            "hold-out",
-            250.0,
-            4000,
-            staircase(_levels(random, 9, 0.6), 1.78, 0.06),
-        ),
+        held_out("steps-other", 250.0, 4000, staircase(levels(9, 0.6), 1.78, 0.06)),
     )
 
 
 def other(random: np.random.Generator) -> tuple[Excitation, ...]:
     """Seven records to fit and three held out, of another laboratory."""
-    uniform = random.uniform
+    uniform, tones = random.uniform, partial(multisine, random, 2)
+    levels = partial(_levels, random)
+    sweep = chirp(2.0, 380.0, uniform(0.25, 0.35), 2.0)
+    strong = chirp(0.8, 90.0, uniform(0.5, 0.6), 3.0)
+    pink = tones(400, uniform(0.4, 0.6), colour=0.7, odd=True)
+    biased = add(
+        staircase(levels(4, 0.35), 0.76, 0.12),
+        sine(27.0, uniform(0.06, 0.15)),
+        sine(6.0, uniform(0.03, 0.08)),
+    )
+    walk = add(staircase(levels(12, 0.5), 4.0, 0.2), sine(uniform(0.3, 0.8), 0.08))
+    white = tones(300, uniform(0.3, 0.5))
+    beats = add(sine(31.0, uniform(0.2, 0.3)), sine(34.0, uniform(0.2, 0.3)))
     return (
-        Excitation("triangle", "fit", RATE, 12000, triangle(0.5, LARGEST), 4000),
-        Excitation("ringing", "fit", RATE, 6000, ringing(4.0, 0.58, 0.8)),
-        Excitation(
-            "sweep", "fit", FAST, 8000, chirp(2.0, 380.0, uniform(0.25, 0.35), 2.0)
-        ),
-        Excitation(
-            "sweep-strong", "fit", RATE, 6000, chirp(0.8, 90.0, uniform(0.5, 0.6), 3.0)
-        ),
-        Excitation(
-            "pink",
-            "fit",
-            FAST,
-            8000,
-            multisine(random, 2, 400, uniform(0.4, 0.6), colour=0.7, odd=True),
-            2000,
-        ),
-        Excitation(
-            "biased-tones",
-            "fit",
-            RATE,
-            6000,
-            add(
-                staircase(_levels(random, 4, 0.35), 0.76, 0.12),
-                sine(27.0, uniform(0.06, 0.15)),
-                sine(6.0, uniform(0.03, 0.08)),
-            ),
-        ),
-        Excitation(
-            "walk",
-            "fit",
-            125.0,
-            6000,
-            add(
-                staircase(_levels(random, 12, 0.5), 4.0, 0.2),
-                sine(uniform(0.3, 0.8), 0.08),
-            ),
-        ),
-        Excitation(
-            "white",
-            "hold-out",
-            FAST,
-            8000,
-            multisine(random, 2, 300, uniform(0.3, 0.5)),
-            2000,
-        ),
-        Excitation(
-            "beats",
-            "hold-out",
-            RATE,
-            6000,
-            add(sine(31.0, uniform(0.2, 0.3)), sine(34.0, uniform(0.2, 0.3))),
-            2000,
-        ),
-        Excitation(
-            "walk-other",
-            "hold-out",
-            250.0,
-            4000,
-            staircase(_levels(random, 12, 0.55), 1.4, 0.06),
-        ),
+        fit("triangle", RATE, 12000, triangle(0.5, LARGEST), 4000),
+        fit("ringing", RATE, 6000, ringing(4.0, 0.58, 0.8)),
+        fit("sweep", FAST, 8000, sweep),
+        fit("sweep-strong", RATE, 6000, strong),
+        fit("pink", FAST, 8000, pink, 2000),
+        fit("biased-tones", RATE, 6000, biased),
+        fit("walk", 125.0, 6000, walk),
+        held_out("white", FAST, 8000, white, 2000),
+        held_out("beats", RATE, 6000, beats, 2000),
+        held_out("walk-other", 250.0, 4000, staircase(levels(12, 0.55), 1.4, 0.06)),
     )
 
 

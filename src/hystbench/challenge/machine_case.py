@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.case import Case
+from hystbench.challenge.case import Case, effect_told, periods_of, rms, told_of
 from hystbench.challenge.machine import (
     Machine,
     Signals,
@@ -18,7 +18,7 @@ from hystbench.challenge.plant.inside import EFFECTS
 from hystbench.challenge.plant.kind import Effect, Reach, draw
 from hystbench.challenge.spec import CaseSpec
 from hystbench.model import Model
-from hystbench.record import FloatArray, Record
+from hystbench.record import Record
 
 #: An effect is to be within these shares of the output's rms on the fit records;
 #: outside, its size is changed.
@@ -41,8 +41,8 @@ def make_machine_case(spec: CaseSpec) -> Case:
     hidden = tuple(draw(EFFECTS[name], random, spec.spread) for name in spec.effects)
     hidden = tuple(_resized(machine, item, reach) for item in hidden)
     signals = machine.read(hidden, reach)
-    fit = _fit(machine, signals)
-    output = _rms([y - y.mean() for _, y in fit])
+    fit = _used(machine, signals, "fit")
+    output = rms([y - y.mean() for _, y in fit])
     sizes = []
     for k in range(len(hidden)):
         others = (*hidden[:k], *hidden[k + 1 :])
@@ -69,21 +69,11 @@ def make_machine_case(spec: CaseSpec) -> Case:
             )
         )
     model = _model(machine, spec)
-    held_out = _left(machine, _held_out(machine, signals))
+    held_out = _left(machine, _used(machine, signals, "hold-out"))
     noise_rms = float(np.hypot(noise, step / np.sqrt(12.0)))
-    truth: dict[str, Any] = {
-        "seed": spec.seed,
-        "kind": spec.kind,
-        "family": spec.family,
-        "spread": spec.spread,
-        "campaign": spec.campaign,
-        "unit": measured.unit,
-        "closed_loop": machine.gains[0] > 0.0,
-        "base": "linear" if model is None else "model-file",
-        "noise_rms": noise_rms,
-        "noise_set_by": "the effect that shows least" if hidden else "drawn",
-        "ratio_db": spec.ratio_db if hidden else None,
-        "output_rms": output,
+    base = "linear" if model is None else "model-file"
+    own = {"closed_loop": machine.gains[0] > 0.0, "base": base}
+    truth = told_of(spec, measured.unit, noise_rms, output, **own) | {
         "linear": _linear(machine),
         "effects": [
             _told(item, size, noise_rms, reach)
@@ -96,20 +86,15 @@ def make_machine_case(spec: CaseSpec) -> Case:
         },
         "base_error_fit_rms": 0.0,
     }
-    periods = {
-        item.name: item.period_samples
-        for item in machine.records
-        if item.period_samples is not None
-    }
-    return Case(tuple(records), periods, model, truth)
+    return Case(tuple(records), periods_of(machine.records), model, truth)
 
 
 def _resized(machine: Machine, effect: Effect, reach: Reach) -> Effect:
     """Change the size of an effect that a linear machine hides, or that is all."""
 
     def share(changed: Effect) -> float:
-        signals = _fit(machine, machine.read((changed,), reach))
-        output = _rms([y - y.mean() for _, y in signals])
+        signals = _used(machine, machine.read((changed,), reach), "fit")
+        output = rms([y - y.mean() for _, y in signals])
         return _size(machine, signals, (), reach) / output
 
     return effect.resized(share, WITHIN, margin=0.2, most=8.0)
@@ -126,21 +111,13 @@ def _size(
     """
     if not others and machine.family != "free-mass":
         return _left(machine, full)
-    without = _fit(machine, machine.read(others, reach))
+    without = _used(machine, machine.read(others, reach), "fit")
     pairs = zip(full, without, strict=True)
-    return _rms([y - other for (_, y), (_, other) in pairs])
+    return rms([y - other for (_, y), (_, other) in pairs])
 
 
 def _left(machine: Machine, signals: Signals) -> float:
-    return _rms([y - fitted for y, fitted in linear_parts(machine, signals)])
-
-
-def _fit(machine: Machine, signals: Signals) -> Signals:
-    return _used(machine, signals, "fit")
-
-
-def _held_out(machine: Machine, signals: Signals) -> Signals:
-    return _used(machine, signals, "hold-out")
+    return rms([y - fitted for y, fitted in linear_parts(machine, signals)])
 
 
 def _used(machine: Machine, signals: Signals, use: str) -> Signals:
@@ -186,21 +163,10 @@ def _linear(machine: Machine) -> dict[str, Any]:
 def _told(effect: Effect, size: float, noise: float, reach: Reach) -> dict[str, Any]:
     law = effect.law
     ratio = float(20.0 * np.log10(max(size, 1e-12 * noise) / noise))
-    return {
-        "name": effect.kind.name,
-        "form": effect.form,
-        "place": effect.kind.place,
-        "use": "vocabulary",
-        "parameters": dict(effect.parameters),
-        "units": {name: item.unit for name, item in law.ranges.items()},
-        "physical": law.numbers(effect.parameters, reach) if law.numbers else {},
-        "views": [],
+    physical = law.numbers(effect.parameters, reach) if law.numbers else {}
+    return effect_told(effect, physical=physical) | {
         "rms": size,
         "ratio_db": ratio,
         "ratio_retuned_db": ratio,
         "where": [],
     }
-
-
-def _rms(parts: list[FloatArray]) -> float:
-    return float(np.sqrt(np.mean(np.concatenate(parts) ** 2)))

@@ -6,6 +6,8 @@ Commands are those of :mod:`hystbench.challenge.excitation`, whose nominal rate 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from hystbench.challenge.excitation import (
@@ -14,6 +16,8 @@ from hystbench.challenge.excitation import (
     Function,
     add,
     chirp,
+    fit,
+    held_out,
     multisine,
     sine,
     staircase,
@@ -60,23 +64,15 @@ def machine_records(
     """
     low, high = middle / 6.0, 2.5 * middle
 
-    def of(name: str, function: Function, period: int | None = None) -> Excitation:
-        return Excitation(name, "fit", FAST, FIT, function, period)
-
-    def held(name: str, function: Function) -> Excitation:
-        return Excitation(name, "hold-out", FAST, HELD_OUT, function)
-
     edge = 0.2 / middle
+    two = add(sine(0.37 * middle, 0.5), sine(1.1 * middle, 0.35))
     return (
-        of("multisine-low", _tones(random, low, high, 0.35), PERIOD),
-        of("multisine-high", _tones(random, low, high, 1.0), PERIOD),
-        of("sweep", chirp(low, 2.0 * middle, 0.7, FIT / FAST)),
-        of("steps", _steps(random, 10, FIT / FAST / 10, edge)),
-        held("multisine-other", _tones(random, low, high, 0.85)),
-        held(
-            "two-tones",
-            add(sine(0.37 * middle, 0.5), sine(1.1 * middle, 0.35)),
-        ),
+        fit("multisine-low", FAST, FIT, _tones(random, low, high, 0.35), PERIOD),
+        fit("multisine-high", FAST, FIT, _tones(random, low, high, 1.0), PERIOD),
+        fit("sweep", FAST, FIT, chirp(low, 2.0 * middle, 0.7, FIT / FAST)),
+        fit("steps", FAST, FIT, _steps(random, 10, FIT / FAST / 10, edge)),
+        held_out("multisine-other", FAST, HELD_OUT, _tones(random, low, high, 0.85)),
+        held_out("two-tones", FAST, HELD_OUT, two),
     )
 
 
@@ -86,11 +82,9 @@ def filling(random: np.random.Generator, middle: float) -> tuple[Excitation, ...
     def raised(function: Function, most: float) -> Function:
         return lambda t: np.asarray(most * (0.55 + 0.45 * function(t)))
 
-    def made(item: Excitation, most: float) -> Excitation:
-        function = raised(item.function, most)
-        samples, period = item.samples, item.period_samples
-        return Excitation(item.name, item.use, FAST, samples, function, period)
-
     levels = (0.6, 1.0, 0.9, 1.0, 0.95, 0.8)
     records = machine_records(random, middle)
-    return tuple(made(item, most) for item, most in zip(records, levels, strict=True))
+    return tuple(
+        replace(item, function=raised(item.function, most))
+        for item, most in zip(records, levels, strict=True)
+    )

@@ -64,16 +64,11 @@ class CaseSpec:
 
     def __post_init__(self) -> None:
         """Refuse what cannot be made."""
-        if self.kind not in CASE_KINDS:
-            raise InputError(f"kind: {self.kind!r}; {nearest(self.kind, CASE_KINDS)}")
-        if self.family not in FAMILIES:
-            raise InputError(
-                f"family: {self.family!r}; {nearest(self.family, FAMILIES)}"
-            )
-        if self.campaign not in CAMPAIGNS:
-            raise InputError(
-                f"campaign: {self.campaign!r}; {nearest(self.campaign, CAMPAIGNS)}"
-            )
+        words = {"kind": CASE_KINDS, "family": FAMILIES, "campaign": CAMPAIGNS}
+        for key, known_words in words.items():
+            word = getattr(self, key)
+            if word not in known_words:
+                raise InputError(f"{key}: {word!r}; {nearest(word, known_words)}")
         if self.family in inside.MACHINES and self.campaign != "standard":
             raise InputError(
                 f"campaign: {self.campaign!r} of the family {self.family!r}; expected "

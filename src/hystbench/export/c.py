@@ -25,42 +25,26 @@ LIBRARY = (
 WIDTH = 88
 
 
+def filled(file: str, **words: str) -> str:
+    """Read a file beside this module, with words in the places of their ``@names@``."""
+    text = Path(__file__).with_name(file).read_text(encoding="utf-8")
+    return re.sub("@(\\w+)@", lambda found: words[found[1]], text)
+
+
 def header(model: Described) -> str:
     """Write the header: the state, and the two functions that use it."""
-    name = model.name
     states = [f"    double {state}[{size}];" for state, size in model.all_states()]
-    told = [f"{model.title}: {model.about}.", *model.differences]
-    return "\n".join(
-        [
-            _comment(told),
-            f"#ifndef HB_{name.upper()}_H",
-            f"#define HB_{name.upper()}_H",
-            "",
-            f"#define {name.upper()}_DT {model.sampling.dt!r} /* s */",
-            "",
-            "#ifdef __cplusplus",
-            'extern "C" {',
-            "#endif",
-            "",
-            "typedef struct {",
-            *(states or ["    double none; /* the model remembers nothing */"]),
-            f"}} {name}_state;",
-            "",
-            _comment([model.begins]),
-            f"void {name}_init({name}_state *state);",
-            "",
-            _comment(
-                [f"The next sample: {model.output.label} of {model.input.label}."]
-            ),
-            f"double {name}_step({name}_state *state, double input);",
-            "",
-            "#ifdef __cplusplus",
-            "}",
-            "#endif",
-            "",
-            "#endif",
-            "",
-        ]
+    none = "    double none; /* the model remembers nothing */"
+    sides = f"{model.output.label} of {model.input.label}"
+    return filled(
+        "model.h",
+        told=_comment([f"{model.title}: {model.about}.", *model.differences]),
+        name=model.name,
+        NAME=model.name.upper(),
+        dt=repr(model.sampling.dt),
+        states="\n".join(states) or none,
+        begins=_comment([model.begins]),
+        next=_comment([f"The next sample: {sides}."]),
     )
 
 

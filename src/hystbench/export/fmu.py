@@ -17,94 +17,9 @@ from hystbench.export.described import Described
 Version = Literal[2, 3]
 VERSIONS: dict[str, Version] = {"2": 2, "3": 3}
 #: What the functions of every version call.
-SHARED = Path(__file__).with_name("hb_unit.h")
+SHARED = "hb_unit.h"
 #: The files of an archive have no time of their own: the same model, the same bytes.
 NO_TIME = (1980, 1, 1, 0, 0, 0)
-
-DESCRIPTIONS: dict[Version, str] = {
-    2: """\
-<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="2.0" modelName={title} guid={token}
-    description={about} generationTool={tool}>
-  <CoSimulation modelIdentifier={name} canHandleVariableCommunicationStepSize="true"
-      canGetAndSetFMUstate="true" canNotUseMemoryManagementFunctions="true">
-    <SourceFiles>
-      <File name={source}/>
-      <File name="fmi2.c"/>
-    </SourceFiles>
-  </CoSimulation>
-  <UnitDefinitions>
-{units}
-  </UnitDefinitions>
-  <DefaultExperiment startTime="0" stepSize={dt}/>
-  <ModelVariables>
-    <ScalarVariable name="time" valueReference="0" causality="independent"
-        variability="continuous">
-      <Real/>
-    </ScalarVariable>
-    <ScalarVariable name={input} valueReference="1" causality="input"
-        variability="discrete">
-      <Real unit={input_unit} start="0"/>
-    </ScalarVariable>
-    <ScalarVariable name={output} valueReference="2" causality="output"
-        variability="discrete">
-      <Real unit={output_unit}/>
-    </ScalarVariable>
-  </ModelVariables>
-  <ModelStructure>
-    <Outputs>
-      <Unknown index="3" dependencies=""/>
-    </Outputs>
-    <InitialUnknowns>
-      <Unknown index="3" dependencies=""/>
-    </InitialUnknowns>
-  </ModelStructure>
-</fmiModelDescription>
-""",
-    3: """\
-<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="3.0" modelName={title} instantiationToken={token}
-    description={about} generationTool={tool}>
-  <CoSimulation modelIdentifier={name} canHandleVariableCommunicationStepSize="true"
-      fixedInternalStepSize={dt} canGetAndSetFMUState="true"/>
-  <UnitDefinitions>
-{units}
-  </UnitDefinitions>
-  <DefaultExperiment startTime="0" stepSize={dt}/>
-  <ModelVariables>
-    <Float64 name="time" valueReference="0" causality="independent"/>
-    <Float64 name={input} valueReference="1" causality="input" unit={input_unit}
-        variability="discrete" start="0"/>
-    <Float64 name={output} valueReference="2" causality="output" unit={output_unit}
-        variability="discrete"/>
-  </ModelVariables>
-  <ModelStructure>
-    <Output valueReference="2" dependencies=""/>
-    <InitialUnknown valueReference="2" dependencies=""/>
-  </ModelStructure>
-</fmiModelDescription>
-""",
-}
-
-#: How the sources are built; later releases of FMI 2.0 have this file of FMI 3.0 too.
-BUILD = """\
-<?xml version="1.0" encoding="UTF-8"?>
-<fmiBuildDescription fmiVersion="3.0">
-  <BuildConfiguration modelIdentifier="{name}">
-    {files}
-  </BuildConfiguration>
-  <BuildConfiguration modelIdentifier="{name}" platform="x86_64-linux">
-    {files}
-    <Library name="m" external="true"/>
-  </BuildConfiguration>
-</fmiBuildDescription>
-"""
-FILES = """\
-<SourceFileSet language="C99">
-      <SourceFile name="{name}.c"/>
-      <SourceFile name="fmi{fmi}.c"/>
-      <PreprocessorDefinition name="FMI{fmi}_OVERRIDE_FUNCTION_PREFIX" value="1"/>
-    </SourceFileSet>"""
 
 
 def write_fmu(model: Described, path: Path, fmi: Version = 3) -> None:
@@ -144,27 +59,21 @@ def contents(model: Described, fmi: Version = 3) -> dict[str, str]:
         "input_unit": model.input.unit,
         "output_unit": model.output.unit,
     }
-    description = DESCRIPTIONS[fmi].format(
+    own = {"name": model.name, "NAME": model.name.upper(), "token": token}
+    description = c.filled(
+        f"fmi{fmi}.xml",
         units="\n".join(f"    <Unit name={quoteattr(unit)}/>" for unit in units),
         **{key: quoteattr(value) for key, value in values.items()},
     )
     return {
         "modelDescription.xml": description,
-        "sources/buildDescription.xml": BUILD.format(
-            name=model.name, files=FILES.format(name=model.name, fmi=fmi)
+        # Later releases of FMI 2.0 have this file of FMI 3.0 too.
+        "sources/buildDescription.xml": c.filled(
+            "buildDescription.xml", name=model.name, fmi=str(fmi)
         ),
         f"sources/{model.name}.h": header,
         f"sources/{model.name}.c": source,
         **{
-            f"sources/{path.name}": _filled(path, model.name, token)
-            for path in (SHARED, SHARED.with_name(f"fmi{fmi}.c"))
+            f"sources/{file}": c.filled(file, **own) for file in (SHARED, f"fmi{fmi}.c")
         },
     }
-
-
-def _filled(path: Path, name: str, token: str) -> str:
-    """Read C that is the same for all models but for these words."""
-    text = path.read_text(encoding="utf-8")
-    for key, word in {"@name@": name, "@NAME@": name.upper(), "@token@": token}.items():
-        text = text.replace(key, word)
-    return text

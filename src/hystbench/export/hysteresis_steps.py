@@ -72,74 +72,45 @@ def acting_field(c, a, dt, field, v):
     return field[0]
 
 
-def rate_dependent_hysteresis(
-    form,
-    coefficient,
-    exponent,
-    dt,
-    fine,
-    points,
-    ahead,
-    values,
-    rates,
-    history,
-    growth_before,
-    field,
-    v,
-    growth,
-):
+def rate_dependent_hysteresis(k, history, growth_before, field, v, growth):
     """Give the fields and growths that what is inside gets, one after the other."""
-    first = history[0] == ahead
-    remember(points, history, v)
-    if history[0] <= ahead:
+    first = history[0] == k.ahead
+    remember(k.points, history, v)
+    if history[0] <= k.ahead:
         return []
-    v = history[1 + ahead]
+    v = history[1 + k.ahead]
     if first:
         growth_before[0], field[0] = growth, v
     inside = []
-    for row in [fine - 1] if first else range(fine):
-        taps = slice(row * points, (row + 1) * points)
-        rate = rates[taps] @ history[1:] if history[0] > 1 else 0.0
-        effect = coefficient * abs(rate) ** exponent
-        now = v if row == fine - 1 else values[taps] @ history[1:]
-        factor = growth_before[0] + (growth - growth_before[0]) * (row + 1) / fine
-        if form == 0:
+    for row in [k.fine - 1] if first else range(k.fine):
+        taps = slice(row * k.points, (row + 1) * k.points)
+        rate = k.rates[taps] @ history[1:] if history[0] > 1 else 0.0
+        effect = k.coefficient * abs(rate) ** k.exponent
+        now = v if row == k.fine - 1 else k.values[taps] @ history[1:]
+        factor = growth_before[0] + (growth - growth_before[0]) * (row + 1) / k.fine
+        if k.form == 0:
             factor *= 1 + effect
-        elif form == 1:
+        elif k.form == 1:
             now -= math.copysign(effect, rate)
         else:
-            now = acting_field(coefficient, exponent, dt, field, now)
+            now = acting_field(k.coefficient, k.exponent, k.dt, field, now)
         inside.append((now, factor))
     growth_before[0] = growth
     return inside
 
 
-def rdgpi(
-    spacing,
-    loss,
-    weight,
-    tau,
-    envelope_gain,
-    envelope_offset,
-    points,
-    ahead,
-    rate,
-    count,
-    history,
-    w,
-    z,
-):
+def rdgpi(k, history, w, z):
     """Let thresholds and weights follow the rate: docs/rdgpi.md of hystbench."""
-    remember(points, history, z)
-    if history[0] <= ahead:
+    remember(k.points, history, z)
+    if history[0] <= k.ahead:
         return 0.0
-    z = history[1 + ahead]
-    speed = abs(rate @ history[1:]) if history[0] > 1 else 0.0
-    apart = spacing[0] * math.log(spacing[1] + spacing[2] * speed)
-    ratio, envelope = math.exp(-tau * apart), envelope_gain * z + envelope_offset
-    number = np.arange(count)
+    z = history[1 + k.ahead]
+    speed = abs(k.rate @ history[1:]) if history[0] > 1 else 0.0
+    apart = k.spacing[0] * math.log(k.spacing[1] + k.spacing[2] * speed)
+    ratio, envelope = math.exp(-k.tau * apart), k.envelope_gain * z + k.envelope_offset
+    number = np.arange(k.count)
     y = ratio**number @ play(envelope, envelope, number * apart, w)
-    return weight * (1 - loss[0] * math.log(loss[1] + loss[2] * speed)) * y
+    return k.weight * (1 - k.loss[0] * math.log(k.loss[1] + k.loss[2] * speed)) * y
 
 
 def mass_below(cells, mass, x, y):
@@ -199,41 +170,29 @@ def langevin_ratio(x):
     return ((1 + e) / (1 - e) - 1 / size) / size
 
 
-def jiles_atherton(
-    saturation,
-    shape,
-    coupling,
-    pinning,
-    reversibility,
-    longest,
-    bias,
-    start,
-    field,
-    magnetization,
-    z,
-):
+def jiles_atherton(k, field, magnetization, z):
     """Integrate over the field by the classical Runge-Kutta method."""
 
     def slope(h, m):
-        x = (h + coupling * m) / shape
+        x = (h + k.coupling * m) / k.shape
         ratio = langevin_ratio(x)
         anhysteretic = x * ratio
-        rise = (1 - anhysteretic * anhysteretic - 2 * ratio) / shape
+        rise = (1 - anhysteretic * anhysteretic - 2 * ratio) / k.shape
         gap = direction * (anhysteretic - m)
-        effective = max(gap, 0.0) / pinning + reversibility * rise
-        return effective / (1 - coupling * effective)
+        effective = max(gap, 0.0) / k.pinning + k.reversibility * rise
+        return effective / (1 - k.coupling * effective)
 
-    way = (bias + z) - (bias + field[0])
+    way = (k.bias + z) - (k.bias + field[0])
     direction = -1 if way < 0 else 1
-    m = start + magnetization[0] if math.isfinite(way) else math.nan
-    steps = math.ceil(abs(way) / longest) if math.isfinite(way) else 0
+    m = k.start + magnetization[0] if math.isfinite(way) else math.nan
+    steps = math.ceil(abs(way) / k.longest) if math.isfinite(way) else 0
     each = way / max(steps, 1)
     for s in range(steps):
-        at = bias + field[0] + s * each
+        at = k.bias + field[0] + s * each
         first = slope(at, m)
         second = slope(at + each / 2, m + each / 2 * first)
         third = slope(at + each / 2, m + each / 2 * second)
         fourth = slope(at + each, m + each * third)
         m += each / 6 * (first + 2 * (second + third) + fourth)
-    field[0], magnetization[0] = z, m - start
-    return saturation * magnetization[0]
+    field[0], magnetization[0] = z, m - k.start
+    return k.saturation * magnetization[0]

@@ -186,7 +186,7 @@ def _motion(block: Mechanism, forces: tuple[Force, ...]) -> Iterator[Making]:
 def _through(step: Simulated, ends: Ends) -> Ends:
     """Give what a slow signal between two ends becomes."""
     if isinstance(step, LinearBlock):
-        gain = float(step.frequency_response(np.zeros(1))[0].real)
+        gain = step.continuous().static_gain
         low, high = sorted(gain * end for end in ends)
         return low, high
     path = np.array([*ends, *ends])

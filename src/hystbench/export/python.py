@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from textwrap import indent, wrap
@@ -48,12 +48,7 @@ def module(model: Described) -> str:
     chunks = _library()
     told = [f"{model.title}: {model.about}.", *model.differences]
     text = "\n".join(_quoted(line) for said in told for line in wrap(said, WIDTH - 4))
-    constants = [
-        _array(_constant(piece, key), value)
-        for piece in model.all_pieces()
-        for key, value in piece.step.constants.items()
-        if isinstance(value, np.ndarray)
-    ]
+    constants = [text for piece in model.all_pieces() for text in _constants(piece)]
     constants += [
         _array(f"{name.upper()}_START", value) for name, value in model.starts.items()
     ]
@@ -63,6 +58,9 @@ def module(model: Described) -> str:
         else f"self.{name} = np.zeros({size})"
         for name, size in model.all_states()
     ]
+    together = ""
+    if any(map(_takes_together, model.all_pieces())):
+        together = "from types import SimpleNamespace\n"
     steps = [
         f"remember({piece.step.constants['points']}, self.{piece.history}, y)"
         for piece in model.watching
@@ -88,7 +86,7 @@ def module(model: Described) -> str:
         steps=indent("\n".join(filter(None, steps)), " " * 8),
     )
     parts = [
-        f'"""{text}\n"""\n\nimport math\n\nimport numpy as np',
+        f'"""{text}\n"""\n\nimport math\n{together}\nimport numpy as np',
         f"DT = {model.sampling.dt!r}  # s",
         *constants,
         needed(chunks, model.functions).replace("\n\n", "\n\n\n"),
@@ -158,6 +156,8 @@ def _call(piece: Piece, given: Sequence[str]) -> str:
         _constant(piece, key) if isinstance(value, np.ndarray) else repr(value)
         for key, value in piece.step.constants.items()
     ]
+    if _takes_together(piece):
+        arguments = [piece.label.upper()]
     arguments += [f"self.{piece.label}_{state}" for state in piece.step.states]
     inside = wrap(
         ", ".join([*arguments, *given]), 76, break_long_words=False,
@@ -173,14 +173,40 @@ def _own(piece: Piece, given: Sequence[str]) -> str:
 LANGUAGE = Language(_call, _own)
 
 
+def _takes_together(piece: Piece) -> bool:
+    """Tell whether a step's function takes its constants together, as ``k``."""
+    function = piece.step.function
+    return _library()[function].startswith(f"def {function}(k, ")
+
+
+def _constants(piece: Piece) -> Iterator[str]:
+    """Write the constants of a piece: those taken together as one, else its arrays."""
+    constants = piece.step.constants
+    if _takes_together(piece):
+        told = [
+            f"{key}={_values(value) if isinstance(value, np.ndarray) else repr(value)},"
+            for key, value in constants.items()
+        ]
+        inside = indent("\n".join(told), "    ")
+        yield f"{piece.label.upper()} = SimpleNamespace(\n{inside}\n)"
+        return
+    for key, value in constants.items():
+        if isinstance(value, np.ndarray):
+            yield _array(_constant(piece, key), value)
+
+
 def _constant(piece: Piece, key: str) -> str:
     return f"{piece.label}_{key}".upper()
 
 
 def _array(name: str, values: Any) -> str:
+    return f"{name} = {_values(values)}"
+
+
+def _values(values: Any) -> str:
     numbers = ", ".join(repr(float(value)) for value in values)
     lines = wrap(numbers, 80, break_long_words=False, break_on_hyphens=False)
-    return f"{name} = np.array([\n    " + "\n    ".join(lines) + "\n])"
+    return "np.array([\n    " + "\n    ".join(lines) + "\n])"
 
 
 @cache

@@ -1,7 +1,8 @@
 """One function for each kind of step: constants, states, then what enters.
 
 The functions of steps.c in Python: states are arrays that are changed in place and all
-zero at the start. hystbench copies what a model needs of this file into its own.
+zero at the start. A step of many constants takes them together, as ``k``. hystbench
+copies what a model needs of this file into its own.
 """
 
 from __future__ import annotations
@@ -132,61 +133,32 @@ def slew_limit(rate, started, before, now, z):
     return now[0]
 
 
-def linear(
-    size,
-    points,
-    ahead,
-    phi,
-    drive,
-    output,
-    direct,
-    settled,
-    static,
-    x,
-    x_next,
-    history,
-    offset,
-    z,
-):
+def linear(k, x, x_next, history, offset, z):
     """Do ``x(k) = phi x(k-1) + sum_j drive_j v(k-j)``, ``y = output x + direct v``.
 
     Of the newest sample's time less those that are known ahead.
     """
-    moves = history[0] > ahead
-    if settled and history[0] == 0:
+    moves = history[0] > k.ahead
+    if k.settled and history[0] == 0:
         offset[0] = z
-    remember(points, history, z - offset[0])
+    remember(k.points, history, z - offset[0])
     if moves:
-        x_next[:] = phi.reshape(size, size) @ x + history[1:] @ drive.reshape(
-            points, size
+        x_next[:] = k.phi.reshape(k.size, k.size) @ x + history[1:] @ k.drive.reshape(
+            k.points, k.size
         )
         x[:] = x_next
-    return direct * history[1 + ahead] + static * offset[0] + output @ x
+    return k.direct * history[1 + k.ahead] + k.static * offset[0] + k.output @ x
 
 
-def modes(
-    size,
-    points,
-    ahead,
-    phi,
-    drive,
-    output,
-    direct,
-    settled,
-    static,
-    x,
-    history,
-    offset,
-    z,
-):
+def modes(k, x, history, offset, z):
     """Do the same where phi is diagonal."""
-    moves = history[0] > ahead
-    if settled and history[0] == 0:
+    moves = history[0] > k.ahead
+    if k.settled and history[0] == 0:
         offset[0] = z
-    remember(points, history, z - offset[0])
+    remember(k.points, history, z - offset[0])
     if moves:
-        x[:] = phi * x + history[1:] @ drive.reshape(points, size)
-    return direct * history[1 + ahead] + static * offset[0] + output @ x
+        x[:] = k.phi * x + history[1:] @ k.drive.reshape(k.points, k.size)
+    return k.direct * history[1 + k.ahead] + k.static * offset[0] + k.output @ x
 
 
 def thermal_drift(coefficient, count, lags, points, history, started, before, x, z):
@@ -217,40 +189,27 @@ def input_delay(shift, first, points, taps, count, kept, z):
     return taps @ window
 
 
-def stiffness_hardening(
-    participation,
-    phase,
-    damping,
-    coefficient,
-    segments,
-    points,
-    ahead,
-    corners,
-    ramp,
-    mode,
-    history,
-    z,
-):
+def stiffness_hardening(k, mode, history, z):
     """Integrate a stiffening mode by the classical Runge-Kutta method."""
 
     def bend(x, v, force):
-        return force - x * (1 + coefficient * x * x) - 2 * damping * v
+        return force - x * (1 + k.coefficient * x * x) - 2 * k.damping * v
 
     x, v = mode
-    moves = history[0] > ahead
-    remember(points, history, z)
-    places = corners.reshape(segments + 1, points) @ history[1:]
-    for i in range(segments if moves else 0):
+    moves = history[0] > k.ahead
+    remember(k.points, history, z)
+    places = k.corners.reshape(k.segments + 1, k.points) @ history[1:]
+    for i in range(k.segments if moves else 0):
         now, then = places[i], places[i + 1]
-        slope, reach = ramp * (then - now), np.fmax(abs(x), abs(then))
-        stiffness = math.sqrt(1 + 3 * abs(coefficient) * reach * reach)
-        whole = phase * max(stiffness, damping) / 0.1
+        slope, reach = k.ramp * (then - now), np.fmax(abs(x), abs(then))
+        stiffness = math.sqrt(1 + 3 * abs(k.coefficient) * reach * reach)
+        whole = k.phase * max(stiffness, k.damping) / 0.1
         if not whole < 1e5 - 1:
             x = math.nan  # it has run away, and stays there
         if math.isnan(x):
             break
         steps = math.ceil(whole)
-        h, part = phase / steps, 1 / steps
+        h, part = k.phase / steps, 1 / steps
         for s in range(steps):
             f1 = now + s * part * slope
             f2 = now + (s + 0.5) * part * slope
@@ -265,7 +224,7 @@ def stiffness_hardening(
             x += h / 6 * (v + 2 * (v2 + v3) + v4)
             v += h / 6 * (a1 + 2 * (a2 + a3) + a4)
     mode[:] = x, v
-    return (1 - participation) * history[1 + ahead] + participation * x
+    return (1 - k.participation) * history[1 + k.ahead] + k.participation * x
 
 
 def flow_out(rate, exponent, h):
@@ -273,44 +232,27 @@ def flow_out(rate, exponent, h):
     return rate * h**exponent if h > 0 else 0.0
 
 
-def store(
-    gain,
-    bias,
-    segments,
-    points,
-    ahead,
-    corners,
-    ramp,
-    parts,
-    t,
-    rate,
-    exponent,
-    height,
-    start,
-    outflow,
-    caught,
-    level,
-    history,
-    z,
-):
+def store(k, level, history, z):
     """Fill and empty a store by a Runge-Kutta method of second order."""
-    moves, over = history[0] > ahead, 0.0
-    remember(points, history, gain * z + bias)
-    if history[0] <= ahead:
+    moves, over = history[0] > k.ahead, 0.0
+    remember(k.points, history, k.gain * z + k.bias)
+    if history[0] <= k.ahead:
         return 0.0
-    h = level[0] if moves else min(start, height)
-    places = corners.reshape(segments + 1, points) @ history[1:]
-    for i in range(segments if moves else 0):
-        now, slope = places[i], ramp * (places[i + 1] - places[i]) / parts
-        for s in range(parts):
+    h = level[0] if moves else min(k.start, k.height)
+    places = k.corners.reshape(k.segments + 1, k.points) @ history[1:]
+    for i in range(k.segments if moves else 0):
+        now, slope = places[i], k.ramp * (places[i + 1] - places[i]) / k.parts
+        for s in range(k.parts):
             inflow = now + s * slope
-            rise = t / 2 * (inflow - flow_out(rate, exponent, h))
-            half = min(height, max(0.0, h + rise))
-            left = flow_out(rate, exponent, half)
-            h = max(0.0, h + t * (inflow + slope / 2 - left))
-            over += max(0.0, h - height)
-            h = min(h, height)
+            rise = k.t / 2 * (inflow - flow_out(k.rate, k.exponent, h))
+            half = min(k.height, max(0.0, h + rise))
+            left = flow_out(k.rate, k.exponent, half)
+            h = max(0.0, h + k.t * (inflow + slope / 2 - left))
+            over += max(0.0, h - k.height)
+            h = min(h, k.height)
     level[0] = h
-    if not outflow:
+    if not k.outflow:
         return h
-    return flow_out(rate, exponent, h) + caught * (over / (segments * parts * t))
+    return flow_out(k.rate, k.exponent, h) + k.caught * (
+        over / (k.segments * k.parts * k.t)
+    )

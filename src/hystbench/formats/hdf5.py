@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.formats.damaged import told
-from hystbench.formats.table import FREQUENCIES, INTERVALS, Column, Table, columns_of
+from hystbench.formats.table import FREQUENCIES, INTERVALS, Filling, Table, fields_of
 from hystbench.libraries import library
 
 OCTAVE = "OCTAVE_NEW_FORMAT"
@@ -20,12 +20,10 @@ UNITS = ("units", "unit", "Units", "Unit", "unit_string")
 def read(path: Path) -> Table:
     """Read all datasets that hold numbers, named by their path in the file."""
     h5py = library("h5py", "h5py", path, "formats")
-    columns: list[Column] = []
-    numbers: dict[str, float] = {}
-    notes: list[str] = []
+    found = Filling(path)
 
     def take(name: str, item: Any) -> None:
-        numbers.update(_numbers(name, item.attrs))
+        found.numbers.update(_numbers(name, item.attrs))
         if OCTAVE in item.parent.attrs:
             if not name.endswith("/value"):
                 return
@@ -35,25 +33,17 @@ def read(path: Path) -> Table:
         unit = unit_of(item.attrs)
         own = _numbers("", item.attrs)
         frequency = Table(path, (), own).sampling_frequency()
-        parts = (
-            {f"{name}/{key}": item[key] for key in item.dtype.names}
-            if item.dtype.names
-            else {name: item}
-        )
-        for each, part in parts.items():
+        for each, part in fields_of(name, item).items():
             kind = part.dtype.kind
             if kind not in "fiubMm" or part.shape is None or 0 in part.shape:
-                notes.append(f"{each}: no numbers; left out")
-                continue
-            found = columns_of(each, part[()], unit, frequency)
-            columns.extend(found[0])
-            numbers.update(found[1])
-            notes.extend(found[2])
+                found.leave_out(each, "no numbers")
+            else:
+                found.add(each, part[()], unit, frequency)
 
     with told(path, "HDF5 file"), h5py.File(path, "r") as content:
-        numbers.update(_numbers("", content.attrs))
+        found.numbers.update(_numbers("", content.attrs))
         content.visititems(take)
-    return Table(path, tuple(columns), numbers, tuple(notes))
+    return found.table()
 
 
 def unit_of(attributes: Mapping[str, Any]) -> str | None:

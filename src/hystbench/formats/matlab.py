@@ -9,16 +9,14 @@ from typing import Any
 import numpy as np
 
 from hystbench.formats.damaged import told
-from hystbench.formats.table import Column, Table, columns_of
+from hystbench.formats.table import Filling, Table
 from hystbench.libraries import library
 
 _HDF5 = b"\x89HDF"
 _TEXT_73 = b"MATLAB 7.3"  # also of a file that ends before its HDF5 begins
 """What HDF5 begins with; MATLAB writes 512 bytes of its own before it."""
-_OBJECT = (
-    "{}: a MATLAB object such as a table or timeseries; left out: save its columns as "
-    "plain arrays or as fields of a struct"
-)
+_OBJECT = "a MATLAB object such as a table or timeseries"
+_SAVE = ": save its columns as plain arrays or as fields of a struct"
 DEEPEST = 8
 """Levels of structs inside structs that are looked at."""
 
@@ -31,20 +29,15 @@ def read(path: Path) -> Table:
     """
     with path.open("rb") as stream:
         start = stream.read(512 + len(_HDF5))
-    columns: list[Column] = []
-    numbers: dict[str, float] = {}
-    notes: list[str] = []
+    found = Filling(path)
     is_hdf5 = _HDF5 in (start[: len(_HDF5)], start[512:]) or start.startswith(_TEXT_73)
     variables = _version_73(path) if is_hdf5 else _version_5(path)
     for name, values in variables:
         if values is None:
-            notes.append(_OBJECT.format(name))
-            continue
-        found = columns_of(name, values)
-        columns += found[0]
-        numbers |= found[1]
-        notes += found[2]
-    return Table(path, tuple(columns), numbers, tuple(notes))
+            found.leave_out(name, _OBJECT, _SAVE)
+        else:
+            found.add(name, values)
+    return found.table()
 
 
 def _version_5(path: Path) -> Iterator[tuple[str, Any]]:
@@ -74,7 +67,7 @@ def _inside(name: str, value: Any, depth: int) -> Iterator[tuple[str, Any]]:
     elif array.dtype.kind == "O":
         for element, where in _elements(array, name):
             yield from _inside(where, element, depth + 1)
-    else:
+    elif array.dtype.kind != "U":
         yield name, array
 
 
@@ -117,25 +110,21 @@ def _inside_73(
         # Each field of an array of structs is an array of references.
         counts = {array.size for array in arrays.values()}
         for key, part in fields.items():
-            if key in arrays and len(counts) == 1:
-                references = arrays[key].ravel()
-                for k, reference in enumerate(references, start=1):
-                    where = name if len(references) == 1 else f"{name}({k})"
-                    target = content[reference]
-                    yield from _inside_73(
-                        h5py, content, f"{where}/{key}", target, depth + 1, seen
-                    )
-            else:
+            of_struct = key in arrays and len(counts) == 1
+            targets = (
+                [(content[one], where) for one, where in _elements(arrays[key].T, name)]
+                if of_struct
+                else [(part, name)]
+            )
+            for target, where in targets:
                 yield from _inside_73(
-                    h5py, content, f"{name}/{key}", part, depth + 1, seen
+                    h5py, content, f"{where}/{key}", target, depth + 1, seen
                 )
         return
     if item.attrs.get("MATLAB_empty") or item.shape is None or 0 in item.shape:
         return
     if _refers(h5py, item):  # a cell array
-        references = item[()].ravel()
-        for k, reference in enumerate(references, start=1):
-            where = name if len(references) == 1 else f"{name}({k})"
+        for reference, where in _elements(item[()].T, name):
             target = content[reference]
             yield from _inside_73(h5py, content, where, target, depth + 1, seen)
         return

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.formats.damaged import told
-from hystbench.formats.table import Column, Table, columns_of
+from hystbench.formats.table import Filling, Table
 from hystbench.libraries import library
 
 
@@ -16,8 +16,7 @@ def read(path: Path) -> Table:
     frame = _frame(path)
     import pandas as pd  # late: a third of a second
 
-    columns: list[Column] = []
-    notes: list[str] = []
+    found = Filling(path)
     for name in map(str, frame.columns):
         series = frame[name]
         if isinstance(series.dtype, pd.DatetimeTZDtype):
@@ -27,11 +26,8 @@ def read(path: Path) -> Table:
             values = series.to_numpy(float, na_value=float("nan")) if numeric else None
         else:
             values = series.to_numpy()
-        found = ([], {}, []) if values is None else columns_of(name, values)
-        if not found[0]:
-            notes.append(f"{name}: no numbers; left out")
-        columns += found[0]
-    return Table(path, tuple(columns), {}, tuple(notes))
+        found.add(name, "" if values is None else values)
+    return found.table()
 
 
 def _frame(path: Path) -> Any:

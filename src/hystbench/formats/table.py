@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -177,51 +178,73 @@ def _masked(values: object) -> bool:
     return isinstance(values, np.ma.MaskedArray) and values.dtype.kind == "f"
 
 
-def columns_of(
-    name: str,
-    values: object,
-    unit: str | None = None,
-    frequency: float | None = None,
-) -> tuple[list[Column], dict[str, float], list[str]]:
-    """Take an array apart into columns: a matrix gives several, a lone number none.
+class Filling:
+    """A table of a file while its arrays are read, one after the other.
 
     Parameters
     ----------
-    name : str
-    values : array_like
-        Of any shape.
-    unit : str, optional
-    frequency : float, optional
-        Sampling frequency in Hz.
-
-    Returns
-    -------
-    columns : list of Column
-        Those of a matrix are named ``name(:,1)`` and so on; its longer side is time.
-    numbers : dict of str to float
-    notes : list of str
-        Why it is left out, where it is.
+    path : Path
     """
-    array = as_numbers(values)
-    if array is None:
-        is_complex = np.asarray(values).dtype.kind == "c"
-        return [], {}, [f"{name}: complex numbers; left out"] * is_complex
-    shape = array.shape
-    array = np.squeeze(array)
-    if array.ndim == 0:
-        return [], {name: float(array)}, []
-    if array.ndim == 1:
-        return [Column(name, array, unit, frequency)], {}, []
-    if array.ndim == 2:
-        rows = array if array.shape[0] >= array.shape[1] else array.T
-        if rows.shape[1] > MOST_COLUMNS:
-            return [], {}, [f"{name}: a matrix of {shape}; left out, as no few columns"]
-        columns = [
-            Column(f"{name}(:,{k})", np.ascontiguousarray(part), unit, frequency)
-            for k, part in enumerate(rows.T, start=1)
-        ]
-        return columns, {}, []
-    return [], {}, [f"{name}: an array of {array.ndim} dimensions; left out"]
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.columns: list[Column] = []
+        self.numbers: dict[str, float] = {}
+        self.notes: list[str] = []
+
+    def add(
+        self,
+        name: str,
+        values: object,
+        unit: str | None = None,
+        frequency: float | None = None,
+    ) -> None:
+        """Take an array apart into columns: a matrix gives several, a lone number none.
+
+        Parameters
+        ----------
+        name : str
+            Columns of a matrix are named ``name(:,1)`` and so on; its longer side is
+            time. Fields of a record array are named ``name/field``.
+        values : array_like
+            Of any shape. What is left out is noted.
+        unit : str, optional
+        frequency : float, optional
+            Sampling frequency in Hz.
+        """
+        array = as_numbers(values)
+        if array is None:
+            is_complex = np.asarray(values).dtype.kind == "c"
+            self.leave_out(name, "complex numbers" if is_complex else "no numbers")
+            return
+        shape, array = array.shape, np.squeeze(array)
+        if array.ndim == 0:
+            self.numbers[name] = float(array)
+        elif array.ndim == 1:
+            self.columns.append(Column(name, array, unit, frequency))
+        elif array.ndim > 2:
+            self.leave_out(name, f"an array of {array.ndim} dimensions")
+        elif min(array.shape) > MOST_COLUMNS:
+            self.leave_out(name, f"a matrix of {shape}", ", as no few columns")
+        else:
+            rows = array if array.shape[0] >= array.shape[1] else array.T
+            for k, part in enumerate(rows.T, start=1):
+                own = np.ascontiguousarray(part)
+                self.columns.append(Column(f"{name}(:,{k})", own, unit, frequency))
+
+    def leave_out(self, name: str, what: str, why: str = "") -> None:
+        """Note that something of the file is no column."""
+        self.notes.append(f"{name}: {what}; left out{why}")
+
+    def table(self) -> Table:
+        """Give what was read."""
+        return Table(self.path, tuple(self.columns), self.numbers, tuple(self.notes))
+
+
+def fields_of(name: str, array: Any) -> dict[str, Any]:
+    """Give the fields of a record array as arrays of their own, by name."""
+    names = array.dtype.names
+    return {f"{name}/{key}": array[key] for key in names} if names else {name: array}
 
 
 #: Of a matrix: wider ones are pictures or tables of something else.

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from hystbench.formats.damaged import told
-from hystbench.formats.table import Column, Table, columns_of
+from hystbench.formats.table import Filling, Table
 from hystbench.libraries import library
 
 UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit")
@@ -17,29 +17,19 @@ UNITS = ("unit_string", "NI_UnitDescription", "unit", "Unit")
 def read(path: Path) -> Table:
     """Read all channels, as ``group/channel``, with unit and sampling frequency."""
     nptdms = library("nptdms", "nptdms", path, "formats")
-    columns: list[Column] = []
-    notes: list[str] = []
-    with told(path, "TDMS file"), _heard(notes):
+    found = Filling(path)
+    with told(path, "TDMS file"), _heard(found.notes):
         content = nptdms.TdmsFile.read(path)
         for group in content.groups():
             for channel in group.channels():
                 name = f"{group.name}/{channel.name}"
-                unit = next(
-                    (
-                        str(channel.properties[key])
-                        for key in UNITS
-                        if channel.properties.get(key)
-                    ),
-                    None,
-                )
+                units = filter(None, map(channel.properties.get, UNITS))
+                unit = next(map(str, units), None)
                 step = channel.properties.get("wf_increment")
                 frequency = 1.0 / float(step) if step and float(step) > 0 else None
-                found = columns_of(name, channel[:], unit, frequency)
-                if not found[0] and len(channel):
-                    notes.append(f"{name}: no numbers; left out")
-                columns += found[0]
-                notes += found[2]
-    return Table(path, tuple(columns), {}, tuple(notes))
+                if len(channel):
+                    found.add(name, channel[:], unit, frequency)
+    return found.table()
 
 
 class _Listener(logging.Handler):

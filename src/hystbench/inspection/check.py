@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,13 +22,10 @@ from hystbench.inspection.visible import Seen, runs, seen_effects
 from hystbench.inspection.writing import entry_text
 from hystbench.model import Model
 from hystbench.record import Record
+from hystbench.yaml_files import load_yaml
 
 ALIKE = 2.0
 """Ratio of the fastest rate to the slowest below which records are of one rate."""
-TOO_FAR = (
-    " The input is missing for more than a quarter of its fastest period, which no "
-    "straight line can stand for: give the parts between as 'rows'."
-)
 JITTERS = 0.01
 """Of a step: a clock that is less even than that is told."""
 
@@ -141,158 +140,79 @@ def check(dataset: Dataset, effects: bool = True) -> Check:
 def _findings(
     dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts], floor: Floor
 ) -> list[Finding]:
-    found = [
-        *_stuck(dataset, records, facts),
-        *_flat(dataset, records, facts),
-        *_periods(dataset, facts),
-    ]
-    for item in facts:
-        if item.missing:
-            found.append(
-                Finding(
-                    "note",
-                    f"{item.name}: {item.missing} of {item.samples} samples are "
-                    "missing and interpolated; no score counts them."
-                    + TOO_FAR
-                    * item.bridged_too_far,
-                    topic="missing",
-                    record=item.name,
-                )
-            )
-        if item.jitter is not None and item.jitter > JITTERS:
-            found.append(
-                Finding(
-                    "note",
-                    f"{item.name}: the steps of time differ by "
-                    f"{100 * item.jitter:.2g} % rms of their mean; the mean is taken.",
-                    topic="jitter",
-                    record=item.name,
-                )
-            )
+    """Say what a reader should know, what is refused first; words are in check.yaml."""
+    both = list(zip(records, facts, strict=True))
+    found = [each for pair in both for each in _still(dataset, *pair)]
+    new = [item for item in facts if item.period and not item.declared]
+    if new:
+        told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
+        lines = [_entry(dataset, item.name, period_samples=item.period) for item in new]
+        found.append(_finding("periods", told=told, paste=lines))
+    found += [each for item in facts for each in _holes(item)]
     for item in late(facts):
-        samples = item.delay_s / item.dt
-        found.append(
-            Finding(
-                "note",
-                f"{item.name}: its output is {1e3 * item.delay_s:.3g} ms "
-                f"({samples:+.1f} samples) behind a loop that does not depend on the "
-                "rate; the delays of the others do not foretell that: was its trigger "
-                "late?",
-                topic="late",
-                record=item.name,
-            )
-        )
-    found += _on_the_whole(dataset, facts, floor)
+        delay: dict[str, Any] = {
+            "ms": 1e3 * item.delay_s,
+            "samples": item.delay_s / item.dt,
+        }
+        found.append(_finding("late", name=item.name, **delay))
+    fit = [item.excitation for item in facts if item.use == "fit"]
+    rates, spans = ([x.rate for x in fit], [round(x.span, 12) for x in fit])
+    on_the_whole = {
+        "none held out": all(item.use == "fit" for item in facts),
+        "no noise": floor.method == "upper-bound",
+        "one rate": max(rates) < ALIKE * min(rates),
+        "one amplitude": max(spans) < ALIKE * min(spans),
+    }
+    found += [_finding(topic) for topic, holds in on_the_whole.items() if holds]
     try:
-        found += [
-            Finding("note", line, topic="doubt") for line in doubts(dataset, records)
-        ]
+        found += [_finding("doubt", line=line) for line in doubts(dataset, records)]
     except InputError as error:
-        found.append(Finding("wrong", str(error)))
+        found.append(_finding("refused", line=str(error)))
     order = ("wrong", "missing", "note")
     return sorted(found, key=lambda item: order.index(item.kind))
 
 
-def _stuck(
-    dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts]
-) -> list[Finding]:
-    """Say which records look stuck or clipped."""
-    found = []
-    for record, item in zip(records, facts, strict=True):
-        if not item.stuck:
-            continue
+def _still(dataset: Dataset, record: Record, item: Facts) -> Iterator[Finding]:
+    """Say which channels of a record are stuck or clipped."""
+    if item.stuck:
         of_input = item.stuck.partition(": ")[2].startswith(record.input.name)
-        channel = "input" if of_input else "output"
-        entry = {**dataset.entry(item.name), "stands_still": [channel]}
-        text = f"{item.name}: {item.stuck}. Leave it out, or where it is real write:"
-        found.append(Finding("wrong", text, (_entry(entry),), "stuck", item.name))
+        channels = ["input" if of_input else "output"]
+        line = _entry(dataset, item.name, stands_still=channels)
+        yield _finding("stuck", paste=[line], **vars(item))
+    given = ("input", record.input, record.u), ("output", record.output, record.y)
+    for key, channel, values in given:
+        on_purpose = key == "input" and item.excitation.kind in ("steps", "ramps")
+        if item.stuck or on_purpose or key in dataset.stands_still(item.name):
+            continue
+        for flat in flats(values):
+            said = vars(channel) | {"channel": channel.name, "name": item.name}
+            made = _finding("flat", flat=flat, first=flat.first + 1, **said)
+            yield replace(made, topic=f"{flat.kind} {key}")
+
+
+def _holes(item: Facts) -> Iterator[Finding]:
+    """Say of a record that samples are missing, or its clock is uneven."""
+    if item.missing:
+        far = " too far" * item.bridged_too_far
+        yield replace(_finding(f"bridged{far}", **vars(item)), topic="missing")
+    if item.jitter is not None and item.jitter > JITTERS:
+        yield _finding("jitter", name=item.name, percent=100 * item.jitter)
+
+
+def _finding(topic: str, paste: Sequence[str] = (), **told: Any) -> Finding:
+    """Give a finding in the words of check.yaml, filled with what is told."""
+    about = _words()[topic]
+    lines = tuple(paste or about.get("paste", ()))
+    text = about["text"].format(**told)
+    return Finding(about["kind"], text, lines, topic, told.get("name", ""))
+
+
+@cache
+def _words() -> dict[str, Any]:
+    found: dict[str, Any] = load_yaml(Path(__file__).with_suffix(".yaml"))
     return found
 
 
-def _flat(
-    dataset: Dataset, records: Sequence[Record], facts: Sequence[Facts]
-) -> list[Finding]:
-    """Say which channels repeat a value exactly, where 'hystbench gap' takes them."""
-    found = []
-    for record, item in zip(records, facts, strict=True):
-        said = dataset.stands_still(item.name)
-        on_purpose = item.excitation.kind in ("steps", "ramps")
-        for key, channel, values in (
-            ("input", record.input, record.u),
-            ("output", record.output, record.y),
-        ):
-            if item.stuck or key in said or (key == "input" and on_purpose):
-                continue
-            for flat in flats(values):
-                text = (
-                    f"{item.name}: {channel.name} is exactly {flat.value:g} "
-                    f"{channel.unit} for {flat.samples} samples in {flat.stretches} "
-                    f"stretches, the first from sample {flat.first + 1} on: it looks "
-                    f"{flat.kind}. 'hystbench gap' takes it; mend it or leave it out."
-                )
-                topic = f"{flat.kind} {key}"
-                found.append(Finding("note", text, (), topic, item.name))
-    return found
-
-
-def _periods(dataset: Dataset, facts: Sequence[Facts]) -> list[Finding]:
-    """Say which periods were found and are to be written."""
-    new = [item for item in facts if item.period and not item.declared]
-    if not new:
-        return []
-    told = ", ".join(f"{item.name} every {item.period} samples" for item in new)
-    lines = tuple(
-        _entry({**dataset.entry(item.name), "period_samples": item.period})
-        for item in new
-    )
-    text = f"inputs repeat themselves: {told}. So the noise can be measured; write:"
-    return [Finding("missing", text, lines)]
-
-
-def _on_the_whole(
-    dataset: Dataset, facts: Sequence[Facts], floor: Floor
-) -> list[Finding]:
-    """Say what holds of all records together."""
-    found = []
-    if not any(item.use == "hold-out" for item in facts):
-        found.append(
-            Finding(
-                "missing",
-                "no record is held out, and 'hystbench gap' needs one. Best is one of "
-                "another kind than the others:",
-                ("use: hold-out",),
-            )
-        )
-    if floor.method == "upper-bound":
-        found.append(
-            Finding(
-                "missing",
-                "no record repeats its input and no noise is declared: the noise below "
-                "is an upper bound, and 'no gap' can never be said. Measure one record "
-                "with its input twice in a row, or say its rms while the input stands:",
-                ("noise_rms: ...",),
-            )
-        )
-    rates = [item.excitation.rate for item in facts if item.use == "fit"]
-    if max(rates) < ALIKE * min(rates):
-        found.append(
-            Finding(
-                "note",
-                "all records to fit are of about one rate: what depends on the rate "
-                "shows in them only by the shape of the loop.",
-            )
-        )
-    levels = {round(item.excitation.span, 12) for item in facts if item.use == "fit"}
-    if max(levels) < ALIKE * min(levels):
-        found.append(
-            Finding(
-                "note",
-                "all records to fit are of about one amplitude: what depends on it "
-                "shows in them only by the shape of the loop.",
-            )
-        )
-    return found
-
-
-def _entry(entry: dict[str, Any]) -> str:
-    return f"- {entry_text(entry)}"
+def _entry(dataset: Dataset, name: str, **more: Any) -> str:
+    """Give a record's line of dataset.yaml with what it should say too."""
+    return f"- {entry_text({**dataset.entry(name), **more})}"

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hystbench import dataset as files
 from hystbench.errors import InputError, nearest
@@ -121,10 +121,7 @@ def load_dataset(path: str | Path) -> Dataset:
         If the file, a key or a record's file is missing or wrong.
     """
     found = files.load_dataset(path)
-    known: dict[str, Any] = {
-        item.name: getattr(found, item.name) for item in fields(found)
-    }
-    return Dataset(**known)
+    return Dataset(**vars(found))
 
 
 def _frame(record: Record) -> pd.DataFrame:

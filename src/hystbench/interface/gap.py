@@ -162,32 +162,18 @@ class Gap:
         if table not in TABLES:
             raise InputError(f"to_frame: no table {table!r}; {nearest(table, TABLES)}")
         if table == "ranking":
-            return pd.DataFrame(
-                [
-                    {key: row.get(key) for key in RANKED}
-                    for row in self.content["ranking"]
-                ]
-            )
+            return pd.DataFrame(self.content["ranking"], columns=list(RANKED))
         if table == "effects":
-            return pd.DataFrame(
-                [
-                    {"effect": effect.name, "parameter": name, **item}
-                    for effect in self.effects
-                    for name, item in effect.parameters.items()
-                ],
-                columns=["effect", "parameter", "value", "standard_error", "unit"],
-            )
-        unit = self.content["unit"]
-        return pd.DataFrame(
-            [
-                {
-                    "record": item["name"],
-                    f"before ({unit})": item["before"],
-                    f"after ({unit})": item["after"],
-                }
-                for item in self.content["records"]
+            numbers = [
+                {"effect": effect.name, "parameter": name, **item}
+                for effect in self.effects
+                for name, item in effect.parameters.items()
             ]
-        )
+            return pd.DataFrame(numbers, columns=list(NUMBERS))
+        unit, records = self.content["unit"], pd.DataFrame(self.content["records"])
+        titles = {key: f"{key} ({unit})" for key in ("before", "after")}
+        found = records.rename(columns={"name": "record", **titles})
+        return found[["record", *titles.values()]]
 
     def plot(self) -> Picture:
         """Draw the hold-out records: loops and residuals, before and after.
@@ -241,6 +227,8 @@ class Gap:
 
 RANKED = ("round", "name", "place", "form", "gain", "score", "taken", "declined")
 """Columns of the table of what was tried."""
+NUMBERS = ("effect", "parameter", "value", "standard_error", "unit")
+"""Columns of the table of the effects' numbers."""
 
 
 def find_gap(

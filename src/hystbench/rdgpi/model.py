@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hystbench.envelope import check_names
 from hystbench.errors import InputError, nearest
 from hystbench.operators import rate_dependent_prandtl_ishlinskii
 from hystbench.record import FloatArray
@@ -191,13 +192,7 @@ class RateDependentGPI:
         InputError
             If a name is missing or unknown.
         """
-        known = [field.name for field in fields(cls)]
-        for name in parameters:
-            if name not in known:
-                raise InputError(f"rdgpi.{name}: unknown; {nearest(name, known)}")
-        for name in known:
-            if name not in parameters and name not in ("order", "start"):
-                raise InputError(f"rdgpi.{name}: missing")
+        check_names(cls, parameters, "rdgpi")
         return cls(**parameters)
 
 

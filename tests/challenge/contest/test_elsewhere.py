@@ -8,7 +8,7 @@ import yaml
 
 from hystbench.challenge.contest.elsewhere import beside, rows, told
 from hystbench.challenge.contest.frames import frame
-from hystbench.challenge.contest.rows import write_rows
+from hystbench.challenge.contest.score import write_rows
 from hystbench.gap.schema import SCHEMA
 from tests.challenge.contest.made import gap, named
 from tests.conftest import run_hystbench

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hystbench.challenge.contest import experiments, tables
+from hystbench.challenge.contest import tables
 from hystbench.challenge.contest.frames import frame
 from hystbench.challenge.contest.score import judge
 from hystbench.challenge.contest.summary import (
@@ -211,22 +211,22 @@ def test_the_confusion_counts_each_case_once():
 
 def test_what_was_confused_and_what_would_tell_it_apart():
     found = tables.confused(frame(a_contest()))
-    assert found == [("resonance", "creep", 1, 4, experiments.UNKNOWN)]
+    assert found == [("resonance", "creep", 1, 4, tables.UNKNOWN)]
 
 
 @pytest.mark.parametrize(
     ("one", "other", "told"),
     [
-        ("drive-lag", "sensor-lag", experiments.RATES),
-        ("eddy-diffusion", "input-delay", experiments.BAND),
-        ("drift", "creep", experiments.REPEAT),
-        ("creep", "thermal-drift", experiments.HOLD),
-        ("dropouts", "creep", experiments.UNKNOWN),
+        ("drive-lag", "sensor-lag", "one amplitude at several rates"),
+        ("eddy-diffusion", "input-delay", "a multisine up to half"),
+        ("drift", "creep", "the same record again"),
+        ("creep", "thermal-drift", "long holds"),
+        ("dropouts", "creep", tables.UNKNOWN),
     ],
 )
 def test_experiments_go_both_ways(one, other, told):
-    assert experiments.experiment(one, other) == told
-    assert experiments.experiment(other, one) == told
+    assert tables.experiment(one, other).startswith(told)
+    assert tables.experiment(other, one) == tables.experiment(one, other)
 
 
 def test_power_by_ratio():

@@ -22,6 +22,7 @@ from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel
+from tests.blocks.responses import frequency_response
 from tests.conftest import run_hystbench
 from tests.gap.made import multisine, play_sum, record, sine, steady, write_folder
 from tests.messages import message
@@ -44,7 +45,7 @@ def dynamics(model):
 
 
 def response(model, frequency_hz):
-    return dynamics(model).frequency_response(np.asarray(frequency_hz, dtype=float))
+    return frequency_response(dynamics(model), np.asarray(frequency_hz, dtype=float))
 
 
 SYSTEMS = {

@@ -10,7 +10,7 @@ import pandas as pd
 
 from hystbench.challenge.contest.frames import CONFIDENT
 from hystbench.challenge.contest.score import Row, judge, stated
-from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, Figure, of
+from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, figures, of
 from hystbench.challenge.contest.tables import calibration_error, middle
 from hystbench.files import read_json
 from hystbench.yaml_files import load_yaml
@@ -81,26 +81,6 @@ def rows(cases: Sequence[Path], schema: Mapping[str, Any]) -> list[Row]:
     return [told(case, schema) for case in cases]
 
 
-FIRST = ("top1", "single")
-SURELY = "unlisted: named with more than 0.8"
-SHARES = (
-    Figure("single, exact base, 20 dB", *FIRST, "gpi", 20.0, ">=", 0.95),
-    Figure(
-        "single, foreign base, 20 dB", "top1", "single", "foreign", 20.0, ">=", 0.88
-    ),
-    Figure("nothing beside, exact", "exact", "single", "gpi", 20.0, ">=", 0.88),
-    Figure("nothing beside, foreign", "exact", "single", "foreign", 20.0, ">=", 0.88),
-    Figure("single, exact base, 10 dB", *FIRST, "gpi", 10.0),
-    Figure("single, foreign base, 10 dB", *FIRST, "foreign", 10.0),
-    Figure("pair: both named", "all_named", "pair", "all", None, ">=", 0.88),
-    Figure("pair: nothing beside", "exact", "pair", "all", None, ">=", 0.8),
-    Figure("nothing hidden: no name", "no_name", "none", "all", None, ">=", 0.99),
-    Figure("unlisted: no name", "no_name", "unlisted", "all", None, ">=", 0.9),
-    Figure(SURELY, "confident", "unlisted", "all", None, "<=", 0.03),
-    Figure("wrong name with more than 0.8", "wrongly", "all", sense="<=", bound=0.03),
-)
-
-
 def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
     """Put the figures of both plants side by side.
 
@@ -116,7 +96,7 @@ def beside(own: pd.DataFrame, elsewhere: pd.DataFrame) -> pd.DataFrame:
     """
     both = [_with_names(cases) for cases in (own, elsewhere)]
     found: list[tuple[Any, ...]] = []
-    for figure in SHARES:
+    for figure in figures("elsewhere"):
         here, there = map(figure.share, both)
         found.append((figure.name, figure.asked, here.share, here.cases, *there))
     for name, families, asked in (

@@ -7,37 +7,8 @@ from dataclasses import dataclass
 from statistics import NormalDist, median
 from typing import Any
 
-#: Forms whose parameters mean what the block of the same name means by them. Of the
-#: others (a field bias, an algebraic saturation, a gap law) the block is another
-#: function, and its parameters have no true value.
-COMPARABLE: dict[str, dict[str, tuple[str, ...]]] = {
-    "input-delay": {"pure": ("delay_s",)},
-    "drive-lag": {"first-order": ("time_constant_s",)},
-    "eddy-diffusion": {
-        "slab": ("time_constant_s",),
-        "rod": ("time_constant_s",),
-    },
-    "drive-saturation": {"clip": ("limit",)},
-    "slew-limit": {"rate": ("rate",)},
-    "dead-zone": {"crossover": ("half_width",)},
-    "asymmetry": {"even-term": ("coefficient",)},
-    "saturation": {"tanh": ("level",)},
-    "rate-dependent-hysteresis": {
-        "growing-thresholds": ("coefficient", "exponent"),
-        "excess-field": ("coefficient", "exponent"),
-    },
-    "resonance": {"mode": ("frequency_hz", "damping_ratio", "participation")},
-    "stiffness-hardening": {"duffing": ("coefficient",)},
-    "friction": {"tanh": ("coulomb", "velocity_scale")},
-    "backlash": {"pin-in-slot": ("half_width",)},
-    "creep": {"one-element": ("magnitudes", "time_constants_s")},
-    "thermal-drift": {"joule": ("coefficient", "time_constant_s")},
-    "sensor-lag": {"first-order": ("time_constant_s",)},
-    "sensor-nonlinearity": {"polynomial": ("quadratic", "cubic")},
-    "mains-pickup": {"three-harmonics": ("frequency_hz",)},
-    "drift": {"ramp": ("slope",)},
-    "calibration-error": {"gain-and-offset": ("gain", "offset")},
-}
+from hystbench.challenge.contest import table
+
 #: Half the width of a 95 % interval, in standard errors.
 WIDTH = NormalDist().inv_cdf(0.975)
 
@@ -92,7 +63,8 @@ def recovered(
             continue
         if _word("form", answer) not in (None, effect["form"]):
             continue
-        for name in COMPARABLE.get(effect["name"], {}).get(effect["form"], ()):
+        forms = table("comparable").get(effect["name"], {})
+        for name in forms.get(effect["form"], ()):
             for true, value, error in _pairs(name, effect, answer):
                 errors.append(abs(value - true) / abs(true))
                 if error is not None:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from hystbench.challenge.contest import table
 from hystbench.challenge.plant.effects import KINDS
 from hystbench.challenge.plant.inside import EFFECTS
 from hystbench.challenge.spec import (
@@ -23,24 +24,6 @@ from hystbench.errors import InputError, nearest
 DEVELOPMENT_SEEDS = range(200_000)
 #: Published and transfer sets of earlier scores, whose misses were looked at.
 RETIRED_SEEDS = range(1_000_000, 25_000_000)
-#: Seeds from which each set counts up. What a solver was mended on may not lie above.
-FIRST_SEED = {
-    "development": 100_000,
-    "small": 195_000,
-    "mechanisms-development": 196_000,
-    "published": 25_000_000,
-    "transfer": 26_000_000,
-    "mechanisms": 27_000_000,
-}
-#: Seeds set aside for a stratum, so that a larger contest holds the smaller one.
-PER_STRATUM = {
-    "development": 5_000,
-    "small": 100,
-    "mechanisms-development": 400,
-    "published": 5_000,
-    "transfer": 5_000,
-    "mechanisms": 5_000,
-}
 
 
 @dataclass(frozen=True)
@@ -68,75 +51,14 @@ class Entry:
     spec: CaseSpec
 
 
-def _mixed(kind: str, gpi: int, other: int) -> tuple[Stratum, ...]:
-    """Strata of 20 dB on all three families."""
-    sizes = {"gpi": gpi, "preisach": other, "jiles-atherton": other}
-    return tuple(Stratum(kind, family, 20.0, n) for family, n in sizes.items())
-
-
-def _singles(ratio_db: float, gpi: int, other: int) -> tuple[Stratum, ...]:
-    sizes = {"gpi": gpi, "preisach": other, "jiles-atherton": other}
-    return tuple(Stratum("single", family, ratio_db, n) for family, n in sizes.items())
-
-
-def _machines(size: int) -> tuple[Stratum, ...]:
-    """Strata of 20 dB on machines: each effect of a family so many times."""
-    return (
-        Stratum("single", "mass-spring", 20.0, 9 * size),
-        Stratum("single", "impedance", 20.0, 6 * size),
-        Stratum("single", "free-mass", 20.0, 2 * size),
-        Stratum("single", "pendulum", 20.0, 3 * size),
-        Stratum("single", "tank", 20.0, 2 * size),
-        Stratum("none", "mass-spring", 20.0, 3 * size),
-        Stratum("none", "impedance", 20.0, 2 * size),
-        Stratum("none", "tank", 20.0, size),
-        Stratum("pair", "mass-spring", 20.0, 2 * size),
-        Stratum("pair", "impedance", 20.0, 2 * size),
-    )
-
-
+_SETS: dict[str, Any] = table("sets")
 STRATA: dict[str, tuple[Stratum, ...]] = {
-    "small": (
-        Stratum("single", "gpi", 20.0, 4),
-        Stratum("single", "preisach", 20.0, 1),
-        Stratum("single", "jiles-atherton", 20.0, 1),
-        Stratum("single", "gpi", 10.0, 1),
-        Stratum("none", "gpi", 20.0, 1),
-        Stratum("none", "preisach", 20.0, 1),
-        Stratum("pair", "gpi", 20.0, 1),
-        Stratum("triple", "gpi", 20.0, 1),
-        Stratum("unlisted", "gpi", 20.0, 1),
-    ),
-    "development": (
-        *_singles(20.0, 88, 42),
-        *_singles(10.0, 44, 21),
-        *_mixed("none", 30, 15),
-        *_mixed("pair", 20, 10),
-        *_mixed("triple", 6, 3),
-        *_mixed("unlisted", 16, 7),
-    ),
-    # Item by item what the published score is asked to hold; beside it singles at
-    # 30 and 3 dB, two of each effect, for the power curve alone.
-    "published": (
-        *_singles(20.0, 200, 100),
-        *_singles(10.0, 100, 50),
-        *_mixed("none", 100, 50),
-        *_mixed("pair", 50, 25),
-        *_mixed("triple", 26, 12),
-        *_mixed("unlisted", 50, 25),
-        Stratum("single", "gpi", 30.0, 44),
-        Stratum("single", "gpi", 3.0, 44),
-    ),
-    "transfer": (
-        *_singles(20.0, 100, 50),
-        *_singles(10.0, 50, 25),
-        *_mixed("none", 50, 25),
-        *_mixed("pair", 26, 12),
-        *_mixed("triple", 12, 6),
-        *_mixed("unlisted", 26, 12),
-    ),
-    "mechanisms-development": _machines(2),
-    "mechanisms": _machines(6),
+    name: tuple(
+        Stratum(row["kind"], family, row["ratio_db"], cases)
+        for row in about["strata"]
+        for family, cases in row["cases"].items()
+    )
+    for name, about in _SETS.items()
 }
 SETS = tuple(STRATA)
 #: By which cases are left out: effects, families of plants, kinds of cases.
@@ -185,7 +107,7 @@ def plan(
     counts = sizes(name, scale)
     entries = []
     for number, (stratum, cases) in enumerate(zip(STRATA[name], counts, strict=True)):
-        first = FIRST_SEED[name] + number * PER_STRATUM[name]
+        first = _SETS[name]["first_seed"] + number * _SETS[name]["seeds"]
         for k in range(cases):
             spec = _spec(name, stratum, first + k, number + k)
             if _wanted(spec, without, only):
@@ -208,7 +130,7 @@ def sizes(name: str, scale: float = 1.0) -> list[int]:
     """Count the cases of each stratum of a set, as for :func:`plan`."""
     if name not in STRATA:
         raise InputError(f"blind: set: no set {name!r}; {nearest(name, SETS)}")
-    most, counts = PER_STRATUM[name], []
+    most, counts = _SETS[name]["seeds"], []
     for stratum in STRATA[name]:
         counts.append(max(1, round(stratum.cases * scale)))
         if counts[-1] > most:

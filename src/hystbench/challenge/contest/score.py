@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import astuple, dataclass, fields
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
 from hystbench.challenge.contest.parameters import recovered
 from hystbench.challenge.contest.place import where_hit
 from hystbench.challenge.plant.inside import MACHINES
 from hystbench.errors import InputError
+from hystbench.files import write_csv
 from hystbench.schema import check_against_schema
 
 SHAPE = "hysteresis-shape"
@@ -214,6 +216,11 @@ def judge(
         seconds=answer["seconds"],
         cpu_seconds=answer["cpu_seconds"],
     )
+
+
+def write_rows(path: Path, rows: Iterable[Row]) -> None:
+    """Write judged cases as CSV; what means nothing for a case is an empty cell."""
+    write_csv(path, COLUMNS, (astuple(row) for row in rows))
 
 
 def stated(confidences: str) -> dict[str, float]:

@@ -5,11 +5,13 @@ All take a data frame of :func:`hystbench.challenge.contest.frames.frame`.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
 
+from hystbench.challenge.contest import table
 from hystbench.challenge.contest.tables import (
     brier,
     calibration_error,
@@ -74,33 +76,11 @@ class Figure:
         return shares(cases[chosen], self.column)
 
 
-ASKED = (
-    Figure("top1 GPI 20 dB", "top1", "single", "gpi", 20.0, ">=", 0.97),
-    Figure("top1 foreign 20 dB", "top1", "single", "foreign", 20.0, ">=", 0.95),
-    Figure("in_set 20 dB", "in_set", "single", "all", 20.0, ">=", 0.99),
-    Figure("top1 GPI 10 dB", "top1", "single", "gpi", 10.0, ">=", 0.92),
-    Figure("top1 foreign 10 dB", "top1", "single", "foreign", 10.0, ">=", 0.80),
-    Figure("exact_set GPI 20 dB", "exact", "single", "gpi", 20.0, ">=", 0.92),
-    Figure("exact_set foreign 20 dB", "exact", "single", "foreign", 20.0, ">=", 0.88),
-    Figure("false_alarm", "false_alarm", "none", "all", None, "<=", 0.01),
-    Figure("pairs_both", "all_named", "pair", "all", None, ">=", 0.88),
-    Figure("triples_all", "all_named", "triple", "all", None, ">=", 0.70),
-    Figure("unlisted_unnamed", "unnamed", "unlisted", "all", None, ">=", 0.90),
-    Figure("unlisted_confident", "confident", "unlisted", "all", None, "<=", 0.03),
-    Figure("where_hit 20 dB", "where_hit", "single", "all", 20.0, ">=", 0.90),
-    Figure("top1 machines", "top1", "single", "machines", 20.0, ">=", 0.90),
-    Figure("place machines", "place_right", "single", "machines", 20.0, ">=", 0.9),
-)
-FURTHER = (
-    Figure("in_set gpi 20 dB", "in_set", "single", "gpi", 20.0),
-    Figure("in_set preisach 20 dB", "in_set", "single", "preisach", 20.0),
-    Figure("in_set jiles-atherton 20 dB", "in_set", "single", "jiles-atherton", 20.0),
-    Figure("top1_strict foreign 20 dB", "top1_strict", "single", "foreign", 20.0),
-    Figure("exact_set_strict foreign 20 dB", "exact_strict", "single", "foreign", 20.0),
-    Figure("false_alarm_strict foreign", "false_alarm_strict", "none", "foreign"),
-    Figure("pairs_exact", "exact", "pair"),
-    Figure("triples_exact", "exact", "triple"),
-)
+def figures(name: str) -> list[Figure]:
+    """Give the figures of a table of ``contest.yaml``."""
+    return [Figure(*row) for row in table(name)]
+
+
 TOP1_20 = Figure("transfer top1 20 dB", "top1", "single", "all", 20.0)
 
 
@@ -131,40 +111,19 @@ def summary(cases: pd.DataFrame) -> dict[str, Any]:
     dict
         Shares are mappings of share, low, high (95 % Wilson) and cases.
     """
-    singles, several, hidden = (of(cases, k) for k in (("single",), SEVERAL, HIDDEN))
-    none, pairs, triples, unlisted = (
-        of(cases, (kind,)) for kind in ("none", "pair", "triple", "unlisted")
-    )
-
-    def told(among: pd.DataFrame, figure: str) -> dict[str, Any]:
-        return shares(among, figure)._asdict()
-
+    hidden = of(cases, HIDDEN)
     return {
         "cases": len(cases),
         "lost": int((cases["lost"] != "").sum()),
         "where_hit": {
-            **_by_ratio(singles, "where_hit"),
-            "several": told(several, "where_hit"),
-            "unlisted": told(unlisted, "where_hit"),
+            **_by_ratio(of(cases, ("single",)), "where_hit"),
+            "several": _share(of(cases, SEVERAL), "where_hit"),
+            "unlisted": _share(of(cases, ("unlisted",)), "where_hit"),
         },
-        "top1": _by_ratio(singles, "top1"),
-        "top1_strict": _by_ratio(singles, "top1_strict"),
-        "in_set": _by_ratio(singles, "in_set"),
-        "in_set_raw": _by_ratio(singles, "in_set_raw"),
-        "set_size": mean(singles, "set_size"),
-        "set_size_raw": mean(singles, "set_size_raw"),
-        "exact_set": _by_ratio(singles, "exact"),
-        "exact_set_strict": _by_ratio(singles, "exact_strict"),
-        "false_alarm": told(none, "false_alarm"),
-        "false_alarm_by_family": _by_family(none, "false_alarm"),
-        "false_alarm_strict": told(none, "false_alarm_strict"),
-        "pairs_both": told(pairs, "all_named"),
-        "pairs_exact": told(pairs, "exact"),
-        "triples_all": told(triples, "all_named"),
-        "triples_exact": told(triples, "exact"),
-        "unlisted_unnamed": told(unlisted, "unnamed"),
-        "unlisted_confident": told(unlisted, "confident"),
-        "shrink_median": middle(hidden, "shrink"),
+        **{
+            name: _SUMS[how["by"]](of(cases, how["of"]), how["figure"])
+            for name, how in table("summary").items()
+        },
         "brier": brier(cases),
         "calibration_error": calibration_error(cases),
         "parameter_error_median": middle(hidden, "parameter_error"),
@@ -189,7 +148,7 @@ def reach(cases: pd.DataFrame, transfer: pd.DataFrame) -> list[Asked]:
     shrink, seconds = middle(hidden, "shrink"), middle(cases, "cpu_seconds")
     apart = calibration_error(cases)
     found = [
-        *(_asked(f.name, f.sense, f.bound, f.share(cases)) for f in ASKED),
+        *(_asked(f.name, f.sense, f.bound, f.share(cases)) for f in figures("asked")),
         _asked("shrink_median", ">=", 0.95, _number(shrink, hidden)),
         _asked("stated confidence off by", "<=", 0.05, _number(apart, cases)),
         Asked("coverage of 95 % intervals", "0.9 to 0.98", *covered, met),
@@ -226,14 +185,14 @@ def further(cases: pd.DataFrame) -> list[tuple[str, Any, Any, Any, int]]:
         ("relative error of parameters, median", error, known),
     ]
     return [
-        *((figure.name, *figure.share(cases)) for figure in FURTHER),
+        *((figure.name, *figure.share(cases)) for figure in figures("further")),
         ("where_hit of several effects", *several),
         ("where_hit of unlisted effects", *unlisted),
         *((name, *_number(value, among)) for name, value, among in numbers),
     ]
 
 
-def of(cases: pd.DataFrame, kinds: tuple[str, ...]) -> pd.DataFrame:
+def of(cases: pd.DataFrame, kinds: Sequence[str]) -> pd.DataFrame:
     """Give the cases of some kinds."""
     return cases[cases["kind"].isin(kinds)]
 
@@ -248,11 +207,21 @@ def _by_ratio(cases: pd.DataFrame, figure: str) -> dict[str, Any]:
 
 def _by_family(cases: pd.DataFrame, figure: str) -> dict[str, Any]:
     groups = {name: cases[cases["family"].isin(f)] for name, f in FAMILIES.items()}
-    return {
-        name: shares(group, figure)._asdict()
-        for name, group in groups.items()
-        if len(group)
-    }
+    return {name: _share(group, figure) for name, group in groups.items() if len(group)}
+
+
+def _share(cases: pd.DataFrame, figure: str) -> dict[str, Any]:
+    return shares(cases, figure)._asdict()
+
+
+#: How a row of the table ``summary`` is summed up.
+_SUMS: dict[str, Callable[[pd.DataFrame, str], Any]] = {
+    "ratio": _by_ratio,
+    "family": _by_family,
+    "share": _share,
+    "mean": mean,
+    "median": middle,
+}
 
 
 def _number(value: float | None, cases: pd.DataFrame) -> Share:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from hystbench.challenge.contest.experiments import experiment
+from hystbench.challenge.contest import table
 from hystbench.challenge.contest.score import SHAPE, stated
 from hystbench.challenge.contest.wilson import Share, wilson
 
@@ -21,6 +21,8 @@ from hystbench.challenge.contest.wilson import Share, wilson
 CONFIDENCES = (0.0, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0)
 #: First answers that are no effect.
 NO_EFFECT = ("no-gap", "unnamed", "parameters", "lost")
+#: Of two effects that no experiment in ``contest.yaml`` is about.
+UNKNOWN = "none written down"
 #: Kinds of cases in which at most one effect is hidden, in the order they are told.
 ONE = ("single", "unlisted", "none")
 
@@ -64,6 +66,20 @@ def confused(cases: pd.DataFrame) -> list[tuple[str, str, int, int, str]]:
         if kind == "single" and right == "no" and answered not in NO_EFFECT
     ]
     return sorted(wrong, key=lambda item: -item[2])
+
+
+def experiment(one: str, other: str) -> str:
+    """Tell an experiment that separates two effects, for docs/confusions.md.
+
+    Parameters
+    ----------
+    one, other : str
+        Names of the vocabulary; of others nothing is known.
+    """
+    for here, there, told in table("experiments"):
+        if (one in here and other in there) or (other in here and one in there):
+            return str(told)
+    return UNKNOWN
 
 
 def _first(case: pd.Series[Any]) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from hystbench.challenge.contest import tables
+from hystbench.challenge.contest import table, tables
 from hystbench.challenge.contest.frames import frame, write_frame
 from hystbench.challenge.contest.summary import Asked, further, reach, summary
 from hystbench.files import write_csv, write_json
@@ -18,44 +18,9 @@ from hystbench.files import write_csv, write_json
 NOTHING = frame([])
 #: With room for the rounding of a difference of two shares.
 FIVE_POINTS = 0.05 + 1e-9
-_SHARE = ("share", "low", "high", "cases")
-_RIVALS = (
-    "solver",
-    "cases",
-    "lost",
-    "top1 GPI 20 dB",
-    "top1 foreign 20 dB",
-    "top1 GPI 10 dB",
-    "exact_set GPI 20 dB",
-    "false_alarm",
-    "pairs_both",
-    "unlisted_unnamed",
-    "shrink_median",
-    "seconds_per_case",
-    "note",
-)
-
-
 #: Columns of each table but those of cases.
-TABLES = {
-    "contest.csv": ("set", "scale", "cases", "first_seed", "last_seed"),
-    "reach.csv": ("figure", "asked", "reached", "low", "high", "cases", "met"),
-    "further.csv": ("figure", "reached", "low", "high", "cases"),
-    "transfer.csv": (
-        "figure",
-        "published",
-        "transfer",
-        "difference",
-        "within 5 points",
-    ),
-    "confusion.csv": ("kind", "hidden", "answered", "right", "cases"),
-    "confused.csv": ("hidden", "answered", "cases", "of", "experiment"),
-    "effects.csv": ("effect", "family", "ratio_db", "figure", *_SHARE),
-    "retuned.csv": ("effect", "ratio_db", "least", "median", "greatest", "cases"),
-    "power.csv": ("effect", "family", "ratio_db", *_SHARE),
-    "reliability.csv": ("from", "to", "stated", *_SHARE),
-    "rivals.csv": _RIVALS,
-}
+TABLES: dict[str, list[str]] = table("columns")
+_RIVALS = TABLES["rivals.csv"]
 WRITTEN = (*TABLES, "cases.csv", "transfer-cases.csv", "summary.json")
 """Files of a score."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -85,10 +85,6 @@ class Actuator:
     mode: Mode | None
     effects: tuple[Effect, ...]
     seed: int
-
-    def with_effects(self, effects: tuple[Effect, ...]) -> Actuator:
-        """Return the plant with other effects."""
-        return replace(self, effects=effects)
 
     def read(
         self, excitation: Excitation, dt: float, samples: int, record: int

@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from hystbench.challenge import kernels
-from hystbench.challenge.plant.kind import Form, Kind, Parameters, Range, Run
+from hystbench.challenge.plant.kind import Parameters, Run
 from hystbench.record import FloatArray
 
 #: Layers of the cross-section in which the diffusion is solved.
 CELLS = 40
-
-_FASTEST = 5e-5  # one and a half steps of the fine grid at its slowest
 
 
 def delay(time: FloatArray, run: Run, p: Parameters) -> FloatArray:
@@ -47,92 +45,3 @@ def slew(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
 def dead_zone(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     """Give no current near zero: crossover of a push-pull stage."""
     return z - np.clip(z, -p["half_width"], p["half_width"])
-
-
-def _lag_form(ranges: Range) -> dict[str, Form]:
-    return {"first-order": Form(lag, {"time_constant_s": ranges}, "time_constant_s")}
-
-
-_EDDY = Range(6e-4, 6e-3, "s", least=2e-4, most=0.05)
-
-KINDS = (
-    Kind(
-        "input-delay",
-        "drive",
-        "command",
-        ("delay", "frequency"),
-        {
-            "pure": Form(
-                delay, {"delay_s": Range(1e-4, 2e-3, "s", most=0.01)}, "delay_s"
-            )
-        },
-    ),
-    Kind(
-        "drive-lag",
-        "drive",
-        "drive",
-        ("frequency", "delay"),
-        _lag_form(Range(2e-4, 3e-3, "s", least=_FASTEST, most=0.03)),
-    ),
-    Kind(
-        "eddy-diffusion",
-        "drive",
-        "drive",
-        ("frequency", "delay"),
-        {
-            "slab": Form(
-                slab,
-                {"time_constant_s": _EDDY},
-                "time_constant_s",
-                told=lambda p: {**p, "geometry": "slab"},
-            ),
-            "rod": Form(
-                rod,
-                {"time_constant_s": _EDDY},
-                "time_constant_s",
-                told=lambda p: {**p, "geometry": "rod"},
-            ),
-        },
-    ),
-    Kind(
-        "drive-saturation",
-        "drive",
-        "drive",
-        ("amplitude",),
-        {
-            "clip": Form(
-                clip,
-                {"limit": Range(0.3, 0.5, "A", shifts=False, least=0.15, most=0.54)},
-                "limit",
-                power=-3.0,
-            )
-        },
-    ),
-    Kind(
-        "slew-limit",
-        "drive",
-        "drive",
-        ("rate", "frequency"),
-        {
-            "rate": Form(
-                slew,
-                {"rate": Range(25.0, 90.0, "A/s", shifts=False, least=5.0, most=400.0)},
-                "rate",
-                power=-1.5,
-            )
-        },
-    ),
-    Kind(
-        "dead-zone",
-        "drive",
-        "drive",
-        ("amplitude",),
-        {
-            "crossover": Form(
-                dead_zone,
-                {"half_width": Range(0.006, 0.04, "A", most=0.12)},
-                "half_width",
-            )
-        },
-    ),
-)

@@ -1,17 +1,23 @@
 """What an effect is: its place, its forms and the ranges its parameters come from.
 
-Of an actuator and of a machine alike; what a form does there is another function.
+Of an actuator and of a machine alike; what a form does there is another function. The
+effects are tables in YAML beside this module.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from types import ModuleType
 from typing import Any, Literal
 
 import numpy as np
 
 from hystbench.record import FloatArray
+from hystbench.yaml_files import load_yaml
 
 View = Literal[
     "frequency",
@@ -279,3 +285,69 @@ def draw(
     ranges = kind.forms[form].ranges
     values = {name: item.draw(random, spread) for name, item in ranges.items()}
     return Effect(kind, form, values)
+
+
+def read_kinds(
+    table: str, *modules: ModuleType
+) -> tuple[dict[str, Kind], list[set[str]]]:
+    """Read effects from a table beside this module, by name and in its order.
+
+    Beside them stand pairs of effects that are never hidden together.
+
+    A form names the functions of these modules that it calls (``act``, ``curve``,
+    ``told``); ``also`` are words that are told beside its parameters, and ``numbers``
+    products such as ``share * machine.stiffness / machine.position^2``, whose factors
+    are its parameters and those of :class:`Reach`.
+    """
+    kinds = load_yaml(Path(__file__).with_name(table))
+    apart = [set(pair) for pair in kinds.pop("apart")]
+    known = {
+        f"{module.__name__.rpartition('.')[2]}.{key}": item
+        for module in modules
+        for key, item in vars(module).items()
+    }
+    return {name: _kind(known, name, **about) for name, about in kinds.items()}, apart
+
+
+def _kind(
+    known: Mapping[str, Any], name: str, forms: Mapping[str, Any], **about: Any
+) -> Kind:
+    lists = {key: tuple(about.pop(key, ())) for key in ("views", "families")}
+    about |= lists | {
+        "forms": {form: _form(known, **said) for form, said in forms.items()}
+    }
+    return Kind(name, **about)
+
+
+def _form(
+    known: Mapping[str, Any],
+    ranges: Mapping[str, Any] = {},
+    numbers: Mapping[str, str] | None = None,
+    also: Mapping[str, str] | None = None,
+    **about: Any,
+) -> Form:
+    for key in ("act", "curve", "told"):
+        if key in about:
+            about[key] = known[about[key]]
+    if numbers:
+        about["numbers"] = partial(_numbers, numbers)
+    if also:
+        about["told"] = partial(_with, also)
+    return Form(ranges={name: Range(**item) for name, item in ranges.items()}, **about)
+
+
+def _with(words: Mapping[str, str], parameters: Parameters) -> dict[str, Any]:
+    return {**parameters, **words}
+
+
+def _numbers(products: Mapping[str, str], p: Parameters, reach: Reach) -> Numbers:
+    """Compute products of parameters and of a machine's reach, from left to right."""
+    known = {**p, **{f"machine.{key}": value for key, value in vars(reach).items()}}
+    found = {}
+    for name, product in products.items():
+        found[name] = 1.0
+        for sign, word, power in re.findall(r"([*/]?) ?([\w.]+)(?:\^(\d))?", product):
+            factor = (known[word] if word in known else float(word)) ** int(power or 1)
+            found[name] *= factor if sign != "/" else 1.0
+            found[name] /= factor if sign == "/" else 1.0
+    return found

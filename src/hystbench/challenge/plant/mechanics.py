@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.challenge import kernels
-from hystbench.challenge.plant.kind import Form, Kind, Parameters, Range, Run
+from hystbench.challenge.plant.kind import Parameters, Run
 from hystbench.record import FloatArray
 
 
@@ -76,115 +76,6 @@ def heat(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return z + p["coefficient"] * warmth
 
 
-def _creep_told(p: Parameters) -> dict[str, Any]:
+def creep_told(p: Parameters) -> dict[str, Any]:
+    """Give the elements of creep."""
     return dict(_elements(p))
-
-
-_FREQUENCY = Range(60.0, 280.0, "Hz", most=350.0)
-_DAMPING = Range(0.01, 0.06, "-", most=0.15)
-_VELOCITY = Range(0.5, 5.0, "A/s")
-_COULOMB = Range(0.15, 1.0, "um", most=4.0)
-_MAGNITUDE = Range(0.02, 0.12, "-", shifts=False, most=0.4)
-
-KINDS = (
-    Kind(
-        "resonance",
-        "mechanics",
-        "mechanics",
-        ("frequency",),
-        {
-            "mode": Form(
-                mode,
-                {
-                    "frequency_hz": _FREQUENCY,
-                    "damping_ratio": _DAMPING,
-                    "participation": Range(0.03, 0.25, "-", shifts=False, most=0.6),
-                },
-                "participation",
-            )
-        },
-    ),
-    Kind(
-        "stiffness-hardening",
-        "mechanics",
-        "mode",
-        ("frequency", "amplitude"),
-        {
-            "duffing": Form(
-                mode,
-                {"coefficient": Range(1e-4, 2e-3, "1/um^2", most=6e-3)},
-                "coefficient",
-            )
-        },
-    ),
-    Kind(
-        "friction",
-        "mechanics",
-        "mechanics",
-        ("branch", "rate"),
-        {
-            "tanh": Form(
-                coulomb, {"coulomb": _COULOMB, "velocity_scale": _VELOCITY}, "coulomb"
-            ),
-            "algebraic": Form(
-                coulomb_algebraic,
-                {"coulomb": _COULOMB, "velocity_scale": _VELOCITY},
-                "coulomb",
-            ),
-        },
-    ),
-    Kind(
-        "backlash",
-        "mechanics",
-        "mechanics",
-        ("branch",),
-        {
-            "pin-in-slot": Form(
-                joint, {"half_width": Range(0.1, 1.0, "um", most=3.0)}, "half_width"
-            )
-        },
-    ),
-    Kind(
-        "creep",
-        "mechanics",
-        "mechanics",
-        ("slow-time", "frequency"),
-        {
-            "one-element": Form(
-                creep,
-                {
-                    "magnitude": _MAGNITUDE,
-                    "time_constant_s": Range(0.4, 6.0, "s"),
-                },
-                "magnitude",
-                told=_creep_told,
-            ),
-            "three-elements": Form(
-                creep,
-                {
-                    "magnitude": _MAGNITUDE,
-                    "time_constant_s": Range(0.15, 0.6, "s"),
-                    "ratio": Range(3.0, 7.0, "-", shifts=False),
-                },
-                "magnitude",
-                told=_creep_told,
-            ),
-        },
-    ),
-    Kind(
-        "thermal-drift",
-        "mechanics",
-        "mechanics",
-        ("slow-time",),
-        {
-            "joule": Form(
-                heat,
-                {
-                    "coefficient": Range(4.0, 30.0, "um/A^2", most=150.0),
-                    "time_constant_s": Range(1.0, 12.0, "s"),
-                },
-                "coefficient",
-            )
-        },
-    ),
-)

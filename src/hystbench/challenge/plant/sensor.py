@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.plant.drive import lag
-from hystbench.challenge.plant.kind import Form, Kind, Parameters, Range, Run
+from hystbench.challenge.plant.kind import Parameters, Run
 from hystbench.record import FloatArray
 
 #: Cosines of a drift path and the band they lie in, in Hz.
@@ -35,7 +34,8 @@ def mains(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return out
 
 
-def _mains_told(p: Parameters) -> dict[str, Any]:
+def mains_told(p: Parameters) -> dict[str, Any]:
+    """Give the harmonics' amplitudes in the place of shares."""
     shares = (1.0, p["share_2"], p["share_3"])
     return {
         "frequency_hz": p["frequency_hz"],
@@ -65,96 +65,6 @@ def calibration(z: FloatArray, run: Run, p: Parameters) -> FloatArray:
     return (1.0 + p["gain_error"]) * z + p["offset"]
 
 
-def _calibration_told(p: Parameters) -> dict[str, Any]:
+def calibration_told(p: Parameters) -> dict[str, Any]:
+    """Give the gain in the place of its error."""
     return {"gain": 1.0 + p["gain_error"], "offset": p["offset"]}
-
-
-_SHARE = Range(0.05, 0.5, "-", shifts=False)
-
-KINDS = (
-    Kind(
-        "sensor-lag",
-        "sensor",
-        "sensor",
-        ("frequency", "delay"),
-        {
-            "first-order": Form(
-                lag,
-                {"time_constant_s": Range(2e-4, 3e-3, "s", least=5e-5, most=0.03)},
-                "time_constant_s",
-            )
-        },
-    ),
-    Kind(
-        "sensor-nonlinearity",
-        "sensor",
-        "sensor",
-        ("amplitude",),
-        {
-            "polynomial": Form(
-                polynomial,
-                {
-                    "quadratic": Range(3e-4, 3e-3, "1/um", sign=True, most=0.01),
-                    "cubic": Range(5e-6, 1e-4, "1/um^2", sign=True, most=3e-4),
-                },
-                "quadratic",
-            ),
-            "gap-law": Form(
-                gap_law,
-                {"gap": Range(250.0, 1500.0, "um", shifts=False, least=90.0)},
-                "gap",
-                power=-1.0,
-            ),
-        },
-    ),
-    Kind(
-        "mains-pickup",
-        "sensor",
-        "sensor",
-        ("unexplained", "frequency"),
-        {
-            "three-harmonics": Form(
-                mains,
-                {
-                    "frequency_hz": Range(49.9, 50.1, "Hz", shifts=False),
-                    "amplitude": Range(0.1, 1.0, "um", most=5.0),
-                    "share_2": _SHARE,
-                    "share_3": _SHARE,
-                },
-                "amplitude",
-                told=_mains_told,
-            )
-        },
-    ),
-    Kind(
-        "drift",
-        "sensor",
-        "sensor",
-        ("unexplained", "slow-time"),
-        {
-            "ramp": Form(
-                ramp,
-                {"slope": Range(0.01, 0.1, "um/s", sign=True, most=1.0)},
-                "slope",
-            ),
-            "path": Form(path, {"size": Range(0.2, 1.5, "um", most=8.0)}, "size"),
-        },
-    ),
-    Kind(
-        "calibration-error",
-        "sensor",
-        "sensor",
-        ("amplitude",),
-        {
-            "gain-and-offset": Form(
-                calibration,
-                {
-                    "gain_error": Range(0.01, 0.08, "-", sign=True, most=0.3),
-                    "offset": Range(0.02, 0.6, "um", sign=True),
-                },
-                "gain_error",
-                told=_calibration_told,
-            )
-        },
-    ),
-)

@@ -10,7 +10,7 @@ import click
 from hystbench import options
 from hystbench.challenge.contest.chunk import judge_chunk
 from hystbench.challenge.contest.plan import chunks, plan
-from hystbench.challenge.contest.rows import write_rows
+from hystbench.challenge.contest.score import write_rows
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
 
