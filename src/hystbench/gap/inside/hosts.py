@@ -19,6 +19,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.transfer_function import possible_starts
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
@@ -181,7 +182,7 @@ def masses(
     found: list[tuple[float, tuple[Block, ...]]] = []
     sample = Sample.of(records)
     wanted = sample.take([record.y for record in records])
-    starts = ("rest",) if _from_rest(records) else ("rest", "settled", "moving")
+    starts = ("rest",) if _from_rest(records) else possible_starts(records)
     span = max(record.dt * len(record) for record in records)
     fastest = 0.8 * np.pi / min(record.dt for record in records)
     grid = np.geomspace(2 * np.pi / span, fastest, FREQUENCIES)
