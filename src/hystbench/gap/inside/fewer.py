@@ -13,8 +13,8 @@ from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction, possible_starts
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted, judged
-from hystbench.gap.inside.search import Hypothesis
+from hystbench.gap.inside.least_squares import Fitted, fitted, judged
+from hystbench.gap.inside.search import FEW, Hypothesis
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.simulation.simulation import Simulation
@@ -125,7 +125,7 @@ class OnAll:
 
     def fitted(self, found: Fitted) -> Fitted:
         """Fit a model to all samples, from where it is."""
-        return fitted(self.state(found.state), self.score, QUICK)
+        return fitted(self.state(found.state), self.score, FEW)
 
     def hypotheses(
         self, found: Sequence[Hypothesis], best: Sequence[Hypothesis]

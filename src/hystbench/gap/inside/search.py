@@ -26,8 +26,6 @@ from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
 alone may gain much together."""
-STARTS = 8
-"""Of the laws of one effect, the likeliest, that are fitted roughly."""
 FEW = 4
 """Evaluations of the residual after which the worse half of the starts is left."""
 
@@ -215,7 +213,7 @@ def fitted_likely(
         Of the whole records.
     count : int
         How many, each by its best start, are fitted to the end; twice as many are
-        fitted roughly.
+        fitted roughly, each from twice as many starts.
 
     Returns
     -------
@@ -226,7 +224,8 @@ def fitted_likely(
     for item in sorted(begun, key=lambda item: item.score):
         likely.setdefault(frozenset(item.effects), []).append(item)
     rough = [
-        raced(own[:STARTS], beginnings) for own in list(likely.values())[: 2 * count]
+        raced(own[: 2 * count], beginnings)
+        for own in list(likely.values())[: 2 * count]
     ]
     rough.sort(key=lambda pair: pair[1].score)
     begun_well = [
