@@ -119,6 +119,11 @@ class Record:
             return np.ones(len(self), dtype=np.bool_)
         return ~self.interpolated
 
+    @property
+    def repeats(self) -> bool:
+        """Whether it holds whole periods of its input, and nothing else."""
+        return bool(self.period_samples) and len(self) % (self.period_samples or 1) == 0
+
     @cached_property
     def of_start(self) -> FloatArray:
         """What an unknown velocity at the first sample does, shape (n, 0 or 1).

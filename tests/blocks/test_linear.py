@@ -275,6 +275,17 @@ class TestStart:
         # It has been one for a second, twenty time constants.
         assert away.max() < 3 * 2 * 0.05 * np.exp(-19)
 
+    @pytest.mark.parametrize("hold", ["linear", "band-limited"])
+    def test_repeating_whole_periods_are_steady_from_the_first_sample(self, hold):
+        angle = 2 * np.pi * 2 * np.arange(len(self.time)) / len(self.time)
+        w = 2 * np.pi * 2 / (len(self.time) * (self.time[1] - self.time[0]))
+        gain = 3 / (1 + 1j * w * 0.05)
+        steady = (gain * np.exp(1j * (angle + 0.4))).imag
+        away = np.abs(self.simulate(np.sin(angle + 0.4), "repeating", hold) - steady)
+        assert away.max() < (1e-4 if hold == "linear" else 1e-5)
+        at_rest = np.abs(self.simulate(np.sin(angle + 0.4), "rest", hold) - steady)
+        assert at_rest.max() > 0.1
+
 
 def test_a_system_that_runs_away_within_an_interval_warns_of_nothing(recwarn):
     """Exponentials of 1e9: a fit tries such values, and NaN is the answer."""

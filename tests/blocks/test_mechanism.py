@@ -409,6 +409,18 @@ def test_a_moving_start_goes_on_with_the_motion():
     assert off["moving"] < 0.5 * off["settled"]
 
 
+def test_a_repeating_start_is_the_second_of_two_passages():
+    t = np.arange(2000) * 2e-3
+    forces, _ = SMOOTH["cubic"]
+    u = 100 * np.sin(2 * np.pi * 2 * t / t[-1]) * np.cos(9 * t)
+    twice = run(MACHINE, forces, np.concatenate([u, u]), 2e-3)
+    once = run(replace(MACHINE, start="repeating"), forces, u, 2e-3)
+    # At its end a record is turned: the last samples know no others to come.
+    np.testing.assert_allclose(once, twice[2000:], atol=1e-9 * np.ptp(twice))
+    at_rest = run(MACHINE, forces, u, 2e-3)
+    assert np.abs(at_rest - once).max() > 0.01 * np.ptp(once)
+
+
 def test_a_motion_that_runs_away_is_no_number_from_there_on():
     # 200 q - 50 q^3 is never 400.
     softer = force("stiffness", quadratic=0.0, cubic=-50.0)

@@ -39,6 +39,12 @@ CHAINS = {
     "a motion": (moving("transfer-function"),),
     "a motion behind plays": (GPI, moving("transfer-function")),
     "a coordinate that moves": (moving("mechanism"),),
+    "a motion that repeats": (moving("transfer-function", start="repeating"),),
+    "a coordinate that repeats its way against forces": (
+        moving("mechanism", start="repeating"),
+        ("friction-force", EXAMPLES["friction-force"]),
+        moving("other-modes", start="repeating"),
+    ),
     "a coordinate that moves against forces": (
         moving("mechanism"),
         ("stiffness", EXAMPLES["stiffness"]),

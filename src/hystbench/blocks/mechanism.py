@@ -15,8 +15,8 @@ from hystbench.blocks.force import Force, Motion, exported, rows
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
 from hystbench.blocks.state_space import StateSpace, discretise
-from hystbench.blocks.step import TURNED, Sampling, Step, lines_of
-from hystbench.blocks.transfer_function import STARTS, path_from
+from hystbench.blocks.step import Sampling, Step, lines_of
+from hystbench.blocks.transfer_function import PASTS, STARTS, path_from
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -165,7 +165,7 @@ class Mechanism(HeldBlock):
             **exported(forces),
         }
         states = {"motion": 2, "memory": max(len(forces), 1), **lines.states}
-        past = TURNED if self.start == "moving" else ""
+        past = PASTS.get(self.start, "")
         return Step("mechanism", constants, states, past=past, **lines.told)
 
     def _shown(self) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -14,10 +15,10 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
-KEPT = 64
-"""Responses that are kept, at most: those to each record, quick and exact."""
-_KEPT: OrderedDict[tuple[int, float, OtherModes], tuple[FloatArray, FloatArray]]
-_KEPT = OrderedDict()
+KEPT = 256
+"""Responses that are kept, at most: of each mode to each record, quick and exact."""
+_Response = tuple[FloatArray, FloatArray]
+_KEPT: OrderedDict[tuple[int, float, Hashable], _Response] = OrderedDict()
 
 
 @dataclass(frozen=True)
@@ -37,23 +38,6 @@ class OtherModes(TransferFunction, AttachedBlock):
     name: ClassVar = "other-modes"
     place: ClassVar = "inside"
     hosts: ClassVar = "mechanism or a force inside one"
-
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the response to ``z``.
-
-        The same record is asked for again and again while the numbers of the mechanism
-        are fitted, so that the last responses to records are kept.
-        """
-        if z.flags.writeable:
-            return super().simulate(z, u, dt)
-        key = (id(z), dt, self)
-        if key not in _KEPT:
-            while len(_KEPT) >= KEPT:
-                _KEPT.popitem(last=False)
-            y = super().simulate(z, u, dt)
-            y.setflags(write=False)
-            _KEPT[key] = z, y  # with z kept, no other array has its identity
-        return _KEPT[key][1]
 
     def attach(self, before: Any) -> Superposed:
         """Add the response to the output of the mechanism before."""
@@ -78,4 +62,25 @@ class Superposed:
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
-        return self.inner.simulate(z, u, dt) + self.by.simulate(z, u, dt)
+        return _kept(self.inner, z, u, dt) + _kept(self.by, z, u, dt)
+
+
+def _kept(
+    part: Block | Driven | Superposed, z: FloatArray, u: FloatArray, dt: float
+) -> FloatArray:
+    """Compute the response of a part, or give the one that is kept.
+
+    While the numbers of one mode are fitted, the others answer the same records with
+    the same numbers again and again.
+    """
+    if z.flags.writeable:
+        return part.simulate(z, u, dt)
+    key = (id(z), dt, part)
+    if key not in _KEPT:
+        y = part.simulate(z, u, dt)
+        y.setflags(write=False)
+        _KEPT[key] = z, y  # with z kept, no other array has its identity
+        while len(_KEPT) > KEPT:
+            _KEPT.popitem(last=False)
+    _KEPT.move_to_end(key)
+    return _KEPT[key][1]

@@ -84,8 +84,8 @@ class Step:
         Whether it looks for the input of what is inside it, of which it tries some.
     past : str
         What came before the first sample, if that depends on samples to come:
-        :data:`PASSED` or :data:`TURNED`. What is remembered of a passage is the state
-        ``w``.
+        :data:`PASSED`, :data:`TURNED` or :data:`REPEATED`. What is remembered of a
+        passage is the state ``w``.
     differs : str
         How the step differs from the block's simulation of a whole record, if it does:
         the end of a sentence that begins with the block.
@@ -197,12 +197,17 @@ def noise_of_rate(weights: FloatArray) -> float:
     return float(np.sqrt(np.sum(weights**2) / np.sum(CENTRAL**2)))
 
 
-PASSED, TURNED = "passed", "turned"
+PASSED, TURNED, REPEATED = "passed", "turned", "repeated"
 """What came before the first sample: its input passed once, and its hysteresis
-remembers that; or its input came as it leaves, the record turned about its start."""
+remembers that; its input came as it leaves, the record turned about its start; or the
+whole record."""
+_SETTLED = (
+    "starts settled on its first sample, as without --past it is not known "
+    "what came before"
+)
 UNKNOWN_PAST = {
     PASSED: "starts at rest, as without --past it is not known what has passed",
-    TURNED: "starts settled on its first sample, as without --past it is not known "
-    "what came before",
+    TURNED: _SETTLED,
+    REPEATED: _SETTLED,
 }
 """What code does that is given no record: it knows none of its samples to come."""

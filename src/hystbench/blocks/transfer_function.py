@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
@@ -11,12 +12,14 @@ from hystbench.blocks.base import Place
 from hystbench.blocks.linear import LinearBlock, linear_step
 from hystbench.blocks.parameter import HUGE, choice, numbers
 from hystbench.blocks.state_space import StateSpace
-from hystbench.blocks.step import TURNED, Sampling, Step
+from hystbench.blocks.step import REPEATED, TURNED, Sampling, Step
 from hystbench.errors import InputError
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
-Start = Literal["rest", "settled", "moving"]
-STARTS: tuple[Start, ...] = ("rest", "settled", "moving")
+Start = Literal["rest", "settled", "moving", "repeating"]
+STARTS: tuple[Start, ...] = ("rest", "settled", "moving", "repeating")
+PASTS = {"moving": TURNED, "repeating": REPEATED}
+"""Starts that depend on samples to come, and what came before."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,7 @@ class TransferFunction(LinearBlock):
     ``start: settled`` the input had its first value for ever before the record. With
     ``moving`` it came through the first sample as it leaves it, the record turned about
     that sample: one that begins in the middle of a motion shows neither jump nor kink.
+    With ``repeating`` the same record came before, as whole periods of an input do.
 
     References
     ----------
@@ -56,7 +60,7 @@ class TransferFunction(LinearBlock):
         """Move the state."""
         settled = self.start != "rest"
         step = linear_step(self.continuous(), sampling, self.holding, settled)
-        return replace(step, past=TURNED) if self.start == "moving" else step
+        return replace(step, past=PASTS.get(self.start, ""))
 
     def check(self) -> None:
         """Refuse an improper or unstable transfer function."""
@@ -99,17 +103,22 @@ class TransferFunction(LinearBlock):
         return StateSpace(scale * a, b, (n - direct * d)[1:], direct)
 
 
+def possible_starts(records: Sequence[Record]) -> tuple[Start, ...]:
+    """Give the starts that records may have: only whole periods repeat."""
+    return STARTS if all(record.repeats for record in records) else STARTS[:-1]
+
+
 def path_from(z: FloatArray, start: str) -> tuple[FloatArray, float]:
     """Put before a record what its start stands for.
 
     Parameters
     ----------
     z : ndarray, shape (n,)
-    start : {"rest", "settled", "moving"}
+    start : {"rest", "settled", "moving", "repeating"}
 
     Returns
     -------
-    path : ndarray, shape (n,) or (2n - 1,)
+    path : ndarray, shape (n,), (2n - 1,) or (2n,)
         What was before, and ``z``.
     before : float
         What was for ever before that.
@@ -118,4 +127,6 @@ def path_from(z: FloatArray, start: str) -> tuple[FloatArray, float]:
         return z, 0.0
     if start == "moving":
         z = np.concatenate([2 * z[0] - z[:0:-1], z])
+    elif start == "repeating":
+        z = np.concatenate([z, z])
     return z, float(z[0])

@@ -83,7 +83,8 @@ EXACT = "exact"
     "--past",
     type=options.FILE,
     help="CSV file with time_s and the input, such as current_A: the code starts as "
-    "the simulation of this record, where MODEL says 'start: settled' or 'moving'.",
+    "the simulation of this record, where MODEL says 'start: settled', 'moving' or "
+    "'repeating'.",
 )
 @click.option(
     "--compare",

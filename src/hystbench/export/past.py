@@ -1,8 +1,9 @@
 """Start exported code as if a given record had come before.
 
-``start: settled`` of play operators, and ``start: moving``, are about samples to come:
-a record that passes twice, or one that is turned about its first sample. Code that runs
-sample by sample knows none of them. It can start as on a record that is at hand.
+``start: settled`` of play operators, ``start: moving`` and ``start: repeating`` are
+about samples to come: a record that passes twice, or one that is turned about its first
+sample. Code that runs sample by sample knows none of them. It can start as on a record
+that is at hand.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.blocks.step import TURNED
+from hystbench.blocks.step import PASSED, TURNED
 from hystbench.errors import InputError
 from hystbench.export import python
 from hystbench.export.described import Described, Piece, describe
@@ -45,7 +46,8 @@ def begun(described: Described, model: Model, past: FloatArray) -> Described:
     if not starts:
         raise InputError(
             "--past: expected none, as no block of this model starts with a record: "
-            "'start' is 'settled' in no play operators, and nowhere 'moving'"
+            "'start' is 'settled' in no play operators, and nowhere "
+            "'moving' or 'repeating'"
         )
     return replace(described, starts=starts)
 
@@ -81,13 +83,13 @@ def begun_inverse(described: Described, model: Model, past: FloatArray) -> Descr
 def _states(alone: Described, part: Piece, z: FloatArray) -> dict[str, FloatArray]:
     """Run a piece over what came before it, and give the states that are left."""
     machine = python.loaded(alone)
-    turned = part.step.past == TURNED
-    if turned:
+    before, kept = z, list(part.step.states)
+    if part.step.past == TURNED:
         before = 2 * z[0] - z[:0:-1]
-    else:  # samples to come are those of the record turned about its end
+    elif part.step.past == PASSED:
+        # Samples to come are those of the record turned about its end.
         ahead = alone.pieces[0].step.constants.get("ahead", 0)
-        before = np.concatenate([z, 2 * z[-1] - z[-2 : -2 - ahead : -1]])
+        before, kept = np.concatenate([z, 2 * z[-1] - z[-2 : -2 - ahead : -1]]), ["w"]
     machine.simulate(before)
-    kept = list(part.step.states) if turned else ["w"]
     names = [f"{part.label}_{state}" for state in kept]
     return {name: np.array(getattr(machine, name)) for name in names}

@@ -27,7 +27,7 @@ from hystbench.gap.fitting.uncertainty import (
 )
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.holdout.show import FitResult
-from hystbench.gap.inside.name import beats, named_inside
+from hystbench.gap.inside.name import Inside, beats, named_inside
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.judging.gap_json import (
     effect_mapping,
@@ -44,7 +44,7 @@ from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
-from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
@@ -137,10 +137,13 @@ def find(
             "effects is tried"
         )
     else:
-        named = name(start, floor.rms, say, unnamed_share)
-        start, named, own = named_apart(start, floor.rms, named, say, unnamed_share)
+        named, own = name(start, floor.rms, say, unnamed_share), NONE
         if inside is not None and not beats(inside, named, floor.rms, say):
             inside = None
+        if inside is None or not _leaves_little(inside, floor):
+            start, named, own = named_apart(start, floor.rms, named, say, unnamed_share)
+            if inside is not None and own.records:
+                inside = inside if beats(inside, named, floor.rms, say) else None
     if inside is not None:
         base, start, named, own = inside.base, inside.start, inside.named, NONE
     found = decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
@@ -148,6 +151,14 @@ def find(
         return found
     reason = f"{found.content['reason']}; {inside.sentence}"
     return replace(found, content={**found.content, "reason": reason})
+
+
+def _leaves_little(inside: Inside, floor: Floor) -> bool:
+    """Tell whether forces leave so little that no record needs numbers of its own."""
+    before, after = (
+        state.power(floor.rms**2) for state in (inside.start, inside.named.state)
+    )
+    return after <= LOOSE * before
 
 
 def decide(

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.modes import modes, split_modes
+from hystbench.gap.inside.modes import modes, one_by_one, split_modes
 from hystbench.gap.records.sample import Sample
 from hystbench.model import Model
 from hystbench.record import Channel, Record
@@ -50,12 +51,25 @@ def test_both_parts_together_are_the_whole(output, direct):
         np.testing.assert_allclose(both, response(whole, f), rtol=1e-9)
 
 
+@pytest.mark.parametrize("real", [[], [1.0, 7.0]])
+def test_other_modes_one_by_one_are_the_same_sum(real):
+    down = np.polymul(BOTH, [1.0, 7.0]) if real else BOTH
+    up = np.polyadd(0.3 * down, [2.0, 30.0, 400.0, 9000.0])
+    others = OtherModes(numerator=tuple(up), denominator=tuple(down))
+    parts = one_by_one(others)
+    orders = [len(part.denominator) - 1 for part in parts]
+    assert orders == ([2, 2, 1] if real else [2, 2])
+    f = np.linspace(0.1, 20, 300)
+    whole = sum(response(part, f) for part in parts)
+    np.testing.assert_allclose(whole, response(others, f), rtol=1e-9)
+
+
 def test_one_mode_is_not_split():
     alone = TransferFunction(numerator=(1.0,), denominator=tuple(LOW))
     assert split_modes(alone, "position") == []
 
 
-def test_the_mode_that_differs_from_level_to_level_comes_first():
+def test_only_the_mode_that_differs_from_level_to_level_is_given():
     u = np.random.default_rng(2).standard_normal(len(TIME))
     whole = TransferFunction(
         numerator=tuple(np.polyadd(HIGH, LOW)), denominator=tuple(BOTH), hold="linear"
@@ -71,9 +85,13 @@ def test_the_mode_that_differs_from_level_to_level_comes_first():
         records.append(Record(name, DT, u, y, FORCE, MOTION, "measured"))
     records = tuple(records)
     start = ModelState((whole,), records, Sample.of(records), hold="linear")
-    first, second = modes(start, "position")
+    (first,) = modes(start, "position")
     assert np.sqrt(first.chain[0].stiffness / first.chain[0].mass) < 20
-    assert np.sqrt(second.chain[0].stiffness / second.chain[0].mass) > 20
     model = Model("whole", FORCE, MOTION, first.chain)
     y = model.simulate(u, DT)
     np.testing.assert_allclose(y, whole.simulate(u, u, DT), atol=1e-9 * np.ptp(y))
+    (free,) = modes(start, "position", others_too=True)
+    numbers = [(x.block, x.parameter, x.element) for x in free.free[4:]]
+    assert (1, "denominator", 2) in numbers
+    assert (1, "denominator", 0) not in numbers  # the leading one is the scale
+    np.testing.assert_allclose(free.residual, first.residual, atol=1e-9 * np.ptp(y))

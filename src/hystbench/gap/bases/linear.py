@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
-from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
-from hystbench.blocks.transfer_function import STARTS
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.transfer_function import possible_starts
 from hystbench.errors import InputError
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio, with_a_mode
 from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
+from hystbench.gap.bases.summed import constant, impedance, static
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
+from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.model import Model
-from hystbench.record import FloatArray, Mask
+from hystbench.record import Mask, Record
 
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
@@ -94,27 +97,17 @@ def identified_linear(evidence: Evidence) -> Linear:
         If a record is too short for folds, or no linear model predicts the folds
         better than a constant.
     """
-    records = evidence.fit
-    whole = tuple(
-        (np.arange(len(item)) >= LEAD * len(item)) & item.counted for item in records
-    )
-    folds = tuple(
-        Fold(_both(fold.train, whole), _both(fold.validation, whole))
-        for fold in make_folds(records)
-    )
-    ones = [np.ones((len(item), 1)) for item in records]
-    inputs = [
-        np.column_stack([item.u, one]) for item, one in zip(records, ones, strict=True)
-    ]
-    static = _summed(inputs, evidence, whole, folds)
-    constant = _summed(ones, evidence, whole, folds).folds
-    spectra = Spectra.of([Stretch(r.u, r.y, r.dt) for r in records], evidence.hold)
+    all_of_it, evidence = evidence, _coarse(evidence)
+    records, whole = evidence.fit, _behind_the_lead(evidence.fit)
+    folds = _folds(records, whole)
+    gain = static(evidence, whole, folds)
+    spectra = _spectra(evidence)
 
     def dynamic(order: int, zeros: int) -> _Found:
         return _dynamic(evidence, spectra, order, zeros, whole, folds)
 
     found: list[_Found] = []
-    best, in_vain = static.folds, 0
+    best, in_vain = gain.folds, 0
     for order in range(1, HIGHEST + 1):
         found.append(dynamic(order, order))
         in_vain = 0 if found[-1].folds < (1 - ORDER_PAYS) * best else in_vain + 1
@@ -125,17 +118,19 @@ def identified_linear(evidence: Evidence) -> Linear:
     likely = next((item for item in found if item.folds <= enough), None)
     if likely is not None and len(likely.ratio.a) >= MANY:
         found += _further_modes(spectra, likely, whole, folds)
-        best = min(static.folds, *(item.folds for item in found))
-    moved = _impedance(evidence, whole, folds)
+        best = min(gain.folds, *(item.folds for item in found))
+    moved = impedance(evidence, whole, folds)
     if moved is not None:
         best = min(best, moved[0].folds)
     enough = best / (1 - ORDER_PAYS)
     chosen = next((item for item in found if item.folds <= enough), None)
     chain: tuple[Block, ...]
-    if static.folds <= enough:
-        value, offset = static.numbers
+    if gain.folds <= enough:
+        every = _behind_the_lead(all_of_it.fit)
+        gain = static(all_of_it, every, _folds(all_of_it.fit, every))
+        value, offset = gain.numbers
         chain = (Gain(value=value, offset=offset),)
-        fit, fold, what = static.fit, static.folds, "order 0 (a gain and an offset)"
+        fit, fold, what = gain.fit, gain.folds, "order 0 (a gain and an offset)"
     elif moved is not None and moved[0].folds <= enough:
         (fit, fold, _), block = moved
         chain, what = (block,), "the impedance of a mass on a spring"
@@ -147,16 +142,18 @@ def identified_linear(evidence: Evidence) -> Linear:
             if shorter.folds > enough:
                 break
             chosen = shorter
+        if evidence is not all_of_it:  # the same order, on every sample
+            chosen = _on_all_samples(chosen, all_of_it.fit)
         ratio = chosen.task.block(chosen.ratio)
         chain = (ratio, Gain(value=1.0, offset=float(chosen.ratio.offset)))
         fit, fold = chosen.fit, chosen.folds
         zeros = len(chosen.ratio.b) - 1
-        what = f"order {order}, {zeros} zero{'s' * (zeros != 1)}, from {ratio.start}"
-    unit = evidence.output.unit
-    if fold > (1 - ORDER_PAYS) * constant:
+        what = f"order {order}, {zeros} zero{'s' * (zeros != 1)}, start: {ratio.start}"
+    unit, still = evidence.output.unit, constant(evidence, whole, folds).folds
+    if fold > (1 - ORDER_PAYS) * still:
         raise InputError(
             f"{evidence.name}: linear: on folds of the fit records the best linear "
-            f"model is {fold:.4g} {unit} off, a constant {constant:.4g}; expected an "
+            f"model is {fold:.4g} {unit} off, a constant {still:.4g}; expected an "
             "output that follows the input, or a model file in --model"
         )
     note = (
@@ -164,12 +161,55 @@ def identified_linear(evidence: Evidence) -> Linear:
         f"{fold:.4g} {unit} on folds of them"
     )
     series = not isinstance(chain[0], Impedance)
-    halves = _halves(evidence, spectra, found, whole, folds) if series else None
+    bent = series and _is_bent(evidence, spectra, found, whole)
+    if bent and evidence is not all_of_it:
+        found = [_on_all_samples(item, all_of_it.fit) for item in found]
+        spectra = _spectra(all_of_it)
+    halves = _halves(all_of_it, spectra, found) if bent else None
     if halves is not None:
         chain, fit, more = halves
         note += more
     model = Model("linear", evidence.input, evidence.output, chain)
     return Linear(model, note, fit, fold)
+
+
+def _coarse(evidence: Evidence) -> Evidence:
+    """Leave out samples of long records of a slow input: the same where none are.
+
+    A force that follows a motion is not slow.
+    """
+    if evidence.quantities.causality == "motion to force":
+        return evidence
+    records = coarser(evidence.fit, evidence.hold)
+    return evidence if records == evidence.fit else replace(evidence, fit=records)
+
+
+def _spectra(evidence: Evidence) -> Spectra:
+    stretches = [Stretch(item.u, item.y, item.dt) for item in evidence.fit]
+    return Spectra.of(stretches, evidence.hold)
+
+
+def _folds(records: Sequence[Record], whole: tuple[Mask, ...]) -> tuple[Fold, ...]:
+    return tuple(
+        Fold(_both(fold.train, whole), _both(fold.validation, whole))
+        for fold in make_folds(records)
+    )
+
+
+def _behind_the_lead(records: Sequence[Record]) -> tuple[Mask, ...]:
+    return tuple(
+        (np.arange(len(item)) >= LEAD * len(item)) & item.counted for item in records
+    )
+
+
+def _on_all_samples(found: _Found, records: tuple[Record, ...]) -> _Found:
+    """Fit a ratio that was found on fewer samples to all of them."""
+    whole = _behind_the_lead(records)
+    task = _plainest(replace(found.task, records=records), found.ratio)
+    ratio = task.refined(found.ratio, whole, ROUNDS)
+    count = sum(int(mask.sum()) for mask in whole)
+    fit = float(np.sqrt(ratio.cost / count))
+    return found._replace(task=task, ratio=ratio, fit=fit)
 
 
 def _further_modes(
@@ -203,21 +243,25 @@ def _further_modes(
     return found
 
 
+def _is_bent(
+    evidence: Evidence, spectra: Spectra, found: list[_Found], whole: tuple[Mask, ...]
+) -> bool:
+    """Tell whether a static curve somewhere pays at all."""
+    start = found[-1].task.start
+    task = HalvesError(evidence.fit, whole, evidence.hold, spectra.scale, start)
+    return is_bent(task, [item.ratio for item in found])
+
+
 def _halves(
-    evidence: Evidence,
-    spectra: Spectra,
-    found: list[_Found],
-    whole: tuple[Mask, ...],
-    folds: tuple[Fold, ...],
+    evidence: Evidence, spectra: Spectra, found: list[_Found]
 ) -> tuple[tuple[Block, ...], float, str] | None:
     """Write the base as two in series, where a static curve between explains much.
 
     Returns the chain, its own error on the fit records, and a few words.
     """
-    start = found[-1].task.start
+    whole = _behind_the_lead(evidence.fit)
+    folds, start = _folds(evidence.fit, whole), found[-1].task.start
     task = HalvesError(evidence.fit, whole, evidence.hold, spectra.scale, start)
-    if not is_bent(task, [item.ratio for item in found]):
-        return None
     free_run = OutputError(evidence.fit, evidence.hold, spectra.scale, start)
     ratios = [
         free_run.refined(fit_ratio(spectra, order, zeros), whole, ROUNDS)
@@ -244,74 +288,6 @@ def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]
     return tuple(a & b for a, b in zip(masks, others, strict=True))
 
 
-class _Sum(NamedTuple):
-    """A model that is the sum of some signals, each times a number."""
-
-    fit: float
-    folds: float
-    numbers: tuple[float, ...]
-
-
-def _summed(
-    signals: Sequence[FloatArray],
-    evidence: Evidence,
-    whole: tuple[Mask, ...],
-    folds: tuple[Fold, ...],
-) -> _Sum:
-    """Fit a sum of signals: error on all records, on the folds, and the numbers.
-
-    Parameters
-    ----------
-    signals : sequence of ndarray, shape (n, k)
-        Of each record, in columns.
-    """
-    sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
-    scaled = [columns / sizes for columns in signals]
-    outputs = [record.y for record in evidence.fit]
-
-    def solved(masks: tuple[Mask, ...]) -> FloatArray:
-        left = np.vstack([x[mask] for x, mask in zip(scaled, masks, strict=True)])
-        right = np.concatenate(
-            [x[mask] for x, mask in zip(outputs, masks, strict=True)]
-        )
-        found: FloatArray = np.linalg.lstsq(left, right, rcond=None)[0]
-        return found
-
-    def squares(numbers: FloatArray, masks: tuple[Mask, ...]) -> float:
-        return sum(
-            float(np.sum((y - x @ numbers)[mask] ** 2))
-            for x, y, mask in zip(scaled, outputs, masks, strict=True)
-        )
-
-    best = solved(whole)
-    judged = sum(squares(solved(fold.train), fold.validation) for fold in folds)
-    count = sum(int(mask.sum()) for mask in whole)
-    return _Sum(
-        float(np.sqrt(squares(best, whole) / count)),
-        float(np.sqrt(judged / count)),
-        tuple((best / sizes).tolist()),
-    )
-
-
-def _impedance(
-    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
-) -> tuple[_Sum, Block] | None:
-    """Fit the force of a mass on a spring to a motion; none to any other input.
-
-    It grows with the frequency: a ratio of polynomials that can be run has no such.
-    """
-    about = evidence.quantities
-    if about.causality != "motion to force" or about.input not in INPUTS:
-        return None
-    signals = [
-        Impedance.columns(about.input, evidence.hold, record.u, record.dt)
-        for record in evidence.fit
-    ]
-    found = _summed(signals, evidence, whole, folds)
-    numbers: dict[str, Any] = dict(zip(NUMBERS, found.numbers, strict=True))
-    return found, Impedance(**numbers, input=about.input, hold=evidence.hold)
-
-
 def _dynamic(
     evidence: Evidence,
     spectra: Spectra,
@@ -321,19 +297,21 @@ def _dynamic(
     folds: tuple[Fold, ...],
 ) -> _Found:
     """Fit one order to all records, and from there to each fold's."""
-    everything = [record.counted for record in evidence.fit]
     first = fit_ratio(spectra, order, zeros)
-    tasks = [
-        OutputError(evidence.fit, evidence.hold, spectra.scale, start)
-        for start in STARTS
-    ]
-    costs = [task.squares(first, everything) for task in tasks]
-    task = next(
+    task = OutputError(evidence.fit, evidence.hold, spectra.scale)
+    return _judged(_plainest(task, first), first, whole, folds)
+
+
+def _plainest(task: OutputError, ratio: Ratio) -> OutputError:
+    """Take the plainest start of the records that does nearly as well as any."""
+    everything = [record.counted for record in task.records]
+    tasks = [replace(task, start=start) for start in possible_starts(task.records)]
+    costs = [task.squares(ratio, everything) for task in tasks]
+    return next(
         task
         for task, cost in zip(tasks, costs, strict=True)
         if cost <= CLEARLY * min(costs)
     )
-    return _judged(task, first, whole, folds)
 
 
 def _judged(

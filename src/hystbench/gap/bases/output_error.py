@@ -29,7 +29,7 @@ class OutputError:
     hold : {"zero-order", "linear", "band-limited"}
     scale : float
         Unit of the ratio's s, in rad/s.
-    start : {"rest", "settled", "moving"}
+    start : {"rest", "settled", "moving", "repeating"}
         As of the block.
     """
 

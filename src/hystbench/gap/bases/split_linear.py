@@ -122,7 +122,7 @@ def parts_of(
     fb, bb = halves.front_b, halves.back_b
     unit = fb[0] / halves.front_a[0] if fb[0] else 1.0
     front = _block(task, fb / unit, halves.front_a, task.start)
-    after = "moving" if task.start == "moving" else "settled"
+    after = task.start if task.start != "rest" else "settled"
     back = _block(task, bb, halves.back_a, after)
     if back.hold == "zero-order":  # a staircase is smooth behind the front
         back = replace(back, hold="linear")

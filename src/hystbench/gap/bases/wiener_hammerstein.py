@@ -87,7 +87,7 @@ class HalvesError:
     hold : {"zero-order", "linear", "band-limited"}
     scale : float
         Unit of s, in rad/s.
-    start : {"rest", "settled", "moving"}
+    start : {"rest", "settled", "moving", "repeating"}
         As of a transfer function's block.
     """
 

@@ -14,6 +14,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench.blocks.other_modes import OtherModes
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.least_squares import at_values
@@ -53,6 +54,10 @@ class Beginnings:
             Of the whole records.
         """
         records, positions, of_start, kept = [], [], [], []
+        # A period that came before is of use only as a whole.
+        repeats = any(
+            getattr(block, "start", "") == "repeating" for block in state.chain
+        )
         own_starts = state.sample.of_start or (None,) * len(state.records)
         for record, places, part, start in zip(
             state.records,
@@ -64,6 +69,8 @@ class Beginnings:
             passed = np.cumsum(np.nan_to_num(state.residual[part]) ** 2)
             count = int(np.searchsorted(passed, PART * passed[-1])) + 1
             count = max(count, ceil(PART * len(places)))
+            if repeats:
+                count = len(places)
             end = len(record) if count == len(places) else int(places[count - 1]) + 1
             records.append(_until(record, end))
             positions.append(places[:count])
@@ -75,10 +82,17 @@ class Beginnings:
         return cls(tuple(records), sample, mask, own)
 
     def cut(self, state: ModelState) -> ModelState:
-        """Give a model on the beginnings."""
+        """Give a model on the beginnings; of it the host and its forces are free.
+
+        What other modes do beside them is nearly right, and is fitted in the end.
+        """
         lacks = state.correction
+        free = (
+            x for x in state.free if not isinstance(state.chain[x.block], OtherModes)
+        )
         return replace(
             state,
+            free=tuple(free),
             records=self.records,
             sample=self.sample,
             correction=None if lacks is None else lacks[self.kept],
@@ -87,7 +101,7 @@ class Beginnings:
 
 def with_numbers_of(state: ModelState, other: ModelState) -> ModelState:
     """Give a model with the free numbers of another one of the same blocks."""
-    return at_values(state, np.array([other.value(free) for free in other.free]))
+    return at_values(state, np.array([other.value(free) for free in state.free]))
 
 
 def _until(record: Record, end: int) -> Record:

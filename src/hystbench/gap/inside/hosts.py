@@ -19,6 +19,8 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.transfer_function import TransferFunction, possible_starts
+from hystbench.gap.bases.linear import HIGHEST
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
@@ -84,13 +86,13 @@ def hosts(
             best = best_host(list(begun), score)
             if best is not None:
                 yield Host(best.state, best, f"{words} in place of the base")
-    if identified:
+    if identified and not of_many_modes(start):
         begun = one_coordinate(start.records, quantities, start.hold)
         best = best_host(list(begun), score)
         if best is not None:
             words = "a model of one coordinate stands in place of the linear base"
             yield Host(best.state, best, words)
-    else:
+    if not identified:
         same = same_as(start, quantities)
         if same is not None:
             words = (
@@ -100,13 +102,25 @@ def hosts(
     if quantities.causality not in ("force to motion", "unknown"):
         return
     known = quantities.output in MOTIONS
-    split = modes(start, quantities.output if known else "position")
+    split = modes(start, quantities.output if known else "position", identified)
     for mode in itertools.islice(split, TRIED):
         best, block = fitted(mode, score), mode.chain[0]
         assert isinstance(block, Mechanism)  # noqa: S101  (for the type checker)
         frequency = np.sqrt(block.stiffness / block.mass) / (2 * np.pi)
         words = f"the base's mode at {frequency:.3g} Hz is a mechanism of its own"
         yield Host(best.state if identified else mode, best, words)
+
+
+def of_many_modes(start: ModelState) -> bool:
+    """Tell whether a base has more poles than a force can have bought it.
+
+    Friction in one coordinate buys a linear model an order or two, not further modes
+    that records held back ask for.
+    """
+    return any(
+        isinstance(block, TransferFunction) and len(block.denominator) > HIGHEST + 1
+        for block in start.chain
+    )
 
 
 def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
@@ -180,7 +194,7 @@ def masses(
     found: list[tuple[float, tuple[Block, ...]]] = []
     sample = Sample.of(records)
     wanted = sample.take([record.y for record in records])
-    starts = ("rest",) if _from_rest(records) else ("rest", "settled", "moving")
+    starts = ("rest",) if _from_rest(records) else possible_starts(records)
     span = max(record.dt * len(record) for record in records)
     fastest = 0.8 * np.pi / min(record.dt for record in records)
     grid = np.geomspace(2 * np.pi / span, fastest, FREQUENCIES)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -127,11 +128,17 @@ def at_values(state: ModelState, values: FloatArray) -> ModelState:
         If a block does not take them together.
     """
     chain = list(state.chain)
-    changes: dict[int, dict[str, float]] = {}
+    changes: dict[int, dict[str, Any]] = {}
     for free, value in zip(state.free, values.tolist(), strict=True):
-        about = chain[free.block].parameters()[free.parameter]
+        block, own = chain[free.block], changes.setdefault(free.block, {})
+        about = block.parameters()[free.parameter]
         low, high = max(about.low, free.low), min(about.high, free.high)
-        changes.setdefault(free.block, {})[free.parameter] = min(max(value, low), high)
+        new: Any = min(max(value, low), high)
+        if free.element is not None:
+            numbers = list(own.get(free.parameter, getattr(block, free.parameter)))
+            numbers[free.element] = new
+            new = tuple(numbers)
+        own[free.parameter] = new
     for place, change in changes.items():
         chain[place] = replace(chain[place], **change)
     return state.with_chain(tuple(chain))

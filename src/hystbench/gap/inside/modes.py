@@ -20,17 +20,21 @@ NUMBERS = ("mass", "damping", "stiffness", "blend")
 """Of a mode."""
 NONE = 1e-3
 """Share of a mode in the output that is none of the motion that is asked for."""
+NEEDS = 0.5
+"""Of what the mode that needs a force most would explain, another one at least."""
 APART = 1e-6
 """Share of its size by which a pole must be away from all others."""
 
 
-def modes(start: ModelState, output: str) -> Iterator[ModelState]:
+def modes(
+    start: ModelState, output: str, others_too: bool = False
+) -> Iterator[ModelState]:
     """Give a linear model with one of its modes as a mechanism.
 
     The model does what it did. The modes come in the order in which they deserve a
     force inside: first the one whose own numbers, were they free in every record,
-    would take most of the residual away. A mode that is linear has the same numbers at
-    every level.
+    would take most of the residual away, and none that would take less than half of
+    that. A mode that is linear has the same numbers at every level.
 
     Parameters
     ----------
@@ -38,11 +42,14 @@ def modes(start: ModelState, output: str) -> Iterator[ModelState]:
         Its chain is a transfer function of two oscillating modes or more, and gains;
         of any other nothing is given.
     output : {"position", "velocity", "acceleration"}
+    others_too : bool
+        Whether the numbers of the other modes are free as well, and each of them is a
+        block of its own: a base that was fitted with the gap in it has all modes wrong.
 
     Yields
     ------
     ModelState
-        The numbers of the mode are free, those of the others are not.
+        The numbers of the mode are free.
     """
     block, *behind = start.chain
     if not isinstance(block, TransferFunction):
@@ -57,8 +64,43 @@ def modes(start: ModelState, output: str) -> Iterator[ModelState]:
             free=tuple(Free(0, name) for name in NUMBERS),
         ).settled()
         found.append((-_explained_by_levels(state), len(found), state))
-    for *_, state in sorted(found):
-        yield state
+    found.sort()
+    for share, _, state in found:
+        if -share >= NEEDS * -found[0][0]:
+            yield with_others_free(state) if others_too else state
+
+
+def with_others_free(state: ModelState) -> ModelState:
+    """Write the other modes beside a mechanism as a block each, all numbers free."""
+    mode, others, *behind = state.chain
+    assert isinstance(others, OtherModes)  # noqa: S101  (for the type checker)
+    each = one_by_one(others)
+    free = [
+        Free(place, name, element)
+        for place, block in enumerate(each, 1)
+        for name, numbers in (
+            ("numerator", range(len(block.numerator))),
+            ("denominator", range(1, len(block.denominator))),
+        )
+        for element in numbers
+    ]
+    chain = (mode, *each, *behind)
+    return replace(state, chain=chain, free=(*state.free, *free)).settled()
+
+
+def one_by_one(others: OtherModes) -> list[OtherModes]:
+    """Write a ratio as a sum of ratios of order two, and one of all real poles."""
+    down, up = np.array(others.denominator), np.array(others.numerator)
+    poles = np.asarray(np.roots(down), dtype=np.complex128)
+    direct = float(up[0] / down[0]) if len(up) == len(down) else 0.0
+    residues = np.polyval(up, poles) / np.polyval(np.polyder(down), poles)
+    pairs = [[poles[k], poles[k].conj()] for k in np.flatnonzero(poles.imag > 0)]
+    groups = [np.flatnonzero(np.isin(poles, pair)) for pair in pairs]
+    real = np.flatnonzero(poles.imag == 0)
+    groups += [real] if len(real) else []
+    parts = [_sum_of(others, poles[k], residues[k], 0.0) for k in groups[:-1]]
+    last = groups[-1]
+    return [*parts, _sum_of(others, poles[last], residues[last], direct)]
 
 
 def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block]]:

@@ -17,6 +17,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -81,12 +82,15 @@ def named_inside(
     say : callable
         Told a line of progress at a time.
     """
-    nothing = np.zeros((len(start.sample), 0))
-    score = Score(start.sample, nothing, floor_rms**2)
+    fewer = on_fewer(start, quantities)
+    score, score_of_all = (
+        Score(x.sample, np.zeros((len(x.sample), 0)), floor_rms**2)
+        for x in (fewer, start)
+    )
     turns = start.records[0].output.unit.startswith("rad")
     offer = partial(laws_for, turns=turns, offered=start.offered)
     tried = []
-    for host in hosts(start, quantities, identified, score):
+    for host in hosts(fewer, quantities, identified, score):
         found = singles(host.fitted, offer, score, say)
         tried.append((host, found))
         if not may_gain(chosen(found, score.floor), score):
@@ -100,13 +104,20 @@ def named_inside(
 
     host, found = min(tried, key=lambda item: least(item[1]))
     found = together(found, offer, score, say)
-    best = chosen(found, score.floor)
-    fitted = found[0].fitted.state
+    best, alone = chosen(found, score.floor), host.alone
     if not best.effects:
         say("inside: no force pays")
         return None
+    if fewer is not start:
+        on_all = OnAll.of(start, score_of_all, alone, identified)
+        way = (found[0], *way_to(best, found))
+        place = [item is best for item in found].index(True)
+        found = on_all.hypotheses(found, way)
+        best = found[place]
+        alone = found[0].fitted.state if identified else on_all.state(alone)
+    fitted = found[0].fitted.state
     state = replace(best.fitted.state, offered=start.offered).settled()
-    alone = replace(host.alone, offered=start.offered).settled()
+    alone = replace(alone, offered=start.offered).settled()
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
     sentence = (
@@ -117,9 +128,12 @@ def named_inside(
     rounds = _rounds(replace(fitted, offered=start.offered).settled(), best, found)
     model = Model(base.name, base.input, base.output, alone.chain)
     labels = [label for label, _ in model.labelled()]
-    free = tuple(f"{labels[item.block]}.{item.parameter}" for item in alone.free)
+    free = [f"{labels[item.block]}.{item.parameter}" for item in alone.free]
     return Inside(
-        replace(model, free=free), alone, Named(state, tuple(rounds)), sentence
+        replace(model, free=tuple(dict.fromkeys(free))),
+        alone,
+        Named(state, tuple(rounds)),
+        sentence,
     )
 
 

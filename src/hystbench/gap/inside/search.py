@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import ceil
 from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.base import Block
-from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.law import Changed, Law, Moved
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import Added, Free, ModelState
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
 from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged
+from hystbench.gap.inside.put_in import evened, is_host, with_law
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
@@ -26,8 +26,8 @@ from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
 alone may gain much together."""
-STARTS = 8
-"""Of the laws of one effect, the likeliest, that are fitted roughly."""
+FEW = 4
+"""Evaluations of the residual after which the worse half of the starts is left."""
 
 
 @dataclass(frozen=True)
@@ -182,6 +182,8 @@ def starts(
             if isinstance(law, Changed)
             else with_law(state, effect, law)
         )
+        if isinstance(law, Law) and not law.stands_for:
+            begun = evened(begun)
         if not np.all(np.isfinite(begun.residual)):
             continue
         columns = np.column_stack([tangents, state.residual - begun.residual])
@@ -211,7 +213,7 @@ def fitted_likely(
         Of the whole records.
     count : int
         How many, each by its best start, are fitted to the end; twice as many are
-        fitted roughly.
+        fitted roughly, each from twice as many starts.
 
     Returns
     -------
@@ -221,13 +223,10 @@ def fitted_likely(
     likely: dict[frozenset[str], list[Hypothesis]] = {}
     for item in sorted(begun, key=lambda item: item.score):
         likely.setdefault(frozenset(item.effects), []).append(item)
-    rough = []
-    for own in list(likely.values())[: 2 * count]:
-        tried = [
-            (item, fitted(beginnings.cut(item.fitted.state), beginnings.score, QUICK))
-            for item in own[:STARTS]
-        ]
-        rough.append(min(tried, key=lambda pair: pair[1].score))
+    rough = [
+        raced(own[: 2 * count], beginnings)
+        for own in list(likely.values())[: 2 * count]
+    ]
     rough.sort(key=lambda pair: pair[1].score)
     begun_well = [
         replace(
@@ -237,6 +236,34 @@ def fitted_likely(
         for item, own in rough[:count]
     ]
     return _to_the_end(begun_well, score)
+
+
+def raced(
+    begun: Sequence[Hypothesis], beginnings: Beginnings
+) -> tuple[Hypothesis, Fitted]:
+    """Fit starts a little, and the better half of them further, until one is left.
+
+    Successive halving [1]_: the same time is spent on all starts of a round together.
+
+    References
+    ----------
+    .. [1] K. Jamieson, A. Talwalkar, "Non-stochastic best arm identification and
+       hyperparameter optimization", AISTATS 2016, 240-248.
+    """
+    running = [
+        (item, Fitted(beginnings.cut(item.fitted.state), np.inf)) for item in begun
+    ]
+    evaluations = FEW
+    while True:
+        running = [
+            (item, fitted(own.state, beginnings.score, evaluations))
+            for item, own in running
+        ]
+        running.sort(key=lambda pair: pair[1].score)
+        if len(running) == 1 or evaluations >= QUICK:
+            return running[0]
+        running = running[: ceil(len(running) / 2)]
+        evaluations = min(2 * evaluations, QUICK)
 
 
 def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
@@ -271,47 +298,6 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
             if judged(state.with_chain(tuple(chain)), score) < item.score + SCALE:
                 return True
     return False
-
-
-def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
-    """Put a law into a chain, with its numbers free.
-
-    A force goes behind the host, a filter before all or behind all. What a force stands
-    for goes out of the host's spring.
-    """
-    host = next(k for k, block in enumerate(state.chain) if is_host(block))
-    place = {"before": 0, "inside": host + 1, "behind": len(state.chain)}[law.place]
-    base: list[Any] = list(state.chain)
-    if law.stands_for:
-        spring = (1.0 - law.stands_for) * base[host].stiffness
-        base[host] = replace(base[host], stiffness=spring)
-    chain = (*base[:place], law.block, *base[place:])
-
-    def moved(block: int) -> int:
-        return block + 1 if block >= place else block
-
-    values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
-    item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
-    return replace(
-        state,
-        chain=chain,
-        free=(
-            *(free._replace(block=moved(free.block)) for free in state.free),
-            *(Free(place, name, low=law.least) for name in law.free),
-        ),
-        added=(
-            *(
-                old._replace(blocks=tuple(moved(block) for block in old.blocks))
-                for old in state.added
-            ),
-            item,
-        ),
-    )
-
-
-def is_host(block: Block) -> bool:
-    """Tell whether forces can act inside a block."""
-    return isinstance(block, Mechanism | Impedance)
 
 
 def how_it_moves(state: ModelState, turns: bool) -> Moved:

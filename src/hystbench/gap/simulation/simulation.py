@@ -55,27 +55,34 @@ class Simulation:
 
         Before a wrapping block stands the output of what it wraps, without it.
         """
-        stages: list[Signals] = [tuple(record.u for record in self.records)]
-        for k in range(len(self.chain)):
-            start = k
+        return tuple(self.at(k) for k in range(len(self.chain) + 1))
+
+    def at(self, place: int) -> Signals:
+        """Signals before one block; what is attached to a block is run with it."""
+        if place not in self._at:
+            start = place - 1
             while isinstance(self.chain[start], AttachedBlock):
                 start -= 1
-            signals = self.run(self.chain[start : k + 1], stages[start])
+            signals = self.run(self.chain[start:place], self.at(start))
             for z in signals:
                 z.setflags(write=False)  # so that what it is made of can be kept
-            stages.append(signals)
-        return tuple(stages)
+            self._at[place] = signals
+        return self._at[place]
+
+    @cached_property
+    def _at(self) -> dict[int, Signals]:
+        return {0: tuple(record.u for record in self.records)}
 
     @cached_property
     def output(self) -> Signals:
         """The chain's output."""
         if self.quick:
-            return self.before[-1]
-        return self.run(self.chain, tuple(record.u for record in self.records))
+            return self.at(len(self.chain))
+        return self.run(self.chain, self.at(0))
 
     def tail(self, start: int, blocks: Sequence[Block]) -> Signals:
         """Simulate other blocks from ``start`` on, in place of those in the chain."""
-        return self.run(blocks, self.before[start])
+        return self.run(blocks, self.at(start))
 
     def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
         """Send signals through blocks, from rest."""
@@ -185,11 +192,11 @@ class Simulation:
 
     def largest(self, place: int) -> float:
         """Largest size of the signal before a block."""
-        return float(max(np.abs(z).max() for z in self.before[place]))
+        return float(max(np.abs(z).max() for z in self.at(place)))
 
     def fastest(self, place: int = 0) -> float:
         """Largest rate of the signal before a block, in its unit a second."""
-        pairs = zip(self.before[place], self.records, strict=True)
+        pairs = zip(self.at(place), self.records, strict=True)
         return float(max(np.abs(np.diff(z)).max() / record.dt for z, record in pairs))
 
 

@@ -1,0 +1,96 @@
+"""Bases that are a sum of signals, each times a number: a gain, an impedance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.folds import Fold
+from hystbench.record import FloatArray, Mask
+
+
+class Sum(NamedTuple):
+    """A model that is the sum of some signals, each times a number."""
+
+    fit: float
+    folds: float
+    numbers: tuple[float, ...]
+
+
+def constant(
+    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
+) -> Sum:
+    """Fit a constant."""
+    ones = [np.ones((len(item), 1)) for item in evidence.fit]
+    return summed(ones, evidence, whole, folds)
+
+
+def static(evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]) -> Sum:
+    """Fit a gain and a constant."""
+    signals = [np.column_stack([x.u, np.ones(len(x))]) for x in evidence.fit]
+    return summed(signals, evidence, whole, folds)
+
+
+def summed(
+    signals: Sequence[FloatArray],
+    evidence: Evidence,
+    whole: tuple[Mask, ...],
+    folds: tuple[Fold, ...],
+) -> Sum:
+    """Fit a sum of signals: error on all records, on the folds, and the numbers.
+
+    Parameters
+    ----------
+    signals : sequence of ndarray, shape (n, k)
+        Of each record, in columns.
+    """
+    sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
+    scaled = [columns / sizes for columns in signals]
+    outputs = [record.y for record in evidence.fit]
+
+    def solved(masks: tuple[Mask, ...]) -> FloatArray:
+        left = np.vstack([x[mask] for x, mask in zip(scaled, masks, strict=True)])
+        right = np.concatenate(
+            [x[mask] for x, mask in zip(outputs, masks, strict=True)]
+        )
+        found: FloatArray = np.linalg.lstsq(left, right, rcond=None)[0]
+        return found
+
+    def squares(numbers: FloatArray, masks: tuple[Mask, ...]) -> float:
+        return sum(
+            float(np.sum((y - x @ numbers)[mask] ** 2))
+            for x, y, mask in zip(scaled, outputs, masks, strict=True)
+        )
+
+    best = solved(whole)
+    judged = sum(squares(solved(fold.train), fold.validation) for fold in folds)
+    count = sum(int(mask.sum()) for mask in whole)
+    return Sum(
+        float(np.sqrt(squares(best, whole) / count)),
+        float(np.sqrt(judged / count)),
+        tuple((best / sizes).tolist()),
+    )
+
+
+def impedance(
+    evidence: Evidence, whole: tuple[Mask, ...], folds: tuple[Fold, ...]
+) -> tuple[Sum, Block] | None:
+    """Fit the force of a mass on a spring to a motion; none to any other input.
+
+    It grows with the frequency: a ratio of polynomials that can be run has no such.
+    """
+    about = evidence.quantities
+    if about.causality != "motion to force" or about.input not in INPUTS:
+        return None
+    signals = [
+        Impedance.columns(about.input, evidence.hold, record.u, record.dt)
+        for record in evidence.fit
+    ]
+    found = summed(signals, evidence, whole, folds)
+    numbers: dict[str, Any] = dict(zip(NUMBERS, found.numbers, strict=True))
+    return found, Impedance(**numbers, input=about.input, hold=evidence.hold)

@@ -1,0 +1,145 @@
+"""A search on fewer samples of long records, and its result on all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.transfer_function import TransferFunction, possible_starts
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.least_squares import Fitted, fitted, judged
+from hystbench.gap.inside.search import FEW, Hypothesis
+from hystbench.gap.records.coarser import coarser
+from hystbench.gap.records.sample import Sample
+from hystbench.gap.simulation.simulation import Simulation
+from hystbench.quantities import Quantities
+from hystbench.record import FloatArray
+
+CLEARLY = 1.01
+"""The plainest start is taken whose squares are within this factor of the best."""
+
+
+def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
+    """Give a model on fewer samples of its records, or as it is where none are spared.
+
+    Of whole periods the last ones are left, and the model starts on them as if they had
+    come before. Only where a force makes a motion: the other way round its rates count,
+    and a store does not forget how it was filled.
+
+    Parameters
+    ----------
+    start : ModelState
+    quantities : Quantities
+        What the device takes and gives.
+    """
+    if quantities.causality != "force to motion":
+        return start
+    if any(record.decay_s is not None for record in start.records):
+        return start
+    records = coarser(start.records, start.hold)
+    if all(a is b for a, b in zip(records, start.records, strict=True)):
+        return start
+    chain = start.chain
+    if any(record.repeats for record in records):
+        chain = starting(chain, "repeating")
+    return replace(
+        start, chain=chain, records=records, sample=Sample.of(records)
+    ).settled()
+
+
+def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
+    """Give linear dynamics another start; a free mass has but one."""
+    changed: Any = {"start": start}
+    return tuple(
+        replace(block, **changed)
+        if isinstance(block, TransferFunction)
+        or (isinstance(block, Mechanism) and block.stiffness > 0.0)
+        else block
+        for block in chain
+    )
+
+
+@dataclass(frozen=True)
+class OnAll:
+    """Models that were found on fewer samples, on all of them.
+
+    Parameters
+    ----------
+    whole : ModelState
+        The base, with the records.
+    score : Score
+        Of all records.
+    start : str
+        How linear dynamics start on them.
+    """
+
+    whole: ModelState
+    score: Score
+    start: str
+
+    @classmethod
+    def of(
+        cls, whole: ModelState, score: Score, host: ModelState, identified: bool
+    ) -> OnAll:
+        """Choose the plainest start with which a host does nearly as well as with any.
+
+        Parameters
+        ----------
+        whole : ModelState
+        score : Score
+        host : ModelState
+            Linear, on fewer samples.
+        identified : bool
+            Whether it is to follow the records; else it is to do what the base does.
+        """
+        outputs = whole.simulation.output
+        wanted = whole.reference if identified else whole.sample.take(outputs)
+        starts = possible_starts(whole.records)
+        costs = [
+            float(np.sum((wanted - _simulated(whole, starting(host.chain, own))) ** 2))
+            for own in starts
+        ]
+        most = CLEARLY * min(costs)
+        chosen = next(x for x, cost in zip(starts, costs, strict=True) if cost <= most)
+        return cls(whole, score, chosen)
+
+    def state(self, found: ModelState) -> ModelState:
+        """Give a model with all samples, as it was fitted to fewer."""
+        return replace(
+            found,
+            chain=starting(found.chain, self.start),
+            records=self.whole.records,
+            sample=self.whole.sample,
+        ).settled()
+
+    def judged(self, found: Fitted) -> Fitted:
+        """Score a model on all samples as it is."""
+        state = self.state(found.state)
+        return Fitted(state, judged(state, self.score))
+
+    def fitted(self, found: Fitted) -> Fitted:
+        """Fit a model to all samples, from where it is."""
+        return fitted(self.state(found.state), self.score, FEW)
+
+    def hypotheses(
+        self, found: Sequence[Hypothesis], best: Sequence[Hypothesis]
+    ) -> list[Hypothesis]:
+        """Fit the best ones to all samples, and score the others on them."""
+        return [
+            replace(
+                item,
+                fitted=(self.fitted if item in best else self.judged)(item.fitted),
+            )
+            for item in found
+        ]
+
+
+def _simulated(whole: ModelState, chain: tuple[Block, ...]) -> FloatArray:
+    simulation = Simulation(chain, whole.records, whole.hold, quick=True)
+    return whole.sample.take(simulation.output)

@@ -1,0 +1,101 @@
+"""Putting a force inside a host, where its fit begins."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.force import Force, against
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.parameter import HUGE
+from hystbench.gap.effects.law import Law
+from hystbench.gap.fitting.state import Added, Free, ModelState
+
+REMAINS = 0.05
+"""Of a spring or a damper, at least, where a force begins that does its work."""
+
+
+def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
+    """Put a law into a chain, with its numbers free.
+
+    A force goes behind the host, a filter before all or behind all. What a force stands
+    for goes out of the host's spring.
+    """
+    host = next(k for k, block in enumerate(state.chain) if is_host(block))
+    place = {"before": 0, "inside": host + 1, "behind": len(state.chain)}[law.place]
+    base: list[Any] = list(state.chain)
+    if law.stands_for:
+        spring = (1.0 - law.stands_for) * base[host].stiffness
+        base[host] = replace(base[host], stiffness=spring)
+    chain = (*base[:place], law.block, *base[place:])
+
+    def moved(block: int) -> int:
+        return block + 1 if block >= place else block
+
+    values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
+    item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
+    return replace(
+        state,
+        chain=chain,
+        free=(
+            *(free._replace(block=moved(free.block)) for free in state.free),
+            *(Free(place, name, low=law.least) for name in law.free),
+        ),
+        added=(
+            *(
+                old._replace(blocks=tuple(moved(block) for block in old.blocks))
+                for old in state.added
+            ),
+            item,
+        ),
+    )
+
+
+def evened(state: ModelState) -> ModelState:
+    """Take out of a mass's spring and damper what a force put in last does on average.
+
+    Along the way that the host goes without the force: the spring and the damper that
+    are nearest to the force there, in least squares (statistical linearization [1]_).
+    So the mode that the force is put into stays where it was.
+
+    References
+    ----------
+    .. [1] J. B. Roberts, P. D. Spanos, Random Vibration and Statistical Linearization,
+       Wiley, 1990.
+    """
+    (place,) = state.added[-1].blocks
+    law, chain = state.chain[place], list(state.chain)
+    number = next(k for k, block in enumerate(chain) if is_host(block))
+    host = chain[number]
+    if not (isinstance(law, Force) and isinstance(host, Mechanism)):
+        return state
+    others = tuple(x for x in chain if isinstance(x, Force) and x is not law)
+    square, product = np.zeros((3, 3)), np.zeros(3)
+    for record, z in zip(state.records, state.simulation.at(number), strict=True):
+        way = host.motion(z, record.dt, others)
+        q, v = (np.ascontiguousarray(x) for x in (way.position, way.velocity))
+        place_counts = q if host.stiffness else np.zeros(len(q))
+        columns = np.column_stack([place_counts, v, np.ones(len(q))])
+        alike = 1.0 / max(float(np.sum(v**2)), 1.0 / HUGE)  # as records are weighed
+        square += alike * columns.T @ columns
+        product += alike * columns.T @ against((law,), q, v)
+    sizes = np.sqrt(np.maximum(np.diag(square), 1.0 / HUGE))
+    if not (np.all(np.isfinite(square)) and np.all(np.isfinite(product))):
+        return state
+    scaled = square / np.outer(sizes, sizes)
+    spring, damper, _ = np.linalg.lstsq(scaled, product / sizes, rcond=1e-9)[0] / sizes
+    chain[number] = replace(
+        host,
+        stiffness=max(host.stiffness - spring, REMAINS * host.stiffness),
+        damping=max(host.damping - damper, REMAINS * host.damping),
+    )
+    return state.with_chain(tuple(chain))
+
+
+def is_host(block: Block) -> bool:
+    """Tell whether forces can act inside a block."""
+    return isinstance(block, Mechanism | Impedance)

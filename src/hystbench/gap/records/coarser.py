@@ -1,0 +1,95 @@
+"""Long records with fewer samples, where their input moves slowly.
+
+A smooth input that moves slowly beside the sampling rate is told by every second, third
+or further sample as well: a model is simulated on these in a part of the time. Where
+the output moves faster, the samples that are left are what they were. Of whole periods
+the last ones tell what all do, from a start that repeats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import ceil
+
+import numpy as np
+
+from hystbench.blocks.held import Hold
+from hystbench.gap.records.sample import SAMPLES
+from hystbench.record import FloatArray, Record
+
+BEYOND = 1e-4
+"""Share of the input's power that may lie beyond what the coarse samples tell: a
+hundredth of its rms."""
+TOLD = 0.25
+"""Of the sampling rate, up to where the curve through samples meets a sine well."""
+ENOUGH = 2 * SAMPLES
+"""Samples that a record keeps, twice as many as are scored: it is simulated quickly."""
+
+
+def coarser(records: Sequence[Record], hold: Hold) -> tuple[Record, ...]:
+    """Give records of every so-manieth sample; the same ones where none can be spared.
+
+    Parameters
+    ----------
+    records : sequence of Record
+    hold : {"zero-order", "linear", "band-limited"}
+        Only a band-limited input is told by fewer samples.
+    """
+    records = tuple(_last_periods(record) for record in records)
+    factor = sparing(records, hold)
+    return tuple(_every(record, factor) for record in records)
+
+
+def sparing(records: Sequence[Record], hold: Hold) -> int:
+    """Tell of how many samples one is enough.
+
+    Whole periods stay whole.
+    """
+    if hold != "band-limited":
+        return 1
+    fastest = max(_fastest(record.u) for record in records)
+    fewest = min(len(record) for record in records)
+    most = min(int(TOLD / max(fastest, TOLD / fewest)), fewest // ENOUGH)
+    for factor in range(most, 1, -1):
+        if all((record.period_samples or 0) % factor == 0 for record in records):
+            return factor
+    return 1
+
+
+def _fastest(x: FloatArray) -> float:
+    """Give the frequency, per sample, beyond which hardly any power lies."""
+    power = np.abs(np.fft.rfft((x - x.mean()) * np.hanning(len(x)))) ** 2
+    beyond = np.cumsum(power[::-1])[::-1]
+    inside = beyond > BEYOND * beyond[0]
+    return float(np.fft.rfftfreq(len(x))[inside][-1]) if inside.any() else 0.0
+
+
+def _every(record: Record, factor: int) -> Record:
+    """Keep every so-manieth sample."""
+    if factor == 1:
+        return record
+    period = record.period_samples
+    return replace(
+        _cut(record, slice(None, None, factor)),
+        dt=record.dt * factor,
+        period_samples=None if period is None else period // factor,
+    )
+
+
+def _last_periods(record: Record) -> Record:
+    """Keep the last whole periods, as many as hold enough samples."""
+    period = record.period_samples
+    kept = ceil(ENOUGH / period) * period if period and record.repeats else len(record)
+    return record if kept >= len(record) else _cut(record, slice(-kept, None))
+
+
+def _cut(record: Record, kept: slice) -> Record:
+    simulated, lost = record.simulated, record.interpolated
+    return replace(
+        record,
+        u=record.u[kept].copy(),
+        y=record.y[kept].copy(),
+        simulated=None if simulated is None else simulated[kept].copy(),
+        interpolated=None if lost is None else lost[kept].copy(),
+    )

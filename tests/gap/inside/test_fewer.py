@@ -1,0 +1,83 @@
+"""Forces put into a mass, and a search on fewer samples of its records."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.friction_force import FrictionForce
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.stiffness import Stiffness
+from hystbench.gap.effects.law import Law
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.fewer import OnAll, on_fewer
+from hystbench.gap.inside.put_in import evened, with_law
+from hystbench.gap.records.coarser import ENOUGH
+from hystbench.gap.records.sample import Sample
+from hystbench.quantities import Quantities
+from hystbench.record import Channel, Record
+
+MACHINE = Mechanism(mass=2.0, damping=6.0, stiffness=800.0)
+DT, COUNT = 1e-3, 4 * ENOUGH
+MOVED = Quantities("force", "position")
+
+
+def state(record, chain=(MACHINE,)):
+    records = (record,)
+    return ModelState(chain, records, Sample.of(records))
+
+
+def periodic(start, periods=2):
+    """A steady motion, or one from rest: a multisine of up to 10 Hz."""
+    t = np.arange(COUNT) * DT
+    tones = np.arange(1, 80)
+    angles = 2 * np.pi * np.outer(t, tones) / (COUNT * DT) + tones**2
+    u = np.tile(np.cos(angles).sum(axis=1), periods)
+    y = replace(MACHINE, start=start).simulate(u, u, DT)
+    channels = Channel("force", "N"), Channel("position", "m")
+    return Record("r", DT, u, y, *channels, "measured", period_samples=COUNT)
+
+
+def test_a_cubic_spring_on_a_sine_begins_as_its_describing_function():
+    """The mean of q^3 over a sine of amplitude a is 3/4 a^2 q."""
+    w, a = 30.0, 0.02
+    t = np.arange(20000) * DT
+    drive = abs(-2.0 * w**2 + 20j * w + 800.0) * a * np.sin(w * t)
+    channels = Channel("force", "N"), Channel("position", "m")
+    record = Record("r", DT, drive, drive, *channels, "measured")
+    machine = replace(MACHINE, damping=20.0)  # soon in a steady motion
+    law = Law("cubic", Stiffness(quadratic=0.0, cubic=1e5), ("cubic",))
+    begun = evened(with_law(state(record, (machine,)), "stiffness-hardening", law))
+    out = 800.0 - begun.chain[0].stiffness
+    assert out == pytest.approx(0.75 * a**2 * 1e5, rel=0.03)
+    assert begun.chain[0].damping == pytest.approx(20.0, rel=0.05)
+
+
+def test_a_friction_takes_no_more_than_there_is():
+    record = periodic("rest", 1)
+    law = Law("dry", FrictionForce(coulomb=1e5, presliding_distance=1e-6), ("coulomb",))
+    begun = evened(with_law(state(record), "friction", law))
+    assert 0.0 < begun.chain[0].damping < 0.1 * MACHINE.damping
+
+
+@pytest.mark.parametrize("start", ["rest", "repeating"])
+def test_what_is_found_on_fewer_samples_starts_as_all_of_them_do(start):
+    whole = state(periodic(start), (replace(MACHINE, start=start),))
+    fewer = on_fewer(whole, MOVED)
+    assert len(fewer.records[0]) == ENOUGH
+    assert fewer.chain[0].start == "repeating"
+    if start == "repeating":
+        assert np.abs(fewer.residual).max() < 1e-3 * np.ptp(whole.measured)
+    score = Score(whole.sample, np.zeros((len(whole.sample), 0)), 1e-12)
+    on_all = OnAll.of(whole, score, fewer, True)
+    assert on_all.start == start
+    back = on_all.state(fewer)
+    assert back.records == whole.records
+    np.testing.assert_allclose(back.residual, whole.residual, atol=1e-9)
+
+
+def test_a_force_that_a_motion_makes_keeps_all_samples():
+    whole = state(periodic("rest"))
+    moved = Quantities("position", "force")
+    assert on_fewer(whole, moved) is whole
