@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -15,27 +14,8 @@ import click
 
 from hystbench import written
 from hystbench.errors import InputError
-from hystbench.files import read_json
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-class SettingsType(click.ParamType[dict[str, Any]]):
-    """Settings of a job: a JSON object, as the workflow writes it."""
-
-    name = "JSON"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> dict[str, Any]:
-        """Read the text as a JSON object."""
-        try:
-            settings = json.loads(value)
-        except json.JSONDecodeError as error:
-            self.fail(f"not JSON: {error}", param, ctx)
-        if not isinstance(settings, dict):
-            self.fail("expected a JSON object of settings", param, ctx)
-        return settings
 
 
 class _Place(click.Path):
@@ -224,25 +204,9 @@ DATASET = InputPlace(path_type=Path)
 NEW_FILE = OutputFile(path_type=Path)
 NEW_FOLDER = OutputFolder(path_type=Path)
 
-settings = click.option(
-    "--settings", type=SettingsType(), required=True, help="Settings of the job."
-)
 out = click.option(
     "--out", type=NEW_FILE, required=True, help="File to write, whole or not at all."
 )
 out_folder = click.option(
     "--out", type=NEW_FOLDER, required=True, help="Folder to write."
-)
-identified_file = click.option(
-    "--identified", type=FILE, help="Identified envelope functions (JSON)."
-)
-#: The same, read.
-identified = click.option(
-    "--identified",
-    type=FILE,
-    callback=lambda _, __, file: None if file is None else read_json(file),
-    help="Identified envelope functions (JSON).",
-)
-arrays = click.option(
-    "--arrays", type=NEW_FILE, required=True, help="Archive of output and error."
 )

@@ -29,7 +29,7 @@ def run_twins(settings, files, folder):
         "--out", fits,
     )  # fmt: skip
     for model in settings.filters:
-        runs += ["--runs", folder / f"{model}.json"]
+        runs += ["--run", folder / f"{model}.json"]
         job = json.dumps(settings.twin_runs_job(model))
         call(twin_runs, *files, "--fits", fits, "--settings", job, "--out", runs[-1])
     errors, claims = folder / "errors.csv", folder / "claims.csv"
