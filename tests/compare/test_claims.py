@@ -22,7 +22,8 @@ from hystbench.compare.claims.operators import (
 )
 from hystbench.compare.draws import Drawn
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import ClaimEvidence, OrderPoint
+from hystbench.compare.evidence import ClaimEvidence
+from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS, Printed
 
 from .made import (
@@ -87,7 +88,7 @@ def gpo_on_sines(values):
 def order_points(mse):
     return ClaimEvidence(
         order_sweep=tuple(
-            OrderPoint(model, order, mse(order))
+            OrderError(model, order, mse(order))
             for model in FILTERS
             for order in (1, 5, 10, 20, 40)
         )

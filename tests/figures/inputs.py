@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import csv
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from hystbench.compare.edges import Edge, write_edges
+from hystbench.compare.edges import COLUMNS, Edge
+from hystbench.compare.rows import four_digits, names_of, or_empty, write_fields
 from hystbench.envelope import PUBLISHED_ENVELOPE
 from hystbench.files import write_json
 from hystbench.identification import identify
 from hystbench.inverse.tracking import DRIVES
+from hystbench.order_errors import OrderError
 from hystbench.record import Channel, FloatArray, Record
 from hystbench.results import run_result, save_run
 
@@ -69,13 +72,13 @@ def save_a_run(
 
 def write_order_sweep(path: Path) -> None:
     """Write errors that fall with the order; the last one of a filter diverged."""
-    rows = [
-        [model, order, (1 + n) / order, "finite", "constant"]
+    points = [
+        OrderError(model, order, (1 + n) / order)
         for n, model in enumerate(MODELS[:4])
         for order in (1, 2, 5, 10)
     ]
-    rows[-1][2:] = ["", "diverged at sample 7", "constant"]
-    _write(path, ["model", "order", "mse", "status", "rule"], rows)
+    points[-1] = replace(points[-1], mse=math.inf)
+    write_fields(path, names_of(OrderError), points, or_empty)
 
 
 def write_step_edges(path: Path) -> None:
@@ -86,7 +89,7 @@ def write_step_edges(path: Path) -> None:
         for model in MODELS[:4]
     ]
     edges[-1] = replace(edges[-1], edge=None)
-    write_edges(edges, path)
+    write_fields(path, COLUMNS, edges, four_digits)
 
 
 def write_cells(path: Path) -> None:

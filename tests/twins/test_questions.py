@@ -10,7 +10,7 @@ from hystbench.commands.jobs.random_sum import random_sum
 from hystbench.commands.jobs.step_sweep import step_sweep
 from hystbench.compare.constants import read_constants
 from hystbench.compare.draws import read_draws
-from hystbench.compare.edges import read_edges
+from hystbench.compare.evidence import read_edges
 from hystbench.twins.constants import as_published
 from hystbench.twins.read import read_twins
 from hystbench.twins.runs import draw_signals, measure_twin

@@ -13,11 +13,12 @@ import numpy as np
 
 from hystbench.compare.constants import Row, read_constants
 from hystbench.compare.draws import Drawn, read_draws
-from hystbench.compare.edges import Edge, read_edges
-from hystbench.compare.rows import finite_or_infinite, read_rows
+from hystbench.compare.edges import Edge
+from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
+from hystbench.order_errors import OrderError
 from hystbench.published import (
     MODELS,
     Metric,
@@ -104,19 +105,6 @@ class Run:
 
 
 @dataclass(frozen=True)
-class OrderPoint:
-    """Error of one filter at one order (Figure 7); infinity where it diverged.
-
-    ``rule`` tells how the step size follows the order.
-    """
-
-    model: str
-    order: int
-    mse: float
-    rule: str = ""
-
-
-@dataclass(frozen=True)
 class Identification:
     """Result of Algorithm 1 on the slow loop."""
 
@@ -144,8 +132,8 @@ class ClaimEvidence:
     text: Text = field(default_factory=load_text)
     runs: Mapping[Cell, Run] = field(default_factory=dict)
     records: Mapping[str, Record] = field(default_factory=dict)
-    order_sweep: tuple[OrderPoint, ...] = ()
-    order_sweep_other: tuple[OrderPoint, ...] = ()
+    order_sweep: tuple[OrderError, ...] = ()
+    order_sweep_other: tuple[OrderError, ...] = ()
     identification: Identification | None = None
     envelope_errors: Mapping[Cell, float] = field(default_factory=dict)
     spreads: Mapping[tuple[str, str, Metric], tuple[float, float]] = field(
@@ -252,18 +240,14 @@ _PARAMETERS = tuple(f"a{j}" for j in range(8))
 _ERRORS = ("mse", "re", "mse_after_transient", "re_after_transient")
 
 
-def read_order_sweep(path: str | Path) -> tuple[OrderPoint, ...]:
-    """Read the errors by order of each filter: model, order, mse, status, rule."""
-    columns = ("model", "order", "mse", "status", "rule")
-    return tuple(
-        OrderPoint(
-            row["model"],
-            int(row["order"]),
-            finite_or_infinite(row["mse"], path, n),
-            row["rule"],
-        )
-        for n, row in enumerate(read_rows(path, columns), 1)
-    )
+def read_order_sweep(path: str | Path) -> tuple[OrderError, ...]:
+    """Read the errors by order of each filter."""
+    return tuple(read_items(path, OrderError))
+
+
+def read_edges(path: str | Path) -> tuple[Edge, ...]:
+    """Read the edges of the step sizes."""
+    return tuple(read_items(path, Edge))
 
 
 def read_envelope_errors(path: str | Path) -> dict[Cell, float]:

@@ -1,13 +1,10 @@
 """``hystbench job order-sweep``: error against order (Figure 7)."""
 
-from dataclasses import astuple
-
-from hystbench.files import write_csv
+from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.job import In, Json, Out, Settings, job
-from hystbench.order_errors import filters_by_order, order_errors
+from hystbench.order_errors import OrderError, filters_by_order, order_errors
 from hystbench.record import load_record
 
-COLUMNS = ["model", "order", "mse", "status", "rule"]
 #: How the step size follows the order: each rule, and the other one.
 OTHER = {
     "constant": "same-fraction-of-bound",
@@ -31,5 +28,5 @@ def order_sweep(
     for path, name in ((out, rule), (other, OTHER[rule])):
         chosen = settings | {"convergence_factor": name}
         filters = filters_by_order(measured, chosen, identified)
-        found = order_errors(measured, filters, threads)
-        write_csv(path, COLUMNS, [(*astuple(each), name) for each in found])
+        found = order_errors(measured, filters, threads, name)
+        write_fields(path, names_of(OrderError), found, or_empty)

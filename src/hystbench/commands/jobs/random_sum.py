@@ -2,7 +2,8 @@
 
 from statistics import fmean
 
-from hystbench.compare.draws import write_draws
+from hystbench.compare.draws import Draw
+from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.files import write_csv
 from hystbench.job import In, Json, Out, Settings, job
 from hystbench.published import load
@@ -26,7 +27,7 @@ def random_sum(
     fitted = RateDependentGPI.from_dict(rdgpi["parameters"]) if rdgpi else None
     found = drawing.run_draws(read_twins([twin])[0], settings, identified, fitted)
     signal = settings["signal"]
-    write_draws(signal, found, draws)
+    write_fields(draws, names_of(Draw), found, or_empty)
     published = {p.model: p.mse.value for p in load() if p.signal == signal}
     implied = check(load())[signal].rms
     rms = fmean((each.low + each.high) / 2 for each in implied)

@@ -1,10 +1,7 @@
 """``hystbench job step-sweep``: how far each step size can go."""
 
-import math
-from dataclasses import astuple, fields
-
-from hystbench.compare.edges import write_edges
-from hystbench.files import write_csv
+from hystbench.compare.edges import COLUMNS
+from hystbench.compare.rows import four_digits, names_of, write_fields
 from hystbench.job import In, Json, Out, Settings, job
 from hystbench.record import load_record
 from hystbench.twins.edges import Point, sweep
@@ -22,14 +19,5 @@ def step_sweep(
     """Raise each filter's step sizes on RECORDS up to their edge."""
     read = {record.name: record for record in map(load_record, records)}
     found, run = sweep(read, settings, identified)
-    write_edges(found, edges)
-    rows = (
-        [
-            ("" if v is None or math.isinf(v) else f"{v:.4g}")
-            if not isinstance(v, str)
-            else v
-            for v in astuple(point)
-        ]
-        for point in run
-    )
-    write_csv(points, [field.name for field in fields(Point)], rows)
+    write_fields(edges, COLUMNS, found, four_digits)
+    write_fields(points, names_of(Point), run, four_digits)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.rows import read_rows
+from hystbench.compare.rows import read_items, read_rows
 from hystbench.errors import InputError
 from hystbench.report.markup import first_sentence, inline
 from hystbench.report.picture import Link, Picture, embedded
@@ -19,7 +19,6 @@ from hystbench.report.reproduction.captions import caption
 Row = dict[str, str]
 
 #: Columns that the page cannot do without; others are shown as they are.
-_CELLS = tuple(ComparedCell.__dataclass_fields__)
 _CLAIMS = ("id", "claim", "where", "kind", "basis", "verdict", "evidence")
 _OFF = ("table", "signal", "model", "half", "published", "ours", "ratio", "known")
 _AUDIT = ("kind", "where", "statement", "evidence")
@@ -110,7 +109,7 @@ def read_content(
     found: Reproduction | Measured
     if settings["dataset"] is None:
         found = Reproduction(
-            cells=[_cell(row) for row in read_rows(compare / "cells.csv", _CELLS)],
+            cells=read_items(compare / "cells.csv", ComparedCell),
             claims=read_rows(compare / "claims.csv", _CLAIMS),
             on_held_out=_on_held_out(compare / "summary.json"),
             off=read_rows(compare / "off.csv", _OFF),
@@ -166,12 +165,3 @@ def _text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path}: not readable ({error.strerror})") from error
-
-
-def _cell(row: Row) -> ComparedCell:
-    """Read a row of cells.csv; what is empty is None."""
-    values: dict[str, Any] = {key: row[key] for key in _CELLS}
-    for key, text in row.items():
-        if key == "ours" or key.endswith(("_low", "_high")):
-            values[key] = float("inf" if text == "diverged" else text) if text else None
-    return ComparedCell(**values | {"table": int(row["table"])})
