@@ -10,7 +10,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
-from statistics import fmean, median
+from statistics import median
 from typing import Any, get_args
 
 import numpy as np
@@ -281,11 +281,10 @@ def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
         record = evidence.records.get(signal)
         if record is None or record.origin != "twin":
             continue
-        implied = fmean((rms.low + rms.high) / 2 for rms in checked.rms)
         ours = float(np.sqrt(np.mean(record.y**2)))
         if signal in evidence.drawn:
             ours = median(evidence.drawn[signal].rms)
-        errors[signal] = 100 * (ours / implied - 1)
+        errors[signal] = 100 * (ours / checked.implied_rms - 1)
     return errors
 
 

@@ -1,7 +1,5 @@
 """``hystbench job random-sum``: the random sum drawn many times."""
 
-from statistics import fmean
-
 from hystbench.compare.draws import Draw
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.files import write_csv
@@ -29,7 +27,6 @@ def random_sum(
     signal = settings["signal"]
     write_fields(draws, names_of(Draw), found, or_empty)
     published = {p.model: p.mse.value for p in load() if p.signal == signal}
-    implied = check(load())[signal].rms
-    rms = fmean((each.low + each.high) / 2 for each in implied)
+    rms = check(load())[signal].implied_rms
     told = drawing.readings(found, published, rms)
     write_csv(readings, drawing.READING_COLUMNS, told)
