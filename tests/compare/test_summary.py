@@ -297,11 +297,10 @@ def test_the_two_findings_by_hand():
         "bound": 3.0,
     }
     assert eq19_finding([]) is None
-    row = Row(
-        "gma", "gpi", 0.0, 0.0, True, 13, 12, "", (40, 48), (20, 30), 0, {"gpo": 1.0}
-    )
+    pairs = ("40 of 48", "20 of 30")
+    row = Row("gma", "gpi", 0.0, 0.0, "yes", 12, 13, "", *pairs, 0, *[1.0] * 4)
     taps = [
-        replace(row, constant_tap=size, configured=False, gpo_first=first)
+        replace(row, constant_tap=size, configured="", gpo_first=first)
         for size, first in ((0.1, 9), (1.0, 5))
     ]
     other = replace(taps[0], twin="other", constant_tap=2.0)
@@ -311,7 +310,7 @@ def test_the_two_findings_by_hand():
         (0.1, 9),
         (1.0, 5),
     ]
-    assert told["without"]["pairs_held_out"] == (20, 30)
+    assert told["without"]["pairs_held_out"] == [20, 30]
     assert [x["zero_error_A"] for x in told["zero_errors"]] == [0.0]
     assert constant_tap_finding([row]) is None
 

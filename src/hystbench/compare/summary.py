@@ -167,20 +167,19 @@ def constant_tap_finding(rows: Sequence[Row]) -> dict[str, Any] | None:
     offsets = [row for row in mine if not row.constant_tap]
 
     def told(row: Row) -> dict[str, Any]:
+        keys = ("constant_tap", "gpo_first", "signals")
+        pairs = ("pairs_calibrated", "pairs_held_out")
         return {
-            "constant_tap": row.constant_tap,
-            "zero_error_A": row.zero_error,
-            "gpo_first": row.gpo_first,
-            "signals": row.signals,
-            "pairs_calibrated": row.pairs_calibrated,
-            "pairs_held_out": row.pairs_held_out,
+            **{key: getattr(row, key) for key in keys},
+            "zero_error_A": row.zero_error_mA / 1e3,
+            **{key: [*map(int, getattr(row, key).split(" of "))] for key in pairs},
         }
 
     return {
         "without": told(usual[0]),
         "with": [told(row) for row in sorted(taps, key=lambda row: row.constant_tap)],
         "zero_errors": [
-            told(row) for row in sorted(offsets, key=lambda row: row.zero_error)
+            told(row) for row in sorted(offsets, key=lambda row: row.zero_error_mA)
         ],
     }
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from hystbench.compare.constants import Row
 from hystbench.compare.evidence import Cell
+from hystbench.published import FILTERS
 from hystbench.twins.read import Twin
 from hystbench.twins.runs import (
     Settings,
@@ -70,19 +71,23 @@ def vary_constants(
             mse |= {cell: run.error("mse") for cell, run in runs.items()}
         first = {s: min(jobs, key=lambda model: mse[s, model]) for s in records}
         others = {s: model for s, model in first.items() if model != "gpo"}
+        pairs = [as_published(mse, published, half) for half in halves]
         yield Row(
             twin=twin.name,
             family=twin.family,
-            zero_error=zero,
+            zero_error_mA=1e3 * zero,
             constant_tap=size,
-            configured=(zero, size) == (usual, tap),
-            signals=len(records),
+            configured="yes" if (zero, size) == (usual, tap) else "",
             gpo_first=len(records) - len(others),
-            not_first="; ".join(f"{s}: {model}" for s, model in others.items()),
-            pairs_calibrated=as_published(mse, published, halves[0]),
-            pairs_held_out=as_published(mse, published, halves[1]),
+            signals=len(records),
+            first_elsewhere="; ".join(f"{s}: {model}" for s, model in others.items()),
+            pairs_calibrated="{} of {}".format(*pairs[0]),
+            pairs_held_out="{} of {}".format(*pairs[1]),
             diverged=sum(map(math.isinf, mse.values())),
-            mean={m: _mean([mse[s, m] for s in records]) for m in jobs},
+            **{
+                f"mean_mse_{model}_um2": _mean([mse.get((s, model)) for s in records])
+                for model in FILTERS
+            },
         )
 
 
@@ -106,5 +111,9 @@ def as_published(
     return sum(agree), len(pairs)
 
 
-def _mean(values: list[float]) -> float:
-    return math.inf if any(map(math.isinf, values)) else geometric_mean(values)
+def _mean(values: list[float | None]) -> float:
+    """Give the geometric mean to three digits; infinite where one is or has not run."""
+    known = [value for value in values if value is not None and math.isfinite(value)]
+    if len(known) < len(values):
+        return math.inf
+    return float(f"{geometric_mean(known):.3g}")

@@ -102,21 +102,14 @@ def bare_run(record: Record, model: str, error: Any, **about: Any) -> Run:
     **about
         ``error_kind``, and what else is known.
     """
-    known: dict[str, Any] = {"order": None, "weight_count": None, "diverged": None}
     return Run(
         signal=record.name,
         model=model,
         origin=record.origin,
-        bound={},
+        unit=f"{record.output.unit}^2",
         mse=None if error is None else mean_square_error(error),
         re=None if error is None else relative_error(error, record.y),
-        mse_after_transient=None,
-        re_after_transient=None,
-        unit=f"{record.output.unit}^2",
-        largest_eigenvalue=None,
-        spread=None,
-        convergence_s=None,
-        **{"step_size": {}, **known, **about},
+        **about,
     )
 
 

@@ -1,6 +1,7 @@
 """``hystbench job constants``: the ranking with other constants."""
 
-from hystbench.compare.constants import write_constants
+from hystbench.compare.constants import Row
+from hystbench.compare.rows import four_digits, names_of, write_fields
 from hystbench.job import In, Json, Out, Settings, job
 from hystbench.published import load
 from hystbench.twins.constants import vary_constants
@@ -22,4 +23,4 @@ def constants(
         for twin in read_twins(twins)
         for row in vary_constants(twin, settings, identified, published)
     ]
-    write_constants(rows, out)
+    write_fields(out, names_of(Row), rows, four_digits)
