@@ -1,10 +1,8 @@
 """The commands of the calibration, as the workflow calls them."""
 
-import csv
 import json
 
 import pytest
-import yaml
 from click.testing import CliRunner
 
 from hystbench.commands.jobs.calibrate import calibrate
@@ -15,17 +13,17 @@ from hystbench.settings import read_settings
 from hystbench.twins import calibrate as fitting
 from hystbench.twins.calibrate import nearest_twin
 from hystbench.twins.plant import UNKNOWNS, make_twin, values_of
-from tests.conftest import ROOT, run_hystbench, shorten
+from tests.conftest import SCHEMA, own_config, run_hystbench, shorten
+from tests.conftest import table as rows_of
 
 
 @pytest.fixture
 def job():
     """The project's own settings on short records of two signals."""
-    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config = own_config()
     shorten(config, 0.1)
     config["calibration"] |= {"starts": 2, "twins": 2}
-    schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
-    job = read_settings(config, schema).calibration_job
+    job = read_settings(config, SCHEMA).calibration_job
     job["signals"] = {
         name: job["signals"][name] for name in ("sine-080hz", "sine-100hz")
     }
@@ -52,8 +50,7 @@ def table(folder, *models):
     words = [*(str(folder / model) for model in models), "--out"]
     done = CliRunner().invoke(found, [*words, str(folder / "found.csv")])
     assert done.exit_code == 0, done.output
-    with (folder / "found.csv").open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+    return rows_of(folder / "found.csv")
 
 
 def call(job, out):
@@ -80,15 +77,8 @@ def test_a_calibration_writes_the_twin_and_prints_what_the_config_needs(
 
 def test_a_held_out_signal_is_refused_in_one_line(job, tmp_path):
     job["signals"]["sine-060hz"] = job["signals"]["sine-080hz"]
-    words = [
-        "job",
-        "calibrate",
-        "--settings",
-        json.dumps(job),
-        "--out",
-        tmp_path / "out",
-    ]
-    refused = run_hystbench(*words)
+    words = ("--settings", json.dumps(job), "--out", tmp_path / "out")
+    refused = run_hystbench("job", "calibrate", *words)
     assert refused.returncode == 2
     assert refused.stderr.startswith("hystbench: calibration: 'sine-060hz' is held out")
     assert refused.stderr.count("\n") == 1

@@ -14,8 +14,9 @@ from hystbench.compare.evidence import read_edges
 from hystbench.twins.constants import as_published
 from hystbench.twins.read import read_twins
 from hystbench.twins.runs import draw_signals, measure_twin
+from tests.conftest import table
 
-from .conftest import SIGNALS, call, rows
+from .conftest import SIGNALS, call
 
 
 def test_draws_edges_and_constants_are_what_the_comparison_reads(
@@ -42,7 +43,7 @@ def test_draws_edges_and_constants_are_what_the_comparison_reads(
     found = read_draws(draws)[signal]
     assert found.count == random["draws"]
     assert len(set(found.rms)) == found.count  # phases and noise are drawn anew
-    told = rows(tmp_path / "readings.csv")
+    told = table(tmp_path / "readings.csv")
     assert {row["sines"] for row in told} == {"20", "5"}
     middle = float(told[0]["median"])
     assert middle == pytest.approx(np.median(found.rms), rel=1e-3)
@@ -53,7 +54,7 @@ def test_draws_edges_and_constants_are_what_the_comparison_reads(
         "--settings", json.dumps(settings.step_sweep_job),
         "--edges", edges, "--points", tmp_path / "points.csv",
     )  # fmt: skip
-    points = rows(tmp_path / "points.csv")
+    points = table(tmp_path / "points.csv")
     read = read_edges(edges)
     assert any(edge.edge for edge in read)
     for edge in read:
