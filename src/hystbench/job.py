@@ -46,13 +46,16 @@ class JsonFile(InputPlace):
         return read_json(super().convert(*given))
 
 
-Settings = Annotated[dict[str, Any], SettingsType()]
-In = Annotated[Path, FILE]
-Json = Annotated[Any, JsonFile(exists=True, dir_okay=False, path_type=Path)]
-DatasetFile = Annotated[Path, DATASET]
-Folder = Annotated[Path, click.Path(exists=True, file_okay=False, path_type=Path)]
-Out = Annotated[Path, NEW_FILE]
-OutFolder = Annotated[Path, NEW_FOLDER]
+JSON_FILE = JsonFile(exists=True, dir_okay=False, path_type=Path)
+FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
+# The type of a parameter, what reads it, and the help of an option.
+Settings = Annotated[dict[str, Any], SettingsType(), "Settings of the job."]
+In = Annotated[Path, FILE, "File to read."]
+Json = Annotated[Any, JSON_FILE, "JSON file to read."]
+DatasetFile = Annotated[Path, DATASET, "Dataset to read."]
+Folder = Annotated[Path, FOLDER, "Folder to read."]
+Out = Annotated[Path, NEW_FILE, "File to write, whole or not at all."]
+OutFolder = Annotated[Path, NEW_FOLDER, "Folder to write."]
 
 
 def job(function: Callable[..., None], also: Iterable[str] = ()) -> click.Command:
@@ -82,13 +85,16 @@ def job(function: Callable[..., None], also: Iterable[str] = ()) -> click.Comman
 def _argument(name: str, hint: Any, default: Any) -> click.Argument:
     kind, many = _kind(hint)
     required = default is inspect.Parameter.empty
-    return click.Argument([name], type=kind, nargs=-1 if many else 1, required=required)
+    count = -1 if many else 1
+    return click.Argument([name], type=_type(kind), nargs=count, required=required)
 
 
 def _option(name: str, hint: Any, default: Any) -> click.Option:
     kind, many = _kind(hint)
     flag = (name.removesuffix("s") if many else name).replace("_", "-")
-    about: dict[str, Any] = {"type": kind, "multiple": many}
+    about: dict[str, Any] = {"type": _type(kind), "multiple": many}
+    if get_origin(kind) is Annotated:
+        about["help"] = kind.__metadata__[1]
     if default is inspect.Parameter.empty:
         about["required"] = True
     elif default is not None:
@@ -97,10 +103,15 @@ def _option(name: str, hint: Any, default: Any) -> click.Option:
 
 
 def _kind(hint: Any) -> tuple[Any, bool]:
-    """Give what converts the text of a parameter, and whether there may be many."""
+    """Give the kind of one value of a parameter, and whether there may be many."""
     if get_origin(hint) in (Union, UnionType):
         (hint,) = (each for each in get_args(hint) if each is not NoneType)
-    if get_origin(hint) is tuple:
-        kinds = [_kind(each)[0] for each in get_args(hint) if each is not ...]
-        return (kinds[0], True) if ... in get_args(hint) else (tuple(kinds), False)
-    return hint.__metadata__[0] if get_origin(hint) is Annotated else hint, False
+    many = get_origin(hint) is tuple and ... in get_args(hint)
+    return (get_args(hint)[0] if many else hint), many
+
+
+def _type(kind: Any) -> Any:
+    """Give what reads the text of a value, or of each part of it."""
+    if get_origin(kind) is tuple:
+        return tuple(map(_type, get_args(kind)))
+    return kind.__metadata__[0] if get_origin(kind) is Annotated else kind

@@ -72,11 +72,19 @@ class OutputFolder(_Place):
 
 def limits(command: Command) -> Command:
     """Add the limits of the next experiment: ``limit_low``, ``_high``, ``_rate``."""
-    for name, told in (
-        ("rate", "Largest rate of its input, per second; else that of the records."),
-        ("high", "Highest input of the next experiment."),
-        ("low", "Lowest input of the next experiment."),
-    ):
+    told = "Largest rate of its input, per second; else that of the records."
+    command = click.option("--limit-rate", type=float, help=told)(command)
+    return _both_limits(command, "next experiment")
+
+
+def input_limits(command: Command) -> Command:
+    """Add the limits of an actuator's input: ``limit_low`` and ``limit_high``."""
+    return _both_limits(command, "actuator")
+
+
+def _both_limits(command: Command, whose: str) -> Command:
+    for name, told in (("high", "Highest"), ("low", "Lowest")):
+        told = f"{told} input of the {whose}."
         command = click.option(f"--limit-{name}", type=float, help=told)(command)
     return command
 
@@ -176,6 +184,18 @@ def both_limits(
         missing = "low" if limit_low is None else "high"
         raise InputError(f"--limit-{missing}: expected it beside {beside}")
     return limit_low, limit_high
+
+
+@contextmanager
+def refused_of(*places: Path) -> Iterator[None]:
+    """Let a refusal within the block name the files; that of an option names itself."""
+    try:
+        yield
+    except InputError as error:
+        if str(error).startswith("--"):
+            raise
+        named = "".join(f"{place}: " for place in places)
+        raise InputError(f"{named}{error}") from None
 
 
 def warn(lines: Iterable[str]) -> None:

@@ -8,7 +8,7 @@ from hystbench.blocks.rdgpi import RateDependentPrandtlIshlinskii
 from hystbench.blocks.step import Sampling
 from hystbench.export import python
 from hystbench.export.inverse import describe_inverse
-from hystbench.files import whole_folder, write_csv, write_text
+from hystbench.files import whole_folder, write_columns, write_csv, write_text
 from hystbench.inverse.told import left, table, verdict
 from hystbench.inverse.tracking import (
     CODE,
@@ -79,8 +79,7 @@ def tracking(
         cells = [_cells(row, twin.output.unit) for row in rows]
         values = (list(each.values()) for each in cells)
         write_csv(fresh / "tracking.csv", list(cells[0]), values)
-        scan = _part(rows, wanted[-1])
-        write_csv(fresh / "raster.csv", list(scan), _lines(scan))
+        write_columns(fresh / "raster.csv", _part(rows, wanted[-1]), 9)
         write_text(fresh / "tracking.md", table(rows, twin.output.unit))
         write_text(fresh / "verdict.md", verdict(rows) + left(rows, of_field))
 
@@ -114,11 +113,6 @@ def _cells(row: Tracked, unit: str) -> dict[str, str]:
         "largest_percent": f"{100 * row.largest:.3g}",
         "largest_input": f"{np.abs(row.u).max():.4g}",
     }
-
-
-def _lines(columns: dict[str, FloatArray]) -> list[list[str]]:
-    together = zip(*columns.values(), strict=True)
-    return [[f"{value:.9g}" for value in line] for line in together]
 
 
 def _part(rows: list[Tracked], reference: Reference) -> dict[str, FloatArray]:
