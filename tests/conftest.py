@@ -151,6 +151,14 @@ def run_hystbench(*arguments, cwd: Path | None = None):
     )
 
 
+def refused(*arguments, cwd: Path | None = None) -> str:
+    """Give the one line by which the command line refuses."""
+    done = run_hystbench(*arguments, cwd=cwd)
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1
+    return done.stderr
+
+
 def start_hystbench(*arguments, cwd: Path | None = None):
     """Run the command line as a program of its own."""
     return subprocess.run(

@@ -60,6 +60,15 @@ class Workflow:
         assert result.returncode == 0, result.stdout + result.stderr
         return jobs(result.stderr + result.stdout)
 
+    def refused(self, *arguments: str) -> str:
+        """Give the one line of hystbench's by which a run is refused."""
+        result = self.snakemake(*arguments)
+        said = result.stdout + result.stderr
+        assert result.returncode != 0, said
+        assert "Traceback" not in said
+        (line,) = (x for x in said.splitlines() if x.startswith("hystbench: "))
+        return line
+
     def run_here(self, *targets: str) -> int:
         """Run the jobs that Snakemake would start, in its order; count them.
 
