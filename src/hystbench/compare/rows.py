@@ -83,6 +83,11 @@ def names_of(kind: type) -> tuple[str, ...]:
     return tuple(get_type_hints(kind))
 
 
+def headers(columns: Sequence[str]) -> tuple[str, ...]:
+    """Give the names of columns that may be told as ``name=attribute``."""
+    return tuple(column.partition("=")[0] for column in columns)
+
+
 def write_fields(
     path: str | Path,
     columns: Sequence[str],
@@ -97,7 +102,7 @@ def write_fields(
     parted = [column.partition("=") for column in columns]
     take = [attrgetter(attribute or name) for name, _, attribute in parted]
     rows = ([told(each(item)) for each in take] for item in items)
-    write_csv(path, [name for name, *_ in parted], rows)
+    write_csv(path, headers(columns), rows)
 
 
 def or_diverged(value: object) -> object:

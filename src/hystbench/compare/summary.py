@@ -19,7 +19,7 @@ from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
 from hystbench.compare.constants import Row
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.evidence import Cell, ClaimEvidence
 from hystbench.published import FILTERS
 from hystbench.published.consistency import check
 
@@ -52,27 +52,37 @@ def nearness(cells: Sequence[ComparedCell]) -> dict[str, Any]:
 
 
 def orderings(cells: Iterable[ComparedCell]) -> dict[str, int]:
-    """Count the pairs of filters under one signal that ours order as the paper does.
-
-    A diverged run is worse than a finite one; two diverged runs have no order.
-    """
-    by_signal: dict[str, dict[str, ComparedCell]] = {}
-    for cell in cells:
-        by_signal.setdefault(cell.signal, {})[cell.model] = cell
-    published = compared = agree = 0
-    for models in by_signal.values():
-        for one, other in combinations(models.values(), 2):
-            published += 1
-            if one.ran and other.ran:
-                compared += 1
-                agree += _agree(one, other)
+    """Count the pairs of filters under one signal that ours order as the paper does."""
+    listed = list(cells)
+    theirs = {(c.signal, c.model): float(c.published) for c in listed}
+    ours = {
+        (c.signal, c.model): math.inf if c.ours is None else c.ours
+        for c in listed
+        if c.ran
+    }
+    agree, compared = pairs_in_order(ours, theirs)
+    published = sum(math.comb(n, 2) for n in Counter(s for s, _ in theirs).values())
     return {"agree": agree, "compared": compared, "published": published}
 
 
-def _agree(one: ComparedCell, other: ComparedCell) -> bool:
-    ours = [math.inf if c.ours is None else c.ours for c in (one, other)]
-    theirs = [float(c.published) for c in (one, other)]
-    return ours[0] != ours[1] and (ours[0] < ours[1]) == (theirs[0] < theirs[1])
+def pairs_in_order(
+    ours: Mapping[Cell, float], theirs: Mapping[Cell, float]
+) -> tuple[int, int]:
+    """Count pairs of models under one signal that both order alike, and all.
+
+    Pairs that one of them does not have are left out. An infinite error is worse than
+    a finite one; a pair with the same error, as where both diverged, has no order.
+    """
+    pairs = [
+        (one, other)
+        for one, other in combinations([cell for cell in ours if cell in theirs], 2)
+        if one[0] == other[0]
+    ]
+    agree = [
+        ours[a] != ours[b] and (ours[a] < ours[b]) == (theirs[a] < theirs[b])
+        for a, b in pairs
+    ]
+    return sum(agree), len(pairs)
 
 
 def claim_counts(judgements: Iterable[Judgement]) -> dict[str, Any]:

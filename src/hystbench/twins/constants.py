@@ -9,13 +9,13 @@ a constant tap.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
-from itertools import combinations
+from collections.abc import Iterator, Mapping
 from statistics import geometric_mean
 from typing import Any
 
 from hystbench.compare.constants import Row
 from hystbench.compare.evidence import Cell
+from hystbench.compare.summary import pairs_in_order
 from hystbench.published import FILTERS
 from hystbench.twins.read import Twin
 from hystbench.twins.runs import (
@@ -71,7 +71,12 @@ def vary_constants(
             mse |= {cell: run.error("mse") for cell, run in runs.items()}
         first = {s: min(jobs, key=lambda model: mse[s, model]) for s in records}
         others = {s: model for s, model in first.items() if model != "gpo"}
-        pairs = [as_published(mse, published, half) for half in halves]
+        pairs = [
+            pairs_in_order(
+                {cell: mse[cell] for cell in mse if cell[0] in half}, published
+            )
+            for half in halves
+        ]
         yield Row(
             twin=twin.name,
             family=twin.family,
@@ -89,26 +94,6 @@ def vary_constants(
                 for model in FILTERS
             },
         )
-
-
-def as_published(
-    mse: Errors, published: Errors, signals: Collection[str]
-) -> tuple[int, int]:
-    """Count pairs of filters under one of some signals in the paper's order, and all.
-
-    Pairs that the paper does not print are left out. A pair with the same MSE, as
-    where both diverged, has no order.
-    """
-    pairs = [
-        pair
-        for pair in combinations([cell for cell in mse if cell in published], 2)
-        if pair[0][0] == pair[1][0] and pair[0][0] in signals
-    ]
-    agree = [
-        mse[a] != mse[b] and (mse[a] < mse[b]) == (published[a] < published[b])
-        for a, b in pairs
-    ]
-    return sum(agree), len(pairs)
 
 
 def _mean(values: list[float | None]) -> float:

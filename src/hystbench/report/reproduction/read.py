@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hystbench.compare import measured, off
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.rows import read_items, read_rows
+from hystbench.compare.rows import headers, names_of, read_items, read_rows
 from hystbench.errors import InputError
+from hystbench.published.discrepancies import AuditRow
 from hystbench.report.markup import first_sentence, inline
 from hystbench.report.picture import Link, Picture, embedded
 from hystbench.report.reproduction.captions import caption
@@ -20,9 +22,6 @@ Row = dict[str, str]
 
 #: Columns that the page cannot do without; others are shown as they are.
 _CLAIMS = ("id", "claim", "where", "kind", "basis", "verdict", "evidence")
-_OFF = ("table", "signal", "model", "half", "published", "ours", "ratio", "known")
-_AUDIT = ("kind", "where", "statement", "evidence")
-_ERRORS = ("signal", "model", "error_kind", "mse", "re", "unit", "status")
 
 
 @dataclass(frozen=True)
@@ -112,8 +111,8 @@ def read_content(
             cells=read_items(compare / "cells.csv", ComparedCell),
             claims=read_rows(compare / "claims.csv", _CLAIMS),
             on_held_out=_on_held_out(compare / "summary.json"),
-            off=read_rows(compare / "off.csv", _OFF),
-            audit=read_rows(compare / "audit.csv", _AUDIT),
+            off=read_rows(compare / "off.csv", headers(off.COLUMNS)),
+            audit=read_rows(compare / "audit.csv", names_of(AuditRow)),
             tables=[
                 shown(compare / "tables" / f"table-{number}.csv", "")
                 for number in (1, 2, 3, 4)
@@ -122,7 +121,7 @@ def read_content(
         )
         names = ["cells", "claims", "off", "audit"]
     else:
-        rows = read_rows(compare / "errors.csv", _ERRORS)
+        rows = read_rows(compare / "errors.csv", measured.COLUMNS)
         found = Measured(settings["dataset"], rows)
         names = ["errors"]
     return Content(
