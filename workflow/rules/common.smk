@@ -134,6 +134,8 @@ def code(*modules):
         files.append(path / "__init__.py" if path.is_dir() else path.with_suffix(".py"))
     if "hystbench.compare.claims" in names:
         files.extend(sorted(PACKAGE.glob("compare/claims/*.yaml")))
+    if "hystbench.twins.plant" in names:
+        files.append(PACKAGE / "twins/plant.yaml")
     if "hystbench.compare.verdict" in names:
         files.extend(sorted(PACKAGE.glob("compare/*.j2")))
     if "hystbench.kernels" in names:
