@@ -177,11 +177,12 @@ def constant_tap_finding(rows: Sequence[Row]) -> dict[str, Any] | None:
     offsets = [row for row in mine if not row.constant_tap]
 
     def told(row: Row) -> dict[str, Any]:
-        keys = ("constant_tap", "gpo_first", "signals")
         pairs = ("pairs_calibrated", "pairs_held_out")
         return {
-            **{key: getattr(row, key) for key in keys},
+            "constant_tap": row.constant_tap,
             "zero_error_A": row.zero_error_mA / 1e3,
+            "gpo_first": row.gpo_first,
+            "signals": row.signals,
             **{key: [*map(int, getattr(row, key).split(" of "))] for key in pairs},
         }
 
