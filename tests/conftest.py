@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import os
 import subprocess
@@ -12,12 +13,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from hypothesis import HealthCheck, settings
 
 from hystbench import cli, kernels
 from tests.browser.chromium import EXECUTABLE, Chromium
 
 ROOT = Path(__file__).parents[1]
+SCHEMA = ROOT / "workflow" / "schemas" / "config.schema.yaml"
 
 # A kernel's first call or a busy machine must not fail a property. In CI the same
 # examples run every time; elsewhere new ones are looked for.
@@ -42,6 +45,17 @@ def _no_cache_of_the_users(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+def own_config() -> dict[str, Any]:
+    """Read the project's config."""
+    return yaml.safe_load((ROOT / "config.yaml").read_text(encoding="utf-8"))
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    """Read the rows of a CSV file."""
+    with path.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
 
 
 def shorten(config: dict[str, Any], duration_s: float) -> None:
@@ -135,6 +149,14 @@ def run_hystbench(*arguments, cwd: Path | None = None):
     return subprocess.CompletedProcess(
         arguments, status, out.getvalue(), err.getvalue()
     )
+
+
+def refused(*arguments, cwd: Path | None = None) -> str:
+    """Give the one line by which the command line refuses."""
+    done = run_hystbench(*arguments, cwd=cwd)
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1
+    return done.stderr
 
 
 def start_hystbench(*arguments, cwd: Path | None = None):

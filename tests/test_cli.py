@@ -6,7 +6,6 @@ import pytest
 from hystbench import group as group_module
 from hystbench.cli import COMMANDS, run
 from hystbench.group import group, job_lines
-from hystbench.options import SettingsType
 from tests.conftest import start_hystbench
 
 
@@ -89,14 +88,6 @@ def test_a_users_mistake_is_one_line_and_status_2(tmp_path, arguments, expected)
     assert expected in result.stderr
     assert result.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
-
-
-def test_settings_are_a_json_object():
-    kind = SettingsType()
-    assert kind.convert('{"mu": 1}', None, None) == {"mu": 1}
-    for text in ["{", "[1]"]:
-        with pytest.raises(Exception, match="JSON"):
-            kind.convert(text, None, None)
 
 
 def raising(monkeypatch, error):

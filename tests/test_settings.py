@@ -1,18 +1,15 @@
 import copy
 
 import pytest
-import yaml
 
 from hystbench.config_schema import config_schema
 from hystbench.errors import InputError
 from hystbench.plants import packaged_models
 from hystbench.settings import read_settings
-from tests.conftest import ROOT
+from tests.conftest import SCHEMA, own_config
+from tests.messages import message
 
-SCHEMA = ROOT / "workflow" / "schemas" / "config.schema.yaml"
-CONFIG = yaml.safe_load((ROOT / "config.yaml").read_text())
-
-
+CONFIG = own_config()
 SHORT = {"sine": {"frequency_hz": 10, "duration_s": 0.005}}
 
 
@@ -61,114 +58,66 @@ def test_every_key_of_the_config_is_in_the_schema_and_the_other_way_round():
     compare(CONFIG, schema)
 
 
+SINE = ("excitations", "sine-010hz")
+STEPS = ("filters", "convergence_factor")
+GAP = {"dataset": "x", "model": "gpi"}
+
+
+def limits(**given):
+    return CONFIG["gap"]["twin"] | {"limits": given}
+
+
 @pytest.mark.parametrize(
-    ("config", "expected"),
+    ("change", "expected"),
     [
-        (changed("sorce", "twin"), "unknown key 'sorce'; did you mean 'source'?"),
-        (changed("source", None), "config.yaml: expected the key 'source'"),
-        (changed("filters", "ordr", 3), "filters: unknown key 'ordr'"),
+        (("sorce", "twin"), "unknown key 'sorce'; did you mean 'source'?"),
+        (("source", None), "config.yaml: expected the key 'source'"),
+        (("source", "Twin"), "did you mean 'twin'?"),
+        (("source", "nowhere/dataset.yaml"), "nowhere/dataset.yaml"),
+        (("filters", "ordr", 3), "filters: unknown key 'ordr'"),
+        (("filters", "order", "30"), "filters: order: '30'; expected a whole number"),
+        (("filters", "order", 0), "filters: order"),
+        (("filters", "order", 30.0), "order: 30.0; expected a whole number"),
+        (("filters", "order", 5000), "order: 5000; expected a number of 4095"),
+        (("filters", "envelopes", "publishd"), "did you mean 'published'?"),
+        ((*STEPS, "gpo", "mu", 0), "convergence_factor: gpo: mu: 0"),
+        ((*STEPS, "volterra", "second_order", -1e-3), "second_order: -0.001"),
+        ((*STEPS, "gpo", "mu", float("nan")), "mu: nan; expected a finite number"),
+        ((*STEPS, "gpo", "mu", "1e-2"), "number (YAML wants 1.0e-2 for 1e-2)"),
+        (("gap", "twin", limits(low="1")), "low: '1'; expected a finite number or"),
+        (("gap", "twin", limits(rat=1)), "key 'rat'; did you mean 'rate'?"),
         (
-            changed("filters", "order", "30"),
-            "filters: order: '30'; expected a whole number",
-        ),
-        (changed("filters", "order", 0), "filters: order"),
-        (
-            changed("gap", "twin", CONFIG["gap"]["twin"] | {"limits": {"low": "1"}}),
-            "gap: twin: limits: low: '1'; expected a finite number or null",
-        ),
-        (
-            changed("gap", "twin", CONFIG["gap"]["twin"] | {"limits": {"rat": 1}}),
-            "gap: twin: limits: unknown key 'rat'; did you mean 'rate'?",
-        ),
-        (
-            changed(
-                "gap",
-                "datasets",
-                [{"dataset": "x", "model": "gpi", "limits": {"low": 2, "high": 1}}],
-            ),
+            ("gap", "datasets", [GAP | {"limits": {"low": 2, "high": 1}}]),
             "gap: datasets: x: limits: low 2 and high 1; expected low < high",
         ),
         (
-            changed(
-                "gap",
-                "datasets",
-                [{"dataset": "x", "model": "gpi", "without": "friction"}],
-            ),
+            ("gap", "datasets", [GAP | {"without": "friction"}]),
             "without: 'friction'; expected a list",
         ),
-        (
-            changed(
-                "gap", "datasets", [{"dataset": "x", "model": "gpi", "witout": []}]
-            ),
-            "unknown key 'witout'; did you mean 'without'?",
-        ),
-        (changed("filters", "envelopes", "publishd"), "did you mean 'published'?"),
-        (changed("signals", ["sine-040h"]), "did you mean 'sine-040hz'?"),
-        (changed("models", ["gpo", "voltera"]), "did you mean 'volterra'?"),
-        (changed("signals", "sine-040hz"), "signals: 'sine-040hz'; expected a list"),
-        (changed("signals", []), "signals"),
-        (changed("identification", "signal", "sine-1hz"), "'sine-001hz'"),
-        (changed("order_sweep", "signal", "x"), "order_sweep: signal: no signal 'x'"),
-        (changed("rdgpi", "fit_signals", ["sine-10hz"]), "'sine-010hz'"),
-        (changed("twin", "model", "gmaa"), "no model or file 'gmaa'; did you mean"),
-        (changed("source", "nowhere/dataset.yaml"), "nowhere/dataset.yaml"),
-        (
-            changed("filters", "convergence_factor", "gpo", "mu", 0),
-            "convergence_factor: gpo: mu: 0",
-        ),
-        (
-            changed("filters", "convergence_factor", "volterra", "second_order", -1e-3),
-            "convergence_factor: volterra: second_order: -0.001",
-        ),
-        (changed("measured", "fraction_of_bound", 0), "fraction_of_bound: 0"),
-        (changed("filters", "order", 30.0), "order: 30.0; expected a whole number"),
-        (changed("filters", "order", 5000), "order: 5000; expected a number of 4095"),
-        (
-            changed("filters", "convergence_factor", "gpo", "mu", float("nan")),
-            "mu: nan; expected a finite number",
-        ),
-        (
-            changed("filters", "convergence_factor", "gpo", "mu", "1e-2"),
-            "expected a finite number (YAML wants 1.0e-2 for 1e-2)",
-        ),
-        (
-            changed("twin", "input_zero_error", float("inf")),
-            "input_zero_error: inf; expected a finite number",
-        ),
-        (changed("twin", "input_noise", -1e-3), "input_noise: -0.001; expected"),
-        (changed("excitation", "unit", "V"), "expected 'A', the input of"),
-        (changed("source", "Twin"), "did you mean 'twin'?"),
-        (
-            changed("excitations", "sine-010hz", {"sine": {"frequency_hz": 0}}),
-            "frequency_hz: 0; expected above 0",
-        ),
-        (
-            changed("excitations", "sine-010hz", {"sine": {"frequency_hz": 5000}}),
-            "expected below 5000 Hz, half the sampling frequency",
-        ),
-        (
-            changed("excitations", "sine-010hz", {"sine": {"frequency_hz": [1, 2]}}),
-            "frequency_hz: [1, 2]; expected a finite number",
-        ),
-        (
-            changed("excitations", "sine-010hz", {"sine": {}, "chirp": {}}),
-            "expected 1 key",
-        ),
-        (
-            changed("excitations", "sine-010hz", {"sine": {"frequenzy_hz": 10}}),
-            "did you mean 'frequency_hz'?",
-        ),
-        (
-            changed("excitations", "sine-010hz", SHORT),
-            "50 samples are too few for filters of order 30",
-        ),
+        (("gap", "datasets", [GAP | {"witout": []}]), "did you mean 'without'?"),
+        (("signals", ["sine-040h"]), "did you mean 'sine-040hz'?"),
+        (("signals", "sine-040hz"), "signals: 'sine-040hz'; expected a list"),
+        (("signals", []), "signals"),
+        (("models", ["gpo", "voltera"]), "did you mean 'volterra'?"),
+        (("identification", "signal", "sine-1hz"), "'sine-001hz'"),
+        (("order_sweep", "signal", "x"), "order_sweep: signal: no signal 'x'"),
+        (("rdgpi", "fit_signals", ["sine-10hz"]), "'sine-010hz'"),
+        (("twin", "model", "gmaa"), "no model or file 'gmaa'; did you mean"),
+        (("twin", "input_zero_error", float("inf")), "inf; expected a finite number"),
+        (("twin", "input_noise", -1e-3), "input_noise: -0.001; expected"),
+        (("constants", "twins", ["gmo"]), "constants: twins: no model or file 'gmo'"),
+        (("measured", "fraction_of_bound", 0), "fraction_of_bound: 0"),
+        (("excitation", "unit", "V"), "expected 'A', the input of"),
+        ((*SINE, {"sine": {"frequency_hz": 0}}), "frequency_hz: 0; expected above 0"),
+        ((*SINE, {"sine": {"frequency_hz": 5000}}), "below 5000 Hz, half the sampling"),
+        ((*SINE, {"sine": {"frequency_hz": [1, 2]}}), "[1, 2]; expected a finite"),
+        ((*SINE, {"sine": {"frequenzy_hz": 10}}), "did you mean 'frequency_hz'?"),
+        ((*SINE, {"sine": {}, "chirp": {}}), "expected 1 key"),
+        ((*SINE, SHORT), "50 samples are too few for filters of order 30"),
     ],
 )
-def test_a_bad_config_is_told_in_one_line(config, expected):
-    with pytest.raises(InputError) as caught:
-        read(config)
-    assert expected in str(caught.value)
-    assert "\n" not in str(caught.value)
+def test_a_bad_config_is_told_in_one_line(change, expected):
+    assert expected in message(lambda: read(changed(*change)))
 
 
 def test_a_job_gets_what_it_depends_on_and_no_more():
@@ -229,10 +178,6 @@ def test_twins_are_named_packaged_or_in_a_folder(tmp_path):
 def test_a_folder_without_twins_is_refused(tmp_path):
     with pytest.raises(InputError, match="pressure: twins: no model file in"):
         read(changed("pressure", "twins", [str(tmp_path)]))
-    with pytest.raises(
-        InputError, match="constants: twins: no model or file 'gmo'; did"
-    ):
-        read(changed("constants", "twins", ["gmo"]))
 
 
 def test_a_signal_of_the_tables_that_is_not_defined_is_refused():

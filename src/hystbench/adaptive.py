@@ -67,15 +67,20 @@ def steps_of(adaptive: AdaptiveFilter) -> dict[str, float]:
     return {name: getattr(adaptive, own) for name, own in adaptive.step_sizes.items()}
 
 
+def with_steps(adaptive: AdaptiveFilter, steps: Mapping[str, float]) -> AdaptiveFilter:
+    """Give a filter other step sizes, by their names in settings and results."""
+    own: dict[str, Any] = {adaptive.step_sizes[name]: mu for name, mu in steps.items()}
+    return replace(adaptive, **own)
+
+
 def with_fraction_of_bound(
     adaptive: AdaptiveFilter, x: FloatArray, fractions: Mapping[str, float]
 ) -> AdaptiveFilter:
     """Set each step size of a filter to a fraction of its bound for an input."""
     bounds = adaptive.step_bounds(x)
-    steps: dict[str, Any] = {
-        own: fractions[name] * bounds[name] for name, own in adaptive.step_sizes.items()
-    }
-    return replace(adaptive, **steps)
+    return with_steps(
+        adaptive, {name: fractions[name] * bounds[name] for name in bounds}
+    )
 
 
 def fraction_of_bound(adaptive: AdaptiveFilter, x: FloatArray) -> dict[str, float]:

@@ -214,6 +214,14 @@ def write_csv(
         writer.writerows(rows)
 
 
+def write_columns(
+    path: str | Path, columns: Mapping[str, Iterable[float]], digits: int = 12
+) -> None:
+    """Write columns of numbers as CSV, each with so many digits."""
+    cells = [[f"{x:.{digits}g}" for x in column] for column in columns.values()]
+    write_csv(path, list(columns), zip(*cells, strict=True))
+
+
 def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Write a Markdown table; a bar in a cell is escaped.
 

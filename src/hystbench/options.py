@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -15,27 +14,8 @@ import click
 
 from hystbench import written
 from hystbench.errors import InputError
-from hystbench.files import read_json
 
 Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-class SettingsType(click.ParamType[dict[str, Any]]):
-    """Settings of a job: a JSON object, as the workflow writes it."""
-
-    name = "JSON"
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> dict[str, Any]:
-        """Read the text as a JSON object."""
-        try:
-            settings = json.loads(value)
-        except json.JSONDecodeError as error:
-            self.fail(f"not JSON: {error}", param, ctx)
-        if not isinstance(settings, dict):
-            self.fail("expected a JSON object of settings", param, ctx)
-        return settings
 
 
 class _Place(click.Path):
@@ -92,11 +72,19 @@ class OutputFolder(_Place):
 
 def limits(command: Command) -> Command:
     """Add the limits of the next experiment: ``limit_low``, ``_high``, ``_rate``."""
-    for name, told in (
-        ("rate", "Largest rate of its input, per second; else that of the records."),
-        ("high", "Highest input of the next experiment."),
-        ("low", "Lowest input of the next experiment."),
-    ):
+    told = "Largest rate of its input, per second; else that of the records."
+    command = click.option("--limit-rate", type=float, help=told)(command)
+    return _both_limits(command, "next experiment")
+
+
+def input_limits(command: Command) -> Command:
+    """Add the limits of an actuator's input: ``limit_low`` and ``limit_high``."""
+    return _both_limits(command, "actuator")
+
+
+def _both_limits(command: Command, whose: str) -> Command:
+    for name, told in (("high", "Highest"), ("low", "Lowest")):
+        told = f"{told} input of the {whose}."
         command = click.option(f"--limit-{name}", type=float, help=told)(command)
     return command
 
@@ -198,6 +186,18 @@ def both_limits(
     return limit_low, limit_high
 
 
+@contextmanager
+def refused_of(*places: Path) -> Iterator[None]:
+    """Let a refusal within the block name the files; that of an option names itself."""
+    try:
+        yield
+    except InputError as error:
+        if str(error).startswith("--"):
+            raise
+        named = "".join(f"{place}: " for place in places)
+        raise InputError(f"{named}{error}") from None
+
+
 def warn(lines: Iterable[str]) -> None:
     """Show warnings on the terminal, one line each."""
     for line in lines:
@@ -224,25 +224,9 @@ DATASET = InputPlace(path_type=Path)
 NEW_FILE = OutputFile(path_type=Path)
 NEW_FOLDER = OutputFolder(path_type=Path)
 
-settings = click.option(
-    "--settings", type=SettingsType(), required=True, help="Settings of the job."
-)
 out = click.option(
     "--out", type=NEW_FILE, required=True, help="File to write, whole or not at all."
 )
 out_folder = click.option(
     "--out", type=NEW_FOLDER, required=True, help="Folder to write."
-)
-identified_file = click.option(
-    "--identified", type=FILE, help="Identified envelope functions (JSON)."
-)
-#: The same, read.
-identified = click.option(
-    "--identified",
-    type=FILE,
-    callback=lambda _, __, file: None if file is None else read_json(file),
-    help="Identified envelope functions (JSON).",
-)
-arrays = click.option(
-    "--arrays", type=NEW_FILE, required=True, help="Archive of output and error."
 )

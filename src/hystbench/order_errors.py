@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -19,12 +20,16 @@ from hystbench.record import Record
 
 @dataclass(frozen=True)
 class OrderError:
-    """MSE of a filter at an order, None where it diverged, and how it ended."""
+    """MSE of a filter at an order (Figure 7), infinite where it diverged.
+
+    ``status`` tells how it ended, ``rule`` how the step size follows the order.
+    """
 
     model: str
     order: int
-    mse: float | None
-    status: str
+    mse: float
+    status: str = "finite"
+    rule: str = ""
 
 
 def filters_by_order(
@@ -60,7 +65,7 @@ def filters_by_order(
 
 
 def order_errors(
-    record: Record, filters: Iterable[AdaptiveFilter], threads: int = 1
+    record: Record, filters: Iterable[AdaptiveFilter], threads: int = 1, rule: str = ""
 ) -> list[OrderError]:
     """Run filters on a record, so many at once."""
     listed = list(filters)
@@ -68,7 +73,7 @@ def order_errors(
     found = []
     for each, result in zip(listed, results, strict=True):
         told = divergence(each, record.u, result)
-        mse = None if told else mean_square_error(result.error)
+        mse = math.inf if told else mean_square_error(result.error)
         status = told["sentence"] if told else "finite"
-        found.append(OrderError(each.name, each.order, mse, status))
+        found.append(OrderError(each.name, each.order, mse, status, rule))
     return found

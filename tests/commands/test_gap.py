@@ -13,6 +13,7 @@ from hystbench.dataset import load_dataset
 from hystbench.files import read_json
 from hystbench.gap import run as run_module
 from hystbench.signals import load_signal
+from tests.conftest import own_config
 from tests.gap.made import CURRENT
 from tests.gap.small import write_lagging
 from tests.gap.tiny import write_tiny
@@ -48,9 +49,8 @@ def run(tmp_path, monkeypatch):
     return invoke
 
 
-def test_the_line_by_which_it_enters_the_contest_is_understood(run, root):
-    config = yaml.safe_load((root / "config.yaml").read_text())
-    program, command, *words = config["blind"]["solvers"]["gap"]["command"]
+def test_the_line_by_which_it_enters_the_contest_is_understood(run):
+    program, command, *words = own_config()["blind"]["solvers"]["gap"]["command"]
     assert (program, command) == ("hystbench", "gap")
     given = ("{dataset}", "--model", "{model}", "--out", "{out}")
     assert tuple(words[: len(given)]) == given

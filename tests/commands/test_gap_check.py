@@ -19,7 +19,7 @@ def tiny(tmp_path):
 
 
 def check(data, model):
-    module.gap_check.callback(data, str(model))
+    module.gap_check.callback(data, model=str(model))
 
 
 def spoil(file, row, cells):

@@ -9,6 +9,7 @@ import yaml
 
 from hystbench import cli
 from hystbench.dataset import load_dataset
+from tests.conftest import refused
 from tests.inspection.made import DT, HEADER, loop, sine
 
 FILES = Path(__file__).parents[1] / "formats" / "files"
@@ -87,9 +88,7 @@ def test_a_german_spreadsheet(run, tmp_path):
 
 def test_flags_say_what_files_do_not(run, tmp_path):
     files = records(tmp_path, "a,b,c")
-    status, _, said = run("init", *files)
-    assert status == 2
-    assert said.count("\n") == 1
+    said = refused("init", *files)
     assert "say --input; expected one of b, c" in said
     assert not Path("dataset.yaml").exists()
     flags = ("--input", "b", "--input-unit", "A", "--output-unit", "um")
@@ -124,8 +123,7 @@ def test_a_terminal_is_asked(run, tmp_path, monkeypatch):
 def test_a_file_of_yours_is_never_overwritten(run, tmp_path):
     files = records(tmp_path)
     Path("dataset.yaml").write_text("name: mine\n")
-    status, _, said = run("init", *files)
-    assert status == 2
+    said = refused("init", *files)
     assert "not written by hystbench" in said
     assert Path("dataset.yaml").read_text() == "name: mine\n"
 
@@ -134,8 +132,7 @@ def test_a_file_that_changed_is_told(run, tmp_path):
     run("init", *records(tmp_path))
     file = tmp_path / "sine-5.csv"
     file.write_text(file.read_text().replace("0.001,", "0.0010,", 1))
-    status, _, said = run("check", "dataset.yaml")
-    assert status == 2
+    said = refused("check", "dataset.yaml")
     assert "'sine-5.csv' is not the file that was described" in said
 
 
@@ -145,8 +142,7 @@ def test_missing_samples_are_interpolated_or_split_on_request(run, tmp_path):
     for row in (400, 401):
         lines[row - 1] = lines[row - 1].rpartition(",")[0] + ","
     (tmp_path / "sine-5.csv").write_text("\n".join(lines) + "\n")
-    status, _, said = run("init", *files)
-    assert status == 2
+    said = refused("init", *files)
     assert "2 of 1200 samples are missing, the first at row 400" in said
     assert "--missing" in said
     assert run("init", *files, "--missing", "interpolate")[0] == 0
@@ -185,8 +181,7 @@ def test_no_column_of_time_needs_a_sampling_frequency(run, tmp_path):
     for file in files:
         rows = [line.partition(",")[2] for line in file.read_text().splitlines()]
         file.write_text("\n".join(rows) + "\n")
-    status, _, said = run("init", *files)
-    assert status == 2
+    said = refused("init", *files)
     assert "say --sampling-frequency" in said
     assert run("init", *files, "--sampling-frequency", "1000")[0] == 0
     assert written()["sampling_frequency_hz"] == 1000
@@ -229,10 +224,8 @@ def test_groups_of_a_file_are_records(run, tmp_path, name, package, groups, unit
 
 def test_nothing_usable_is_one_line(run, tmp_path):
     (tmp_path / "one.csv").write_text("t,u\n0,1\n1,2\n")
-    status, _, said = run("init", tmp_path / "one.csv")
-    assert status == 2
+    said = refused("init", tmp_path / "one.csv")
     assert "no two columns of 20 samples or more" in said
-    assert said.count("\n") == 1
 
 
 def test_one_of_several_records_of_a_file_is_simulated_by_its_name(run, tmp_path):
@@ -243,8 +236,7 @@ def test_one_of_several_records_of_a_file_is_simulated_by_its_name(run, tmp_path
         "name: m\ninput: {name: current, unit: A}\noutput: {name: stroke, unit: um}\n"
         "chain: [{gain: {value: 2}}]\n"
     )
-    status, _, said = run("simulate", "model.yaml", "pytables.h5", "--out", "y.csv")
-    assert status == 2
+    said = refused("simulate", "model.yaml", "pytables.h5", "--out", "y.csv")
     assert "holds pytables-fast, pytables-slow" in said
     assert run("load", "dataset.yaml", "pytables-slow", "--out", "r.npz")[0] == 0
     assert run("simulate", "model.yaml", "r.npz", "--out", "y.csv")[0] == 0
@@ -280,21 +272,19 @@ def test_a_sampling_frequency_is_finite_and_above_0(run, tmp_path, monkeypatch, 
     file = lone(tmp_path)
     rows = [line.partition(",")[2] for line in file.read_text().splitlines()]
     file.write_text("\n".join(rows) + "\n")
-    status, _, said = run("init", file, f"--sampling-frequency={told}")
-    assert (status, said.count("\n")) == (2, 1)
+    said = refused("init", file, f"--sampling-frequency={told}")
     assert "--sampling-frequency" in said
     assert "expected a finite number of Hz above 0" in said
     monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     monkeypatch.setattr("click.prompt", lambda *_, **__: told)
     status, _, said = run("init", file)
-    assert (status, said.count("\n")) == (2, 1)
+    assert status == 2
     assert "expected a finite number of Hz above 0" in said
 
 
 def test_a_name_that_no_command_takes_is_not_written(run, tmp_path):
-    status, _, said = run("init", *records(tmp_path), "--name", "bad/name")
-    assert (status, said.count("\n")) == (2, 1)
+    said = refused("init", *records(tmp_path), "--name", "bad/name")
     assert "name: 'bad/name'" in said
     assert not Path("dataset.yaml").exists()
 
@@ -412,8 +402,6 @@ def test_the_kind_of_device_is_written(run, tmp_path):
 
 
 def test_a_kind_that_is_none_is_refused_in_a_line(run, tmp_path):
-    status, _, said = run("init", *records(tmp_path), "--device", "piezo")
-    assert status == 2
-    assert len(said.splitlines()) == 1
+    said = refused("init", *records(tmp_path), "--device", "piezo")
     assert "piezoelectric" in said
     assert not Path("dataset.yaml").exists()

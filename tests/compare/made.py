@@ -16,31 +16,33 @@ RATE = 48.74  # Hz/s of the chirp
 
 def make_run(signal: str, model: str, mse: float | None, **changes) -> Run:
     """Make a run; an MSE of None is a diverged run."""
-    adaptive = model != "rdgpi"
+    re = None if mse is None else mse**0.5 / 10
     run = Run(
         signal=signal,
         model=model,
         origin="twin",
-        error_kind="one-step a priori" if adaptive else "free-run simulation",
-        order=30 if adaptive else None,
-        weight_count=(992 if model == "volterra" else 31) if adaptive else None,
-        step_size={"mu": 0.1} if adaptive else {},
-        bound={"mu": 0.2} if adaptive else {},
+        error_kind="free-run simulation",
+        unit="um^2",
         diverged="diverged at sample 7, mu = 1" if mse is None else None,
         mse=mse,
-        re=None if mse is None else mse**0.5 / 10,
+        re=re,
         mse_after_transient=mse,
-        re_after_transient=None if mse is None else mse**0.5 / 10,
-        unit="um^2",
-        largest_eigenvalue=4.0 if adaptive else None,
-        spread=100.0 if adaptive else None,
+        re_after_transient=re,
         convergence_s=0.1 if mse is not None else None,
     )
-    if model == "volterra":
+    if model != "rdgpi":
+        two = ("first_order", "second_order")
+        names = two if model == "volterra" else ("mu",)
+        sizes = dict(zip(names, (0.1, 0.01), strict=False))
         run = replace(
             run,
-            step_size={"first_order": 0.1, "second_order": 0.01},
-            bound={"first_order": 0.2, "second_order": 0.02},
+            error_kind="one-step a priori",
+            order=30,
+            weight_count=992 if model == "volterra" else 31,
+            step_size=sizes,
+            bound={name: 2 * size for name, size in sizes.items()},
+            largest_eigenvalue=4.0,
+            spread=100.0,
         )
     return replace(run, **changes)
 

@@ -1,6 +1,5 @@
 """Every claim comes out both ways on evidence made for it."""
 
-import csv
 import math
 from dataclasses import replace
 
@@ -22,8 +21,10 @@ from hystbench.compare.claims.operators import (
 )
 from hystbench.compare.draws import Drawn
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import ClaimEvidence, OrderPoint
+from hystbench.compare.evidence import ClaimEvidence
+from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS, Printed
+from tests.conftest import table
 
 from .made import (
     PAIRS,
@@ -87,7 +88,7 @@ def gpo_on_sines(values):
 def order_points(mse):
     return ClaimEvidence(
         order_sweep=tuple(
-            OrderPoint(model, order, mse(order))
+            OrderError(model, order, mse(order))
             for model in FILTERS
             for order in (1, 5, 10, 20, 40)
         )
@@ -270,19 +271,15 @@ def test_every_claim_is_tested_here_both_ways():
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_claim_is_reproduced(name):
-    judgement = judge(BY_ID[name], CASES[name][0])
-    assert BY_ID[name].ours(CASES[name][0]).holds, judgement.evidence
-    wanted = "refuted by the paper" if name in REFUTED else "reproduced"
-    assert judgement.verdict == wanted
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_claim_is_not_reproduced(name):
-    judgement = judge(BY_ID[name], CASES[name][1])
-    assert not BY_ID[name].ours(CASES[name][1]).holds, judgement.evidence
-    wanted = "refuted by the paper" if name in REFUTED else "not reproduced"
-    assert judgement.verdict == wanted
+def test_claim_is_reproduced_or_not(name):
+    for evidence, verdict in zip(
+        CASES[name], ("reproduced", "not reproduced"), strict=True
+    ):
+        judgement = judge(BY_ID[name], evidence)
+        holds = BY_ID[name].ours(evidence).holds
+        assert holds == (verdict == "reproduced"), judgement.evidence
+        wanted = "refuted by the paper" if name in REFUTED else verdict
+        assert judgement.verdict == wanted
 
 
 @pytest.mark.parametrize("name", sorted(NEVER_TESTABLE))
@@ -478,8 +475,7 @@ def test_claims_on_the_play_hold(name):
 def test_ledger_as_csv(tmp_path):
     judgements = judge_all(ClaimEvidence())
     write_claims(judgements, tmp_path / "claims.csv")
-    with (tmp_path / "claims.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    rows = table(tmp_path / "claims.csv")
     assert list(rows[0]) == [column.partition("=")[0] for column in COLUMNS]
     assert [row["id"] for row in rows] == [claim.id for claim in CLAIMS]
     assert {row["verdict"] for row in rows} <= {

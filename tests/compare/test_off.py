@@ -1,13 +1,12 @@
 """Cells that are off: which, and what the sentence says of each."""
 
-import csv
-
 import numpy as np
 import pytest
 
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.off import off_cells, write_off
+from tests.conftest import table
 
 from .made import make_record, make_run, published_runs
 
@@ -79,19 +78,20 @@ def test_rms_and_spread_are_told():
     assert "0.001 to 0.1, which holds the published value" in text
 
 
+def written(mse, folder):
+    evidence = ClaimEvidence(runs=published_runs({CELL: mse}))
+    write_off(off_cells(compare_cells(evidence), evidence), folder / "off.csv")
+    (row,) = table(folder / "off.csv")
+    return row
+
+
 def test_a_diverged_run_is_off_and_has_no_ratio(tmp_path):
-    evidence = ClaimEvidence(runs=published_runs({CELL: None}))
-    write_off(off_cells(compare_cells(evidence), evidence), tmp_path / "off.csv")
-    with (tmp_path / "off.csv").open(encoding="utf-8") as stream:
-        (row,) = csv.DictReader(stream)
+    row = written(None, tmp_path)
     assert (row["ours"], row["ratio"]) == ("", "")
     assert row["known"] == "Ours diverged at sample 7, mu = 1."
 
 
 def test_the_ratio_in_the_file(tmp_path):
-    evidence = ClaimEvidence(runs=published_runs({CELL: 0.094}))
-    write_off(off_cells(compare_cells(evidence), evidence), tmp_path / "off.csv")
-    with (tmp_path / "off.csv").open(encoding="utf-8") as stream:
-        (row,) = csv.DictReader(stream)
+    row = written(0.094, tmp_path)
     assert float(row["ratio"]) == pytest.approx(10)
     assert row["half"] == "calibrated"

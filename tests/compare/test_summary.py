@@ -38,16 +38,17 @@ def cell(signal, model, published, ours, status="finite", consistent="yes"):
         half="calibrated",
         published=published,
         ours=ours,
-        spread_low=None,
-        spread_high=None,
-        draws_low=None,
-        draws_high=None,
         published_consistent=consistent,
         status=status,
     )
 
 
 DIVERGED = ("diverged at sample 3", "yes")
+
+
+def judgement(kind, basis, verdict, alone="", holdings=()):
+    claim = Claim("x", "", "", kind, "", basis, lambda _: None)
+    return Judgement(claim, verdict, "", "not in tables", "", holdings, alone)
 
 
 def test_nearness_by_hand():
@@ -110,12 +111,8 @@ def test_runs_as_printed_agree_everywhere():
     # 13 signals, 6 pairs of 4 filters each, no ties in print
     assert found["orderings"] == {"agree": 78, "compared": 78, "published": 78}
     assert found["rdgpi"]["cells"] == 10
-    assert {m: p["cells"] for m, p in found["per_model"].items()} == {
-        "gpo": 13,
-        "backlash": 13,
-        "volterra": 13,
-        "delayed": 13,
-    }
+    each = {model: part["cells"] for model, part in found["per_model"].items()}
+    assert each == dict.fromkeys(FILTERS, 13)
     json.dumps(found, allow_nan=False)
 
 
@@ -164,18 +161,18 @@ def test_rms_errors_of_the_halves_are_not_mixed():
 
 
 def test_reproduced_claims_are_counted_by_where_they_hold():
-    def judgement(verdict, *holdings):
-        claim = Claim("x", "", "", "result", "", "held-out", lambda _: None)
-        return Judgement(claim, verdict, "", "not in tables", "", holdings)
+    def judged(verdict, *holdings):
+        return judgement("result", "held-out", verdict, holdings=holdings)
 
     gpi = Holding("gpi", 3, 3)
+    throughout, never = Holding("preisach", 1, 1), Holding("preisach", 0, 1)
     found = claim_counts(
         [
-            judgement("reproduced", gpi),
-            judgement("reproduced", gpi, Holding("preisach", 1, 1)),
-            judgement("reproduced", gpi, Holding("preisach", 0, 1)),
-            judgement("not reproduced", gpi, Holding("preisach", 0, 1)),
-            judgement("reproduced"),
+            judged("reproduced", gpi),
+            judged("reproduced", gpi, throughout),
+            judged("reproduced", gpi, never),
+            judged("not reproduced", gpi, never),
+            judged("reproduced"),
         ]
     )
     assert found["claims_reproduced_where"] == {
@@ -191,12 +188,6 @@ def test_re_and_table_4_do_not_count_among_the_filters():
 
 
 def test_claim_counts_by_hand():
-    def judgement(kind, basis, verdict, alone=""):
-        claim = Claim("x", "", "", kind, "", basis, lambda _: None)
-        return Judgement(
-            claim, verdict, "", "not in tables", "", held_out_verdict=alone
-        )
-
     refuted = "refuted by the paper"
     found = claim_counts(
         [
@@ -210,20 +201,12 @@ def test_claim_counts_by_hand():
             judgement("theory", "", "not testable"),
         ]
     )
-    none = {
-        "reproduced": 0,
-        "not_reproduced": 0,
-        "not_testable": 0,
-        "refuted_by_the_paper": 0,
-    }
+    keys = ("reproduced", "not_reproduced", "not_testable", "refuted_by_the_paper")
+    none = dict.fromkeys(keys, 0)
     assert found["claims_total"] == 7
     bases = found["claims_by_basis"]
     assert bases["held-out"] == none | {"reproduced": 1, "not_reproduced": 1}
-    assert bases["fitted"] == none | {
-        "reproduced": 1,
-        "not_reproduced": 1,
-        "refuted_by_the_paper": 1,
-    }
+    assert bases["fitted"] == dict.fromkeys(keys, 1) | {"not_testable": 0}
     assert bases["constrained"] == none
     assert bases["built-in"] == none | {"reproduced": 1}
     assert found["claims_without_basis"] == none | {"not_testable": 1}
@@ -297,11 +280,10 @@ def test_the_two_findings_by_hand():
         "bound": 3.0,
     }
     assert eq19_finding([]) is None
-    row = Row(
-        "gma", "gpi", 0.0, 0.0, True, 13, 12, "", (40, 48), (20, 30), 0, {"gpo": 1.0}
-    )
+    pairs = ("40 of 48", "20 of 30")
+    row = Row("gma", "gpi", 0.0, 0.0, "yes", 12, 13, "", *pairs, 0, *[1.0] * 4)
     taps = [
-        replace(row, constant_tap=size, configured=False, gpo_first=first)
+        replace(row, constant_tap=size, configured="", gpo_first=first)
         for size, first in ((0.1, 9), (1.0, 5))
     ]
     other = replace(taps[0], twin="other", constant_tap=2.0)
@@ -311,7 +293,7 @@ def test_the_two_findings_by_hand():
         (0.1, 9),
         (1.0, 5),
     ]
-    assert told["without"]["pairs_held_out"] == (20, 30)
+    assert told["without"]["pairs_held_out"] == [20, 30]
     assert [x["zero_error_A"] for x in told["zero_errors"]] == [0.0]
     assert constant_tap_finding([row]) is None
 

@@ -1,7 +1,5 @@
 """What other twins say: spreads of the cells, and where claims hold."""
 
-import csv
-
 import pytest
 
 from hystbench.compare.cells import compare_cells
@@ -10,6 +8,7 @@ from hystbench.compare.comparison import write_cells
 from hystbench.compare.evidence import ClaimEvidence
 from hystbench.compare.twins import Holding, holding_text, read_holdings, read_spreads
 from hystbench.errors import InputError
+from tests.conftest import table
 
 from .made import published_runs
 
@@ -60,10 +59,10 @@ def test_one_twin_has_no_spread(tmp_path):
 def test_cells_carry_half_and_spread(spreads, tmp_path):
     evidence = ClaimEvidence(runs=published_runs(), spreads=spreads)
     write_cells(compare_cells(evidence, ["sine-020hz"]), tmp_path / "cells.csv")
-    with (tmp_path / "cells.csv").open(encoding="utf-8") as stream:
-        rows = {
-            (r["signal"], r["model"], r["metric"]): r for r in csv.DictReader(stream)
-        }
+    rows = {
+        (row["signal"], row["model"], row["metric"]): row
+        for row in table(tmp_path / "cells.csv")
+    }
     found = rows["sine-010hz", "gpo", "mse"]
     assert (found["spread_low"], found["spread_high"]) == ("0.01", "0.03")
     assert found["half"] == "calibrated"
@@ -82,10 +81,8 @@ def test_holdings_are_counted_by_family(holdings):
 
 def test_where_a_claim_holds_stands_beside_its_verdict(holdings, tmp_path):
     evidence = ClaimEvidence(runs=published_runs(), holdings=holdings)
-    judged = tmp_path / "judged.csv"
-    write_claims(judge_all(evidence), judged)
-    with judged.open(encoding="utf-8") as stream:
-        rows = {row["id"]: row for row in csv.DictReader(stream)}
+    write_claims(judge_all(evidence), tmp_path / "judged.csv")
+    rows = {row["id"]: row for row in table(tmp_path / "judged.csv")}
     assert rows["sums-gpo-best"]["verdict"] == "reproduced"
     assert rows["sums-gpo-best"]["holds_on"] == "gpi 1 of 2, preisach 0 of 1"
     assert rows["chirp-gpo-best"]["holds_on"] == "gpi 1 of 1; no other family was run"

@@ -1,6 +1,5 @@
 """The paper's models on devices: what is fitted, never seen, and counted."""
 
-import csv
 import json
 import math
 from dataclasses import replace
@@ -22,6 +21,7 @@ from hystbench.devices.errors import (
 from hystbench.devices.tables import baselines, published_order, verdict
 from hystbench.filters import FILTERS, MOST_CORRECTION
 from hystbench.record import Channel, Record
+from tests.conftest import table
 from tests.gap.tiny import write_tiny
 
 TAPS = np.array([0.5, -0.2, 0.1, 0.7])
@@ -120,12 +120,8 @@ def test_ten_published_baselines_of_each_set():
 
 
 def settings():
-    job = {
-        "order": 3,
-        "input_before": 0.0,
-        "constant_tap": 0.0,
-        "fraction_of_bound": 0.1,
-    }
+    job = {"order": 3, "input_before": 0.0, "constant_tap": 0.0}
+    job["fraction_of_bound"] = 0.1
     play = {"initial_state": "zero"}
     filters = {
         "gpo": job | play | {"operator_form": "eq12", "envelopes": "identified"},
@@ -153,8 +149,7 @@ def test_the_command_writes_tables_of_both_questions(tmp_path):
     words += ["--gaps", str(tmp_path / "gaps.csv"), "--out", str(tmp_path / "out")]
     result = CliRunner().invoke(devices, words)
     assert result.exit_code == 0, result.output
-    with (tmp_path / "out" / "errors.csv").open() as stream:
-        rows = list(csv.DictReader(stream))
+    rows = table(tmp_path / "out" / "errors.csv")
     asked = {(row["model"], row["question"]) for row in rows}
     assert {question for _, question in asked} == {"tracking", "simulation"}
     assert ("rdgpi", "tracking") not in asked

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import csv
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from hystbench.compare.edges import Edge, write_edges
+from hystbench.compare.cells import ComparedCell
+from hystbench.compare.edges import COLUMNS, Edge
+from hystbench.compare.rows import four_digits, names_of, or_empty, write_fields
 from hystbench.envelope import PUBLISHED_ENVELOPE
-from hystbench.files import write_json
+from hystbench.files import write_columns, write_json
 from hystbench.identification import identify
 from hystbench.inverse.tracking import DRIVES
+from hystbench.order_errors import OrderError
 from hystbench.record import Channel, FloatArray, Record
 from hystbench.results import run_result, save_run
 
@@ -69,13 +73,13 @@ def save_a_run(
 
 def write_order_sweep(path: Path) -> None:
     """Write errors that fall with the order; the last one of a filter diverged."""
-    rows = [
-        [model, order, (1 + n) / order, "finite", "constant"]
+    points = [
+        OrderError(model, order, (1 + n) / order)
         for n, model in enumerate(MODELS[:4])
         for order in (1, 2, 5, 10)
     ]
-    rows[-1][2:] = ["", "diverged at sample 7", "constant"]
-    _write(path, ["model", "order", "mse", "status", "rule"], rows)
+    points[-1] = replace(points[-1], mse=math.inf)
+    write_fields(path, names_of(OrderError), points, or_empty)
 
 
 def write_step_edges(path: Path) -> None:
@@ -86,25 +90,32 @@ def write_step_edges(path: Path) -> None:
         for model in MODELS[:4]
     ]
     edges[-1] = replace(edges[-1], edge=None)
-    write_edges(edges, path)
+    write_fields(path, COLUMNS, edges, four_digits)
 
 
 def write_cells(path: Path) -> None:
     """Write compared cells of which one diverged and one was not run."""
-    columns = "table,signal,model,metric,half,published,ours,log10_ratio"
-    columns += ",published_consistent,status"
-    rows = [
-        [1, signal, model, metric, half, 1.0, 2.0, r, "yes", "finite"]
+    cells = [
+        ComparedCell(
+            table=1,
+            signal=signal,
+            model=model,
+            metric=metric,
+            half=half,
+            published="1",
+            ours=10 ** (-0.5 + 0.1 * (n + k)),
+            published_consistent="yes",
+            status="finite",
+        )
         for n, (signal, half) in enumerate(zip(SIGNALS, HALVES, strict=True))
         for k, model in enumerate(MODELS)
         for metric in ("mse", "re")
-        for r in (-0.5 + 0.1 * (n + k),)
     ]
-    rows[0][8] = "no"
-    rows[2][8] = "undecided"
-    rows[4][6:10] = ["", "", "yes", "diverged at sample 7"]
-    rows[6][6:10] = ["", "", "yes", "not run"]
-    _write(path, columns.split(","), rows)
+    cells[0] = replace(cells[0], published_consistent="no")
+    cells[2] = replace(cells[2], published_consistent="undecided")
+    cells[4] = replace(cells[4], ours=None, status="diverged at sample 7")
+    cells[6] = replace(cells[6], ours=None, status="not run")
+    write_fields(path, names_of(ComparedCell), cells)
 
 
 BLIND_EFFECTS = ("creep", "rate-dependent-hysteresis", "stiffness-hardening")
@@ -179,17 +190,13 @@ def write_tracking(folder: Path) -> None:
         for name in ("sine-010hz", "raster-20-lines-a-second")
         for n, drive in enumerate(DRIVES)
     ]
-    with (folder / "tracking.csv").open("w", newline="") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["reference", "drive", "rms_percent", "unit"])
-        writer.writerows(rows)
+    columns = ["reference", "drive", "rms_percent", "unit"]
+    _write(folder / "tracking.csv", columns, rows)
     time = np.arange(300) * 1e-3
     wanted = np.abs((time * 20) % 1 - 0.5)
-    with (folder / "raster.csv").open("w", newline="") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["time_s", "reference", *DRIVES])
-        each = [wanted * (1 + 0.1 / 3**n) for n in range(len(DRIVES))]
-        writer.writerows(zip(time, wanted, *each, strict=True))
+    drives = {drive: wanted * (1 + 0.1 / 3**n) for n, drive in enumerate(DRIVES)}
+    scan = {"time_s": time, "reference": wanted, **drives}
+    write_columns(folder / "raster.csv", scan)
 
 
 class Inputs:

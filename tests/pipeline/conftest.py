@@ -21,14 +21,12 @@ import pytest
 import yaml
 
 from hystbench.written import ENTRIES
-from tests.conftest import run_hystbench, shorten
-
-ROOT = Path(__file__).parents[2]
+from tests.conftest import ROOT, own_config, run_hystbench, shorten
 
 
 def small_config() -> dict:
     """The project's config, cut down to seconds."""
-    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config = own_config()
     config["signals"] = ["sine-100hz", "sine-200hz"]
     shorten(config, 0.2)
     config["excitations"]["sine-001hz"] = {"sine": {"frequency_hz": 1, "duration_s": 1}}
@@ -61,6 +59,15 @@ class Workflow:
         result = self.snakemake(*arguments)
         assert result.returncode == 0, result.stdout + result.stderr
         return jobs(result.stderr + result.stdout)
+
+    def refused(self, *arguments: str) -> str:
+        """Give the one line of hystbench's by which a run is refused."""
+        result = self.snakemake(*arguments)
+        said = result.stdout + result.stderr
+        assert result.returncode != 0, said
+        assert "Traceback" not in said
+        (line,) = (x for x in said.splitlines() if x.startswith("hystbench: "))
+        return line
 
     def run_here(self, *targets: str) -> int:
         """Run the jobs that Snakemake would start, in its order; count them.

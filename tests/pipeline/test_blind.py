@@ -1,6 +1,5 @@
 """The blind contest through the real workflow: a dozen cases, solvers good and bad."""
 
-import csv
 import json
 import sys
 
@@ -8,6 +7,7 @@ import pytest
 
 from hystbench.challenge.contest.plan import RETIRED_SEEDS, plan
 from hystbench.challenge.plant.effects import KINDS
+from tests.conftest import table
 
 from .conftest import Workflow, small_config
 
@@ -125,9 +125,8 @@ def held(tmp_path_factory):
     return workflow, done
 
 
-def table(workflow, name):
-    with (workflow.folder / "results" / "blind" / f"{name}.csv").open() as stream:
-        return list(csv.DictReader(stream))
+def rows_of(workflow, name):
+    return table(workflow.folder / "results" / "blind" / f"{name}.csv")
 
 
 def test_all_jobs_run_and_leave_their_files(held):
@@ -149,7 +148,7 @@ def test_all_jobs_run_and_leave_their_files(held):
 
 def test_the_contest_goes_on_when_a_solver_fails(held):
     workflow, _ = held
-    rows = table(workflow, "cases")
+    rows = rows_of(workflow, "cases")
     assert len(rows) == 24
     bad = {row["lost"].split(":")[0] for row in rows if row["solver"] == "bad"}
     known = {"exit status 1", "no answer within 1 s", "gap.json"}
@@ -158,7 +157,7 @@ def test_the_contest_goes_on_when_a_solver_fails(held):
     told = [row["lost"] for row in rows if row["lost"].startswith("exit")]
     assert all("RuntimeError: a bug" in text for text in told)
     assert not any(row["lost"] for row in rows if row["solver"] == "spy")
-    rivals = {row["solver"]: row for row in table(workflow, "rivals")}
+    rivals = {row["solver"]: row for row in rows_of(workflow, "rivals")}
     assert rivals["bad"]["lost"] == "12"
     assert "needs no_such" in rivals["absent"]["note"]
 
@@ -172,7 +171,7 @@ def test_a_solver_runs_in_its_own_environment(held):
 def test_the_truth_is_what_was_planned(held):
     workflow, _ = held
     planned = {entry.name: " ".join(entry.spec.effects) for entry in plan("small")}
-    rows = [row for row in table(workflow, "cases") if row["solver"] == "spy"]
+    rows = [row for row in rows_of(workflow, "cases") if row["solver"] == "spy"]
     assert {row["case"]: row["truth"] for row in rows} == planned
 
 
@@ -214,11 +213,8 @@ def test_afterwards_there_is_nothing_to_do(held):
 
 def test_a_solver_that_did_not_enter_is_told_in_one_line(held):
     workflow, _ = held
-    result = workflow.snakemake("blind", "--config", "blind={solver: spi}")
-    assert result.returncode != 0
-    told = [line for line in result.stderr.splitlines() if "hystbench:" in line]
-    assert len(told) == 1
-    assert "blind: solver: 'spi'; did you mean 'spy'?" in told[0]
+    told = workflow.refused("blind", "--config", "blind={solver: spi}")
+    assert "blind: solver: 'spi'; did you mean 'spy'?" in told
 
 
 def test_the_gaps_own_solver_enters_the_contest(tmp_path):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 import tomllib
@@ -13,6 +12,7 @@ import pytest
 import yaml
 
 from hystbench.challenge.contest.plan import plan
+from tests.conftest import table as rows
 from tests.docs.pages import ROOT
 
 from .conftest import Workflow, small_config
@@ -78,11 +78,6 @@ def extended(configured) -> Workflow:
     """The folder in which the config has run."""
     assert configured.run(*TARGETS)
     return configured
-
-
-def rows(path: Path) -> list[dict[str, str]]:
-    with path.open() as stream:
-        return list(csv.DictReader(stream))
 
 
 def test_the_filter_and_the_signal_are_in_tables_and_figures(extended):
@@ -174,9 +169,4 @@ def test_a_mistake_is_one_line_with_the_nearest_name(extended, key, value, said)
     (extended.folder / "wrong.yaml").write_text(
         yaml.safe_dump(merged(config, {key: value}))
     )
-    result = extended.snakemake("-n", "--configfile", "wrong.yaml")
-    assert result.returncode != 0
-    (line,) = (
-        line for line in result.stderr.splitlines() if line.startswith("hystbench: ")
-    )
-    assert said in line
+    assert said in extended.refused("-n", "--configfile", "wrong.yaml")

@@ -6,10 +6,9 @@ import re
 import shutil
 
 import pytest
-import yaml
 
 from hystbench.commands.docs import MAKERS
-from tests.conftest import ROOT, run_hystbench
+from tests.conftest import ROOT, own_config, run_hystbench
 
 from .conftest import Workflow
 
@@ -41,7 +40,7 @@ PAGES = [
 def planned(tmp_path_factory) -> Workflow:
     """A folder with the project's own config, in which nothing has run."""
     workflow = Workflow(tmp_path_factory.mktemp("reproduction"))
-    workflow.configure(yaml.safe_load((ROOT / "config.yaml").read_text()))
+    workflow.configure(own_config())
     return workflow
 
 

@@ -5,8 +5,7 @@ import sys
 import yaml
 
 from hystbench.figures import NAMES
-
-from .conftest import ROOT
+from tests.conftest import ROOT, own_config
 
 # The environment is .venv, made by make from requirements.txt with hashes.
 ACCEPTED = {"Specify a conda environment or container for each rule."}
@@ -29,8 +28,7 @@ def test_no_job_waits_for_a_limit_on_submissions(workflow):
 
 
 def test_the_cluster_profile_names_rules_and_groups_that_exist(workflow):
-    config = yaml.safe_load((ROOT / "config.yaml").read_text())
-    workflow.configure(config)
+    workflow.configure(own_config())
     listed = workflow.snakemake("--list-rules")
     assert listed.returncode == 0, listed.stderr
     # Rules of a dataset's figures are there where the settings name one.

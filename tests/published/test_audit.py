@@ -1,6 +1,5 @@
 """The audit's findings against facts read off the paper by hand."""
 
-import csv
 from dataclasses import replace
 
 import numpy as np
@@ -19,6 +18,7 @@ from hystbench.published.discrepancies import (
     table4_rows,
     units_of_sums,
 )
+from tests.conftest import table
 
 
 def test_table_4_repeats_the_gpo_column():
@@ -114,8 +114,6 @@ def test_coarse_digits_are_named():
 
 def test_audit_file_has_every_row(tmp_path):
     write_audit(tmp_path / "audit.csv")
-    with (tmp_path / "audit.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    assert [tuple(row.values()) for row in rows] == [
+    assert [tuple(row.values()) for row in table(tmp_path / "audit.csv")] == [
         (r.kind, r.where, r.statement, r.evidence) for r in audit()
     ]

@@ -12,12 +12,12 @@ from hystbench.errors import InputError
 from hystbench.report.markup import first_sentence, inline, paragraphs
 from hystbench.report.picture import embedded
 from hystbench.report.table import Body, Column, Table, number, words
+from tests.conftest import table as rows
 from tests.report.made import (
     SIGNALS,
     make_measured,
     make_page,
     make_results,
-    rows,
     write_rows,
 )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ import yaml
 from click.testing import CliRunner
 
 from hystbench.settings import read_settings
-from tests.conftest import ROOT, shorten
+from tests.conftest import SCHEMA, own_config, shorten
 
 SIGNALS = ["sine-100hz", "sine-150hz", "sine-120hz", "multisine-random-0-100hz"]
 
@@ -34,7 +33,7 @@ TWIN = {
 
 def small_settings():
     """The project's settings, cut down."""
-    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config = own_config()
     config["signals"] = SIGNALS
     shorten(config, 0.2)
     config["excitations"]["sine-001hz"] = {"sine": {"frequency_hz": 1, "duration_s": 1}}
@@ -42,7 +41,7 @@ def small_settings():
     config["filters"]["order"] = 6
     config["rdgpi"] |= {"fit_signals": ["sine-100hz"], "starts": 1}
     config["order_sweep"] |= {"signal": "sine-050hz", "orders": [1, 10, 12]}
-    return read_settings(config, ROOT / "workflow" / "schemas" / "config.schema.yaml")
+    return read_settings(config, SCHEMA)
 
 
 @pytest.fixture(scope="session")
@@ -66,11 +65,6 @@ def write_twin(path: Path, gain: float = 1.0) -> Path:
 @pytest.fixture
 def two(tmp_path):
     return [write_twin(tmp_path / "one.yaml"), write_twin(tmp_path / "two.yaml", 1.5)]
-
-
-def rows(path):
-    with path.open(encoding="utf-8", newline="") as stream:
-        return list(csv.DictReader(stream))
 
 
 def call(command, *words):

@@ -4,7 +4,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -32,30 +31,17 @@ from hystbench.twins.search import Fit, to_point, to_values
 from hystbench.twins.targets import Target, targets
 from hystbench.waveforms.chirp import Chirp
 from hystbench.waveforms.sine import Sine
-from tests.conftest import ROOT
+from tests.conftest import ROOT, SCHEMA, own_config
 
 START = {item.name: item.start for item in UNKNOWNS} | {"gpo step": 1.5}
-COMMON = {
-    "order": 30,
-    "input_before": 0.0,
-    "constant_tap": 0.0,
-    "amplitude": 0.632,
-}
-PLAYS = {**COMMON, "initial_state": "zero"}
+COMMON = {"order": 30, "input_before": 0.0, "constant_tap": 0.0, "amplitude": 0.632}
+PLAYS = {**COMMON, "initial_state": "zero", "convergence_factor": {"mu": 1.0}}
+TWO = {"first_order": 1.0, "second_order": 1.0}
 FILTERS = {
     "gpo": {**PLAYS, "operator_form": "eq12", "envelopes": "published"},
     "backlash": {**PLAYS, "backlash_structure": "delay-line"},
-    "volterra": COMMON,
-    "delayed": COMMON,
-}
-FILTERS = {
-    name: {
-        **job,
-        "convergence_factor": {"first_order": 1.0, "second_order": 1.0}
-        if name == "volterra"
-        else {"mu": 1.0},
-    }
-    for name, job in FILTERS.items()
+    "volterra": {**COMMON, "convergence_factor": TWO},
+    "delayed": {**COMMON, "convergence_factor": {"mu": 1.0}},
 }
 HELD_OUT = (
     "sine-060hz",
@@ -214,10 +200,8 @@ def test_a_filter_beyond_its_margin_costs_and_one_within_it_does_not():
 
 
 def test_the_committed_twin_keeps_the_margin_on_every_calibration_signal():
-    config = yaml.safe_load((ROOT / "config.yaml").read_text())
-    job = read_settings(
-        config, ROOT / "workflow/schemas/config.schema.yaml"
-    ).calibration_job
+    config = own_config()
+    job = read_settings(config, SCHEMA).calibration_job
     signals = {
         name: make_signal(name, **job["signals"][name]) for name in CALIBRATION_SIGNALS
     }

@@ -1,10 +1,9 @@
 """The commands of the calibration, as the workflow calls them."""
 
-import csv
 import json
 
+import numpy as np
 import pytest
-import yaml
 from click.testing import CliRunner
 
 from hystbench.commands.jobs.calibrate import calibrate
@@ -15,17 +14,17 @@ from hystbench.settings import read_settings
 from hystbench.twins import calibrate as fitting
 from hystbench.twins.calibrate import nearest_twin
 from hystbench.twins.plant import UNKNOWNS, make_twin, values_of
-from tests.conftest import ROOT, run_hystbench, shorten
+from tests.conftest import SCHEMA, own_config, refused, shorten
+from tests.conftest import table as rows_of
 
 
 @pytest.fixture
 def job():
     """The project's own settings on short records of two signals."""
-    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config = own_config()
     shorten(config, 0.1)
     config["calibration"] |= {"starts": 2, "twins": 2}
-    schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
-    job = read_settings(config, schema).calibration_job
+    job = read_settings(config, SCHEMA).calibration_job
     job["signals"] = {
         name: job["signals"][name] for name in ("sine-080hz", "sine-100hz")
     }
@@ -52,8 +51,7 @@ def table(folder, *models):
     words = [*(str(folder / model) for model in models), "--out"]
     done = CliRunner().invoke(found, [*words, str(folder / "found.csv")])
     assert done.exit_code == 0, done.output
-    with (folder / "found.csv").open(newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
+    return rows_of(folder / "found.csv")
 
 
 def call(job, out):
@@ -74,25 +72,31 @@ def test_a_calibration_writes_the_twin_and_prints_what_the_config_needs(
     )
     for key in ("input_zero_error", "input_noise"):
         assert f"config.yaml: twin: {key}: {report[key]:.6g}\n" in done.stdout
-    assert load_model(tmp_path / "gma.yaml").name == "gma"
-    assert load_model(tmp_path / "uncertainty" / "gma-02.yaml").name == "gma-02"
+    twin = load_model(tmp_path / "gma.yaml")
+    offset = report["values"]["offset"]
+    assert twin.value("calibration-error.offset") == pytest.approx(offset)
+    like = [load_model(path) for path in sorted(tmp_path.glob("uncertainty/*.yaml"))]
+    assert [twin.name, *(each.name for each in like)] == ["gma", "gma-01", "gma-02"]
+    assert like[0].chain != like[1].chain
+    assert np.isfinite(report["cells"]["rms"]["sine-080hz"])
 
 
 def test_a_held_out_signal_is_refused_in_one_line(job, tmp_path):
     job["signals"]["sine-060hz"] = job["signals"]["sine-080hz"]
-    words = [
-        "job",
-        "calibrate",
-        "--settings",
-        json.dumps(job),
-        "--out",
-        tmp_path / "out",
-    ]
-    refused = run_hystbench(*words)
-    assert refused.returncode == 2
-    assert refused.stderr.startswith("hystbench: calibration: 'sine-060hz' is held out")
-    assert refused.stderr.count("\n") == 1
+    words = ("--settings", json.dumps(job), "--out", tmp_path / "out")
+    said = refused("job", "calibrate", *words)
+    assert said.startswith("hystbench: calibration: 'sine-060hz' is held out")
     assert not (tmp_path / "out").exists()
+
+
+def test_the_order_of_the_signals_does_not_matter(job, starts, tmp_path):
+    job |= {"starts": 1, "twins": 1}
+    back = dict(reversed(job["signals"].items()))
+    reports = []
+    for name, signals in (("up", job["signals"]), ("down", back)):
+        assert call(job | {"signals": signals}, tmp_path / name).exit_code == 0
+        reports.append((tmp_path / name / "report.json").read_bytes())
+    assert reports[0] == reports[1]
 
 
 def test_the_job_holds_none_of_what_is_calibrated(job):

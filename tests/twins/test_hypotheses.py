@@ -14,20 +14,19 @@ from hystbench.twins.hypotheses import (
 )
 from hystbench.twins.read import read_twins
 from hystbench.twins.runs import draw_signals, measure_twin
-from tests.conftest import ROOT, shorten
+from tests.conftest import SCHEMA, own_config, shorten
 
 from .conftest import TWIN
 
 
 @pytest.fixture(scope="module")
 def job():
-    config = yaml.safe_load((ROOT / "config.yaml").read_text())
+    config = own_config()
     config["signals"] = [CHIRP, *FAST]
     shorten(config, 0.2)
     config["excitations"][CHIRP]["chirp"]["duration_s"] = 0.2
     config["filters"]["order"] = 6
-    schema = ROOT / "workflow" / "schemas" / "config.schema.yaml"
-    return read_settings(config, schema).hypotheses_job
+    return read_settings(config, SCHEMA).hypotheses_job
 
 
 @pytest.fixture

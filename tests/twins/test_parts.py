@@ -17,8 +17,9 @@ from hystbench.twins.fits import fit
 from hystbench.twins.parts import join, run
 from hystbench.twins.read import read_twins
 from hystbench.twins.runs import draw_signals, measure_twin
+from tests.conftest import table
 
-from .conftest import SIGNALS, call, rows, small_settings
+from .conftest import SIGNALS, call, small_settings
 
 
 def run_twins(settings, files, folder):
@@ -29,7 +30,7 @@ def run_twins(settings, files, folder):
         "--out", fits,
     )  # fmt: skip
     for model in settings.filters:
-        runs += ["--runs", folder / f"{model}.json"]
+        runs += ["--run", folder / f"{model}.json"]
         job = json.dumps(settings.twin_runs_job(model))
         call(twin_runs, *files, "--fits", fits, "--settings", job, "--out", runs[-1])
     errors, claims = folder / "errors.csv", folder / "claims.csv"
@@ -43,7 +44,7 @@ def run_twins(settings, files, folder):
 
 def test_runs_are_those_of_the_pipeline(settings, two, tmp_path):
     errors, _ = run_twins(settings, two, tmp_path)
-    found = {(r["twin"], r["signal"], r["model"]): r for r in rows(errors)}
+    found = {(r["twin"], r["signal"], r["model"]): r for r in table(errors)}
     job = settings.twins_job
     for twin in read_twins(two):
         signals = draw_signals(job["signals"], 0).values()
@@ -113,7 +114,7 @@ def test_other_experiments_change_what_they_say(settings, two, tmp_path):
         assert adaptive.step_size <= wanted
         assert most == pytest.approx(1.7) or adaptive.step_size == wanted
     _, claims = run_twins(settings, two, tmp_path)
-    seeds = {(row["twin"], row["experiment"]) for row in rows(claims)}
+    seeds = {(row["twin"], row["experiment"]) for row in table(claims)}
     assert len(seeds) == 4  # each twin as configured and in one more
 
 
@@ -121,7 +122,7 @@ def test_a_filter_that_diverges_on_a_twin_goes_through_its_file(two, tmp_path):
     wild = small_settings()
     wild.config["filters"]["convergence_factor"]["gpo"]["mu"] = 1e6
     errors, _ = run_twins(wild, two, tmp_path)
-    gpo = [row for row in rows(errors) if row["model"] == "gpo"]
+    gpo = [row for row in table(errors) if row["model"] == "gpo"]
     assert gpo
     for row in gpo:
         assert (row["mse"], row["re"]) == ("", "")
@@ -142,7 +143,7 @@ def test_a_twin_that_was_not_fitted_is_told(settings, two, tmp_path):
 
 def test_twins_writes_what_the_comparison_reads(settings, two, tmp_path):
     errors, claims = run_twins(settings, two, tmp_path)
-    assert len(rows(errors)) == 2 * len(SIGNALS) * 5
+    assert len(table(errors)) == 2 * len(SIGNALS) * 5
     low, high = read_spreads(errors)["sine-100hz", "gpo", "mse"]
     # 1.5 times the displacement under the same noise: up to 2.25 times the MSE
     assert low < high < 2.3 * low

@@ -139,7 +139,7 @@ if TWIN:
         priority: 1
         params:
             settings=settings_text(SETTINGS.twins_job),
-            runs=lambda wildcards, input: options("--runs", input.runs),
+            runs=lambda wildcards, input: options("--run", input.runs),
         message:
             "all models on each twin"
         shell:

@@ -108,8 +108,7 @@ EXACT = "exact"
     is_flag=True,
     help="Write code that turns a wanted output into the input; give both limits.",
 )
-@click.option("--limit-low", type=float, help="Lowest input of the actuator.")
-@click.option("--limit-high", type=float, help="Highest input of the actuator.")
+@options.input_limits
 @options.out_folder
 def export(
     model: Path,
@@ -154,20 +153,15 @@ def export(
             "invert' looks at the whole record"
         )
     sampling = Sampling(dt, points, duration, delay or 0)
-    try:
-        described = (
-            describe_inverse(
-                system, sampling, options.both_limits(*limits, "--inverse")
-            )
-            if inverse
-            else describe(system, sampling)
-        )
+    with options.refused_of(model):
+        if inverse:
+            both = options.both_limits(*limits, "--inverse")
+            described = describe_inverse(system, sampling, both)
+        else:
+            described = describe(system, sampling)
         if delay is None and exact_delay(described):
             exact = replace(sampling, delay=exact_delay(described))
             described = describe(system, exact)
-    except InputError as error:
-        where = "" if str(error).startswith("--") else f"{model}: "
-        raise InputError(f"{where}{error}") from None
     if part == "behind":
         check_alone(described)
     if past is not None:

@@ -13,7 +13,7 @@ from hystbench.dataset import read_input
 from hystbench.errors import InputError
 from hystbench.export import python
 from hystbench.export.inverse import describe_inverse
-from hystbench.files import write_csv
+from hystbench.files import write_columns, write_csv
 from hystbench.inverse.bandwidth import HOLDS, Invert, bandwidth, holds_to
 from hystbench.inverse.feedforward import BAND_SHARE, Limits, feedforward
 from hystbench.model import Model, load_model
@@ -35,8 +35,7 @@ from hystbench.record import FloatArray, column_name
     help="Correct errors up to this frequency in Hz; by default a tenth of the "
     "sampling rate.",
 )
-@click.option("--limit-low", type=float, help="Lowest input of the actuator.")
-@click.option("--limit-high", type=float, help="Highest input of the actuator.")
+@options.input_limits
 @click.option(
     "--sampled",
     is_flag=True,
@@ -104,11 +103,8 @@ def _follow(
 ) -> None:
     wanted = column_name(system.output.name, system.output.unit)
     dt, reference = read_input(file, wanted)
-    try:
+    with options.refused_of(model, file):
         found = feedforward(system, reference, dt, band, limits)
-    except InputError as error:
-        where = "" if str(error).startswith("--") else f"{model}: {file}: "
-        raise InputError(f"{where}{error}") from None
     _write(out, system, dt, reference, found.u, found.y)
     exact = f"'{found.exact}' inverted exactly, " if found.exact else ""
     unit = system.input.unit
@@ -142,11 +138,8 @@ def _follow_sampled(
 
 def _by_code(system: Model, model: Path, dt: float, limits: Limits) -> Invert:
     """Feed the exported inverse."""
-    try:
+    with options.refused_of(model):
         described = describe_inverse(system, Sampling(dt), limits)
-    except InputError as error:
-        where = "" if str(error).startswith("--") else f"{model}: "
-        raise InputError(f"{where}{error}") from None
 
     def invert(reference: FloatArray) -> FloatArray:
         u: FloatArray = python.loaded(described).simulate(reference)
@@ -169,8 +162,7 @@ def _write(
         column_name(system.output.name, system.output.unit): reference,
         column_name("simulated", system.output.unit): y,
     }
-    cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
-    write_csv(out, list(columns), zip(*cells, strict=True))
+    write_columns(out, columns)
 
 
 def _table(

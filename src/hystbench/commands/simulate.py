@@ -13,7 +13,7 @@ from hystbench import options
 from hystbench.blocks.held import HOLDS, Hold
 from hystbench.dataset import load_dataset, read_input
 from hystbench.errors import InputError, nearest
-from hystbench.files import write_csv
+from hystbench.files import write_columns
 from hystbench.model import load_model
 from hystbench.record import Channel, FloatArray, Record, column_name, load_record
 from hystbench.signals import load_signal
@@ -81,8 +81,7 @@ def simulate(
         columns[column_name("measured", run.output.unit)] = run.y
     unit = (run.output or system.output).unit  # one unit, in the record's spelling
     columns[column_name("simulated", unit)] = y
-    cells = [[f"{value:.12g}" for value in column] for column in columns.values()]
-    write_csv(out, list(columns), zip(*cells, strict=True))
+    write_columns(out, columns)
     click.echo(
         f"{out}: {len(y)} samples; hold where the model sets none: "
         f"{taken or 'each block its default'}"

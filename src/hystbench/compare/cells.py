@@ -17,7 +17,7 @@ Half = Literal["calibrated", "held-out"]
 """Whether the twin and the step sizes were fitted to a signal's published errors."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ComparedCell:
     """A printed error and ours.
 
@@ -54,10 +54,10 @@ class ComparedCell:
     half: Half
     published: str
     ours: float | None
-    spread_low: float | None
-    spread_high: float | None
-    draws_low: float | None
-    draws_high: float | None
+    spread_low: float | None = None
+    spread_high: float | None = None
+    draws_low: float | None = None
+    draws_high: float | None = None
     published_consistent: Standing
     status: str
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from hystbench.compare.edges import Edge, write_margins
 from hystbench.compare.evidence import ClaimEvidence, Run, read_evidence
 from hystbench.compare.measured import COLUMNS, errors_table
 from hystbench.compare.off import OffCell, off_cells, write_off
-from hystbench.compare.rows import write_fields
+from hystbench.compare.rows import names_of, or_diverged, write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
 from hystbench.compare.tables import Table, paper_tables
 from hystbench.compare.verdict import (
@@ -35,7 +35,7 @@ WRITTEN = (
     *("added.csv", "tables/added.*"),
 )
 """Files of a comparison, as names or patterns."""
-_FIELDS = [field.name for field in fields(ComparedCell)]
+_FIELDS = names_of(ComparedCell)
 CELL_COLUMNS = (*_FIELDS[:-2], "log10_ratio", *_FIELDS[-2:])
 
 
@@ -72,12 +72,12 @@ class Comparison:
         for table in self.tables:
             table.write(out / "tables")
         if self.added:
-            write_fields(out / "added.csv", COLUMNS, self.added)
+            write_fields(out / "added.csv", COLUMNS, self.added, or_diverged)
 
 
 def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
     """Write the cells as CSV; a cell without a finite run has no ours."""
-    write_fields(path, CELL_COLUMNS, cells)
+    write_fields(path, CELL_COLUMNS, cells, or_diverged)
 
 
 def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import astuple, dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
-from hystbench.compare.rows import finite_or_infinite, read_rows
-from hystbench.files import write_csv
+from hystbench.compare.rows import read_items
 from hystbench.published import Metric
-
-COLUMNS = ("signal", "sines", "draw", "model", "mse", "re", "rms")
 
 
 @dataclass(frozen=True)
@@ -20,6 +17,7 @@ class Draw:
 
     Parameters
     ----------
+    signal : str
     sines, draw : int
         Number of its sines, and which draw; 0 is the configured one.
     model : str
@@ -28,6 +26,7 @@ class Draw:
         RMS displacement of the record (um).
     """
 
+    signal: str
     sines: int
     draw: int
     model: str
@@ -61,29 +60,18 @@ class Drawn:
         return median(self.errors[model, metric])
 
 
-def write_draws(signal: str, draws: Iterable[Draw], path: Path) -> None:
-    """Write a row for each draw and model; a diverged run has no error."""
-    rows = []
-    for each in draws:
-        values = [None if v == float("inf") else v for v in astuple(each)]
-        rows.append([signal, *values])
-    write_csv(path, COLUMNS, rows)
-
-
 def read_draws(path: str | Path) -> dict[str, Drawn]:
     """Read the draws of the configured number of sines, the file's first, by signal."""
-    rows = read_rows(path, COLUMNS)
+    draws = read_items(path, Draw)
     found: dict[str, Drawn] = {}
-    for signal in dict.fromkeys(row["signal"] for row in rows):
-        own = [row for row in rows if row["signal"] == signal]
-        own = [row for row in own if row["sines"] == own[0]["sines"]]
+    for signal in dict.fromkeys(each.signal for each in draws):
+        own = [each for each in draws if each.signal == signal]
+        own = [each for each in own if each.sines == own[0].sines]
         errors: dict[tuple[str, Metric], list[float]] = {}
-        metrics: tuple[Metric, ...] = ("mse", "re")
-        for number, row in enumerate(own, 1):
-            for metric in metrics:
-                value = finite_or_infinite(row[metric], path, number)
-                errors.setdefault((row["model"], metric), []).append(value)
-        rms = {row["draw"]: float(row["rms"]) for row in own}
+        for each in own:
+            errors.setdefault((each.model, "mse"), []).append(each.mse)
+            errors.setdefault((each.model, "re"), []).append(each.re)
+        rms = {each.draw: each.rms for each in own}
         found[signal] = Drawn(
             {key: tuple(values) for key, values in errors.items()},
             tuple(rms.values()),

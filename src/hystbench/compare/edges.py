@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
-from dataclasses import astuple, dataclass, fields
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from hystbench.compare.rows import read_rows
+from hystbench.compare.rows import names_of
 from hystbench.files import write_csv
 
 
@@ -49,26 +49,18 @@ class Edge:
         """Whether a step size inside Eq. 19's bound is beyond the edge."""
         return self.edge is not None and self.edge < self.at_trace
 
+    @property
+    def edge_over_trace(self) -> float | None:
+        """The edge as a part of Eq. 19's bound."""
+        return None if self.edge is None else self.edge / self.at_trace
 
-COLUMNS = (
-    *(field.name for field in fields(Edge)),
-    "edge_over_trace",
-    "edge_over_power",
-)
+    @property
+    def edge_over_power(self) -> float | None:
+        """The edge as a part of that at which twice the error is corrected."""
+        return None if self.edge is None else self.edge / self.at_power
 
 
-def write_edges(edges: Iterable[Edge], path: Path) -> None:
-    """Write a row for each signal and filter, four digits a number."""
-    rows = []
-    for each in edges:
-        ratios = [
-            None if each.edge is None else each.edge / bound
-            for bound in (each.at_trace, each.at_power)
-        ]
-        numbers = [*astuple(each)[2:], *ratios]
-        told = ["" if n is None else f"{n:.4g}" for n in numbers]
-        rows.append([each.signal, each.model, *told])
-    write_csv(path, COLUMNS, rows)
+COLUMNS = (*names_of(Edge), "edge_over_trace", "edge_over_power")
 
 
 def write_margins(edges: Sequence[Edge], held_out: Collection[str], path: Path) -> None:
@@ -84,16 +76,3 @@ def write_margins(edges: Sequence[Edge], held_out: Collection[str], path: Path) 
         for signal in dict.fromkeys(each.signal for each in edges)
     ]
     write_csv(path, ("signal", "half", *models), rows)
-
-
-def read_edges(path: str | Path) -> tuple[Edge, ...]:
-    """Read what :func:`write_edges` wrote."""
-    names = [field.name for field in fields(Edge)][2:]
-    return tuple(
-        Edge(
-            row["signal"],
-            row["model"],
-            **{name: float(row[name]) if row[name] else None for name in names},  # type: ignore[arg-type]
-        )
-        for row in read_rows(path, COLUMNS)
-    )

@@ -13,11 +13,12 @@ import numpy as np
 
 from hystbench.compare.constants import Row, read_constants
 from hystbench.compare.draws import Drawn, read_draws
-from hystbench.compare.edges import Edge, read_edges
-from hystbench.compare.rows import finite_or_infinite, read_rows
+from hystbench.compare.edges import Edge
+from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
+from hystbench.order_errors import OrderError
 from hystbench.published import (
     MODELS,
     Metric,
@@ -34,7 +35,7 @@ Cell = tuple[str, str]
 """Signal and model."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Run:
     """Result of one model on one record, as ``results/filters`` holds it.
 
@@ -46,7 +47,7 @@ class Run:
         ``one-step a priori`` or ``free-run simulation``.
     order, weight_count : int or None
         Order N and number of weights; None where the model has none.
-    step_size, bound : dict of str to float
+    step_size, bound : mapping of str to float
         Step sizes and their bounds by Eq. 19, by the same names.
     diverged : str or None
         The sentence that tells where it diverged; None for a finite run.
@@ -66,19 +67,19 @@ class Run:
     model: str
     origin: str
     error_kind: str
-    order: int | None
-    weight_count: int | None
-    step_size: dict[str, float]
-    bound: dict[str, float]
-    diverged: str | None
-    mse: float | None
-    re: float | None
-    mse_after_transient: float | None
-    re_after_transient: float | None
+    order: int | None = None
+    weight_count: int | None = None
+    step_size: Mapping[str, float] = field(default_factory=dict)
+    bound: Mapping[str, float] = field(default_factory=dict)
+    diverged: str | None = None
+    mse: float | None = None
+    re: float | None = None
+    mse_after_transient: float | None = None
+    re_after_transient: float | None = None
     unit: str
-    largest_eigenvalue: float | None
-    spread: float | None
-    convergence_s: float | None
+    largest_eigenvalue: float | None = None
+    spread: float | None = None
+    convergence_s: float | None = None
     transient_fraction: float = 0.0
 
     @property
@@ -101,19 +102,6 @@ class Run:
         """Give the MSE or the RE; infinity where the run diverged."""
         value = self.mse if metric == "mse" else self.re
         return math.inf if value is None else value
-
-
-@dataclass(frozen=True)
-class OrderPoint:
-    """Error of one filter at one order (Figure 7); infinity where it diverged.
-
-    ``rule`` tells how the step size follows the order.
-    """
-
-    model: str
-    order: int
-    mse: float
-    rule: str = ""
 
 
 @dataclass(frozen=True)
@@ -144,8 +132,8 @@ class ClaimEvidence:
     text: Text = field(default_factory=load_text)
     runs: Mapping[Cell, Run] = field(default_factory=dict)
     records: Mapping[str, Record] = field(default_factory=dict)
-    order_sweep: tuple[OrderPoint, ...] = ()
-    order_sweep_other: tuple[OrderPoint, ...] = ()
+    order_sweep: tuple[OrderError, ...] = ()
+    order_sweep_other: tuple[OrderError, ...] = ()
     identification: Identification | None = None
     envelope_errors: Mapping[Cell, float] = field(default_factory=dict)
     spreads: Mapping[tuple[str, str, Metric], tuple[float, float]] = field(
@@ -226,44 +214,38 @@ def read_run(path: str | Path) -> Run:
         raise InputError(f"{path}: status {status!r} and 'diverged' disagree")
     if status == "finite" and need("mse") is None:
         raise InputError(f"{path}: a finite run needs an MSE")
-    adaptive = need("error_kind") == "one-step a priori"
-    eigenvalues = need("eigenvalues") if adaptive else {}
+    of_filter: dict[str, Any] = {}
+    if need("error_kind") == "one-step a priori":
+        eigenvalues = need("eigenvalues")
+        of_filter = {key: need(key) for key in ("order", "step_size", "bound")}
+        of_filter["weight_count"] = len(need("weights"))
+        of_filter["largest_eigenvalue"] = eigenvalues.get("largest")
+        of_filter["spread"] = eigenvalues.get("spread_nonzero")
     return Run(
-        signal=need("signal"),
-        model=need("model"),
-        origin=need("origin"),
-        error_kind=need("error_kind"),
-        order=need("order") if adaptive else None,
-        weight_count=len(need("weights")) if adaptive else None,
-        step_size=need("step_size") if adaptive else {},
-        bound=need("bound") if adaptive else {},
+        **{key: need(key) for key in _KEPT},
         diverged=_need(diverged, "sentence", path) if diverged else None,
-        **{key: need(key) for key in _ERRORS},
         unit=_need(need("units"), "mse", path),
-        largest_eigenvalue=eigenvalues.get("largest"),
-        spread=eigenvalues.get("spread_nonzero"),
-        convergence_s=need("convergence_s"),
         transient_fraction=need("transient_s") / (need("samples") * need("dt_s")),
+        **of_filter,
     )
 
 
 _STATUSES = ("finite", "diverged")
 _PARAMETERS = tuple(f"a{j}" for j in range(8))
-_ERRORS = ("mse", "re", "mse_after_transient", "re_after_transient")
+_KEPT = (
+    *("signal", "model", "origin", "error_kind", "convergence_s"),
+    *("mse", "re", "mse_after_transient", "re_after_transient"),
+)
 
 
-def read_order_sweep(path: str | Path) -> tuple[OrderPoint, ...]:
-    """Read the errors by order of each filter: model, order, mse, status, rule."""
-    columns = ("model", "order", "mse", "status", "rule")
-    return tuple(
-        OrderPoint(
-            row["model"],
-            int(row["order"]),
-            finite_or_infinite(row["mse"], path, n),
-            row["rule"],
-        )
-        for n, row in enumerate(read_rows(path, columns), 1)
-    )
+def read_order_sweep(path: str | Path) -> tuple[OrderError, ...]:
+    """Read the errors by order of each filter."""
+    return tuple(read_items(path, OrderError))
+
+
+def read_edges(path: str | Path) -> tuple[Edge, ...]:
+    """Read the edges of the step sizes."""
+    return tuple(read_items(path, Edge))
 
 
 def read_envelope_errors(path: str | Path) -> dict[Cell, float]:

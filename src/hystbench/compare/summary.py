@@ -10,7 +10,7 @@ import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
-from statistics import fmean, median
+from statistics import median
 from typing import Any, get_args
 
 import numpy as np
@@ -19,7 +19,7 @@ from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
 from hystbench.compare.constants import Row
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import ClaimEvidence
+from hystbench.compare.evidence import Cell, ClaimEvidence
 from hystbench.published import FILTERS
 from hystbench.published.consistency import check
 
@@ -52,27 +52,37 @@ def nearness(cells: Sequence[ComparedCell]) -> dict[str, Any]:
 
 
 def orderings(cells: Iterable[ComparedCell]) -> dict[str, int]:
-    """Count the pairs of filters under one signal that ours order as the paper does.
-
-    A diverged run is worse than a finite one; two diverged runs have no order.
-    """
-    by_signal: dict[str, dict[str, ComparedCell]] = {}
-    for cell in cells:
-        by_signal.setdefault(cell.signal, {})[cell.model] = cell
-    published = compared = agree = 0
-    for models in by_signal.values():
-        for one, other in combinations(models.values(), 2):
-            published += 1
-            if one.ran and other.ran:
-                compared += 1
-                agree += _agree(one, other)
+    """Count the pairs of filters under one signal that ours order as the paper does."""
+    listed = list(cells)
+    theirs = {(c.signal, c.model): float(c.published) for c in listed}
+    ours = {
+        (c.signal, c.model): math.inf if c.ours is None else c.ours
+        for c in listed
+        if c.ran
+    }
+    agree, compared = pairs_in_order(ours, theirs)
+    published = sum(math.comb(n, 2) for n in Counter(s for s, _ in theirs).values())
     return {"agree": agree, "compared": compared, "published": published}
 
 
-def _agree(one: ComparedCell, other: ComparedCell) -> bool:
-    ours = [math.inf if c.ours is None else c.ours for c in (one, other)]
-    theirs = [float(c.published) for c in (one, other)]
-    return ours[0] != ours[1] and (ours[0] < ours[1]) == (theirs[0] < theirs[1])
+def pairs_in_order(
+    ours: Mapping[Cell, float], theirs: Mapping[Cell, float]
+) -> tuple[int, int]:
+    """Count pairs of models under one signal that both order alike, and all.
+
+    Pairs that one of them does not have are left out. An infinite error is worse than
+    a finite one; a pair with the same error, as where both diverged, has no order.
+    """
+    pairs = [
+        (one, other)
+        for one, other in combinations([cell for cell in ours if cell in theirs], 2)
+        if one[0] == other[0]
+    ]
+    agree = [
+        ours[a] != ours[b] and (ours[a] < ours[b]) == (theirs[a] < theirs[b])
+        for a, b in pairs
+    ]
+    return sum(agree), len(pairs)
 
 
 def claim_counts(judgements: Iterable[Judgement]) -> dict[str, Any]:
@@ -167,20 +177,20 @@ def constant_tap_finding(rows: Sequence[Row]) -> dict[str, Any] | None:
     offsets = [row for row in mine if not row.constant_tap]
 
     def told(row: Row) -> dict[str, Any]:
+        pairs = ("pairs_calibrated", "pairs_held_out")
         return {
             "constant_tap": row.constant_tap,
-            "zero_error_A": row.zero_error,
+            "zero_error_A": row.zero_error_mA / 1e3,
             "gpo_first": row.gpo_first,
             "signals": row.signals,
-            "pairs_calibrated": row.pairs_calibrated,
-            "pairs_held_out": row.pairs_held_out,
+            **{key: [*map(int, getattr(row, key).split(" of "))] for key in pairs},
         }
 
     return {
         "without": told(usual[0]),
         "with": [told(row) for row in sorted(taps, key=lambda row: row.constant_tap)],
         "zero_errors": [
-            told(row) for row in sorted(offsets, key=lambda row: row.zero_error)
+            told(row) for row in sorted(offsets, key=lambda row: row.zero_error_mA)
         ],
     }
 
@@ -281,11 +291,10 @@ def rms_error_percent(evidence: ClaimEvidence) -> dict[str, float]:
         record = evidence.records.get(signal)
         if record is None or record.origin != "twin":
             continue
-        implied = fmean((rms.low + rms.high) / 2 for rms in checked.rms)
         ours = float(np.sqrt(np.mean(record.y**2)))
         if signal in evidence.drawn:
             ours = median(evidence.drawn[signal].rms)
-        errors[signal] = 100 * (ours / implied - 1)
+        errors[signal] = 100 * (ours / checked.implied_rms - 1)
     return errors
 
 

@@ -6,15 +6,36 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hystbench.compare.rows import finite_or_infinite, read_rows
+from hystbench.compare.rows import read_items
 from hystbench.errors import InputError, nearest
-from hystbench.published import METRICS, Metric
+from hystbench.published import Metric
 
-#: Columns of the errors on all twins; an empty error is a diverged run.
-ERROR_COLUMNS = ("twin", "family", "signal", "model", "mse", "re", "status")
-#: Columns of the claims on all twins; experiment 0 is the configured one.
-CLAIM_COLUMNS = ("twin", "family", "experiment", "claim", "holds")
-#: What the last of them may say.
+
+@dataclass(frozen=True)
+class TwinError:
+    """Errors of a model on a signal of a twin; infinite where it diverged."""
+
+    twin: str
+    family: str
+    signal: str
+    model: str
+    mse: float
+    re: float
+    status: str
+
+
+@dataclass(frozen=True)
+class TwinClaim:
+    """Whether a claim holds on a twin; experiment 0 is the configured one."""
+
+    twin: str
+    family: str
+    experiment: int
+    claim: str
+    holds: str
+
+
+#: What ``holds`` may say.
 HOLDS = ("yes", "no", "not testable")
 
 
@@ -62,15 +83,14 @@ def read_spreads(
         Smallest and largest by signal, model and metric, infinite where a run
         diverged. Empty where the family has one twin: it has no spread.
     """
-    rows = read_rows(path, ERROR_COLUMNS)
-    alike = [row for row in rows if row["family"] == rows[0]["family"]]
-    if len({row["twin"] for row in alike}) < 2:
+    rows = read_items(path, TwinError)
+    alike = [row for row in rows if row.family == rows[0].family]
+    if len({row.twin for row in alike}) < 2:
         return {}
     values: dict[tuple[str, str, Metric], list[float]] = {}
-    for number, row in enumerate(alike, 1):
-        for metric in METRICS:
-            value = finite_or_infinite(row[metric], path, number)
-            values.setdefault((row["signal"], row["model"], metric), []).append(value)
+    for row in alike:
+        values.setdefault((row.signal, row.model, "mse"), []).append(row.mse)
+        values.setdefault((row.signal, row.model, "re"), []).append(row.re)
     return {cell: (min(found), max(found)) for cell, found in values.items()}
 
 
@@ -83,15 +103,15 @@ def read_holdings(path: str | Path) -> dict[str, tuple[Holding, ...]]:
         If a row says neither yes, no nor not testable.
     """
     counts: dict[str, dict[str, list[bool]]] = {}
-    for number, row in enumerate(read_rows(path, CLAIM_COLUMNS), 1):
-        if row["holds"] not in HOLDS:
+    for number, row in enumerate(read_items(path, TwinClaim), 1):
+        if row.holds not in HOLDS:
             raise InputError(
-                f"{path}: row {number}: holds {row['holds']!r}; "
-                f"{nearest(row['holds'], HOLDS)}"
+                f"{path}: row {number}: holds {row.holds!r}; "
+                f"{nearest(row.holds, HOLDS)}"
             )
-        if row["holds"] != "not testable":
-            families = counts.setdefault(row["claim"], {})
-            families.setdefault(row["family"], []).append(row["holds"] == "yes")
+        if row.holds != "not testable":
+            families = counts.setdefault(row.claim, {})
+            families.setdefault(row.family, []).append(row.holds == "yes")
     return {
         claim: tuple(
             Holding(family, sum(found), len(found))

@@ -10,16 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 from typing import Any, Literal
 
 import numpy as np
 
-from hystbench.adaptive import (
-    make_filter,
-    with_fraction_of_bound,
-)
+from hystbench.adaptive import make_filter, with_fraction_of_bound, with_steps
 from hystbench.dataset import Dataset
 from hystbench.filters import MOST_CORRECTION, AdaptiveFilter, run_many
 from hystbench.metrics import mean_square_error
@@ -164,12 +161,10 @@ def best_fractions(
     for place, record in enumerate((*fit, *held)):
         bounds = adaptive.step_bounds(record.u)
         power = adaptive.largest_power(record.u)
-        filters = []
-        for parts in choices:
-            steps: dict[str, Any] = {
-                own: parts[name] * bounds[name] for name, own in names.items()
-            }
-            filters.append(replace(adaptive, **steps))
+        filters = [
+            with_steps(adaptive, {name: parts[name] * bounds[name] for name in names})
+            for parts in choices
+        ]
         steady &= [each.correction(power) < MOST_CORRECTION for each in filters]
         if place < len(fit):
             errors.append(_mean_squares(filters, record))

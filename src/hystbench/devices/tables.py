@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from importlib.resources import files
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hystbench.compare.rows import read_rows, write_fields
 from hystbench.devices.errors import LAST, DeviceError
 from hystbench.files import write_csv, write_text
-from hystbench.published import FILTERS, load
+from hystbench.published import FILTERS, load, read_csv
 
 WRITTEN = (
     *("errors.csv", "tracking.csv", "simulation.csv", "beside.csv"),
@@ -23,7 +22,10 @@ WRITTEN = (
 """What a comparison on devices writes."""
 
 MODELS = (*FILTERS, "rdgpi")
-COLUMNS = (*("dataset", "model", "question", "how", "rms", "relative_error", "unit"),)
+COLUMNS = (
+    *("dataset", "model", "question", "how", "rms"),
+    *("relative_error=relative", "unit"),
+)
 PUBLISHED_COLUMNS = ("dataset", "whose", "model", "rms", "unit", "protocol")
 
 
@@ -42,65 +44,42 @@ def write_devices(
         empty.
     out : Path
     """
-    write_csv(
-        out / "errors.csv",
-        COLUMNS,
-        [
-            (
-                *(e.dataset, e.model, e.question, e.how),
-                *(_short(e.rms), _short(e.relative), e.unit),
-            )
-            for e in errors
-        ],
-    )
-    write_csv(
-        out / "tracking.csv",
-        ("dataset", "step sizes", *FILTERS, "last output", "order"),
-        _tracking(errors),
-    )
-    write_csv(
-        out / "simulation.csv",
-        ("dataset", "unit", *MODELS, "base", "gap: before", "gap: after", "named"),
-        _simulation(errors, gaps),
-    )
-    beside = [*_ours(errors, gaps), *_published()]
+    write_fields(out / "errors.csv", COLUMNS, errors, _short)
+    tracking = ("dataset", "step sizes", *FILTERS, "last output", "order")
+    write_csv(out / "tracking.csv", tracking, _tracking(errors))
+    gap = ("base", "gap: before", "gap: after", "named")
+    simulation = ("dataset", "unit", *MODELS, *gap)
+    write_csv(out / "simulation.csv", simulation, _simulation(errors, gaps))
     order = list(dict.fromkeys(e.dataset for e in errors))
-    known = [row for row in beside if row[0] in order]
-    known.sort(key=lambda row: (order.index(row[0]), row[3]))
-    write_csv(
-        out / "beside.csv",
-        PUBLISHED_COLUMNS,
-        [(*row[:3], _short(row[3]), *row[4:]) for row in known],
-    )
+    beside = [row for row in (*_ours(errors, gaps), *_published()) if row[0] in order]
+    beside.sort(key=lambda row: (order.index(row[0]), row[3]))
+    rows = (map(_short, row) for row in beside)
+    write_csv(out / "beside.csv", PUBLISHED_COLUMNS, map(list, rows))
     write_text(out / "verdict.md", verdict(errors) + "\n")
 
 
 def verdict(errors: Sequence[DeviceError]) -> str:
     """Say whether the paper's order of its filters holds on the devices."""
-    tracking = _by_how(e for e in errors if e.question == "tracking")
-    fixed = _by_how(e for e in errors if e.question == "simulation")
     paper = published_order()
     parts = [
         "By the geometric mean of the printed MSE the paper's filters come in the "
         f"order {', '.join(paper)}."
     ]
-    for how, words in (
-        *((how, f"tracking, {how}") for how in tracking if how in _of_all(tracking)),
-        *((how, f"simulation, {how}") for how in fixed if how in _of_all(fixed)),
-    ):
-        own = (tracking if words.startswith("tracking") else fixed)[how]
-        first = [name for name, rms in own.items() if _first(rms) == paper[0]]
-        stand = sum(_pairs(rms, paper) for rms in own.values())
-        total = len(own) * math.comb(len(paper), 2)
-        parts.append(
-            f"{words[0].upper()}{words[1:]}: the {paper[0]} filter is first on "
-            f"{len(first)} of {len(own)} devices"
-            f"{' (' + ', '.join(first) + ')' if first else ''}, and {stand} of {total} "
-            "pairs of filters stand in the paper's order."
-        )
+    for question in ("tracking", "simulation"):
+        for how, own in _of_all_filters(errors, question).items():
+            first = [name for name, rms in own.items() if _ranked(rms)[0] == paper[0]]
+            stand = sum(_pairs(rms, paper) for rms in own.values())
+            told = f" ({', '.join(first)})" if first else ""
+            parts.append(
+                f"{question.title()}, {how}: the {paper[0]} filter is first on "
+                f"{len(first)} of {len(own)} devices{told}, and {stand} of "
+                f"{len(own) * math.comb(len(paper), 2)} pairs of filters stand in the "
+                "paper's order."
+            )
     last = {e.dataset: e.rms for e in errors if e.model == LAST}
+    filters = [e for e in errors if e.question == "tracking" and e.model in FILTERS]
     beaten = sum(
-        min(min(own[name].values()) for own in tracking.values()) < rms
+        min(e.rms for e in filters if e.dataset == name) < rms
         for name, rms in last.items()
     )
     parts.append(
@@ -123,29 +102,26 @@ REPEATED = 4
 """The paper's table that repeats values of the others for the GPO filter."""
 
 Rms = dict[str, float]
-ByHow = dict[str, dict[str, Rms]]
+"""RMS errors by filter."""
 
 
-def _by_how(errors: Iterable[DeviceError]) -> ByHow:
-    """Set out RMS errors of filters by how they were run, and by dataset."""
-    found: ByHow = {}
+def _of_all_filters(
+    errors: Iterable[DeviceError], question: str
+) -> dict[str, dict[str, Rms]]:
+    """Set out the errors by how all filters were run, and by dataset."""
+    found: dict[str, dict[str, Rms]] = {}
     for e in errors:
-        if e.model in FILTERS:
+        if e.question == question and e.model in FILTERS:
             found.setdefault(e.how, {}).setdefault(e.dataset, {})[e.model] = e.rms
-    return found
-
-
-def _of_all(found: ByHow) -> dict[str, None]:
-    """Give the ways in which every filter was run."""
     return {
-        how: None
+        how: own
         for how, own in found.items()
         if all(len(rms) == len(FILTERS) for rms in own.values())
     }
 
 
-def _first(rms: Rms) -> str:
-    return min(rms, key=lambda name: rms[name])
+def _ranked(rms: Rms) -> list[str]:
+    return sorted(rms, key=lambda name: rms[name])
 
 
 def _pairs(rms: Rms, order: Sequence[str]) -> int:
@@ -153,45 +129,26 @@ def _pairs(rms: Rms, order: Sequence[str]) -> int:
     return sum(rms[first] < rms[second] for first, second in combinations(order, 2))
 
 
-def _tracking(errors: Sequence[DeviceError]) -> list[list[object]]:
-    found = _by_how(e for e in errors if e.question == "tracking")
-    square = {(e.dataset, e.model, e.how): e.relative for e in errors}
-    last = {e.dataset: e.relative for e in errors if e.model == LAST}
-    rows: list[list[object]] = []
-    for name in last:
-        for how in _of_all(found):
-            rms = found[how][name]
-            rows.append(
-                [
-                    name,
-                    how,
-                    *(_percent(square[name, model, how]) for model in FILTERS),
-                    _percent(last[name]),
-                    " < ".join(sorted(rms, key=lambda model: rms[model])),
-                ]
-            )
-    return rows
+def _tracking(errors: Sequence[DeviceError]) -> Iterator[list[object]]:
+    relative = {(e.dataset, e.model, e.how): _percent(e.relative) for e in errors}
+    found = _of_all_filters(errors, "tracking")
+    for last in (e for e in errors if e.model == LAST):
+        for how, own in found.items():
+            cells = [relative[last.dataset, model, how] for model in FILTERS]
+            order = " < ".join(_ranked(own[last.dataset]))
+            yield [last.dataset, how, *cells, _percent(last.relative), order]
 
 
 def _simulation(
     errors: Sequence[DeviceError], gaps: Mapping[str, Mapping[str, str]]
-) -> list[list[object]]:
-    rows: list[list[object]] = []
+) -> Iterator[list[object]]:
     own = {(e.dataset, e.model): e for e in errors if e.question == "simulation"}
     for name in dict.fromkeys(e.dataset for e in errors):
         gap = gaps.get(name, {})
-        rows.append(
-            [
-                name,
-                own[name, FILTERS[0]].unit,
-                *(_short(own[name, model].rms) for model in MODELS),
-                gap.get("base", ""),
-                gap.get("before", ""),
-                gap.get("after", ""),
-                gap.get("effects", "") if gap.get("verdict") == "named" else "none",
-            ]
-        )
-    return rows
+        named = gap.get("effects", "") if gap.get("verdict") == "named" else "none"
+        about = [gap.get(key, "") for key in ("base", "before", "after")]
+        rms = [_short(own[name, model].rms) for model in MODELS]
+        yield [name, own[name, FILTERS[0]].unit, *rms, *about, named]
 
 
 Row = tuple[str, str, str, float, str, str]
@@ -220,14 +177,13 @@ def _ours(
 
 
 def _published() -> list[Row]:
+    source = "Champneys et al. 2024"
     return [
         (
-            row["dataset"],
-            "published",
-            row["model"],
+            *(row["dataset"], "published", row["model"]),
             float(row["rms"]),
             row["unit"],
-            "Champneys et al. 2024",
+            source,
         )
         for row in baselines()
     ]
@@ -235,14 +191,12 @@ def _published() -> list[Row]:
 
 def baselines() -> list[dict[str, str]]:
     """Read the published baselines: see docs/devices.md on where they come from."""
-    place = files("hystbench.published") / "baselines.csv"
-    return list(csv.DictReader(place.read_text(encoding="utf-8").splitlines()))
+    return read_csv("baselines.csv")
 
 
 def read_gaps(path: Path) -> dict[str, dict[str, str]]:
     """Read the summary of the gap, by dataset."""
-    with path.open(encoding="utf-8", newline="") as stream:
-        return {row["dataset"]: row for row in csv.DictReader(stream)}
+    return {row["dataset"]: row for row in read_rows(path, ("dataset",))}
 
 
 def _scale(ours: str, theirs: str) -> tuple[float, str]:

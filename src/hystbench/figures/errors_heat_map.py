@@ -10,18 +10,11 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
+from hystbench.compare.cells import ComparedCell
+from hystbench.compare.rows import read_items
+from hystbench.errors import InputError
 from hystbench.figures import style
-from hystbench.figures.data import read_table
 
-_COLUMNS = (
-    "signal",
-    "model",
-    "metric",
-    "half",
-    "log10_ratio",
-    "published_consistent",
-    "status",
-)
 # Blue and red stay apart for all kinds of colour blindness, and white is agreement.
 _MAP = "RdBu_r"
 # Behind the name of a signal that the twin was not fitted to.
@@ -38,10 +31,11 @@ def draw(*, table: Path) -> Figure:
     table : Path
         The compared cells, one row a signal, model and metric.
     """
-    cells = read_table(table, _COLUMNS, "compared cell")
-    rows = [row for row in cells if row["metric"] == "mse"]
-    signals = list(dict.fromkeys(row["signal"] for row in rows))
-    models = style.in_order(row["model"] for row in rows)
+    cells = [cell for cell in read_items(table, ComparedCell) if cell.metric == "mse"]
+    if not cells:
+        raise InputError(f"{table}: no compared cell")
+    signals = list(dict.fromkeys(cell.signal for cell in cells))
+    models = style.in_order(cell.model for cell in cells)
     figure = Figure(figsize=(5.0, 1.5 + 0.24 * len(signals)))
     axes = figure.subplots()
     axes.grid(visible=False)
@@ -49,30 +43,30 @@ def draw(*, table: Path) -> Figure:
     axes.tick_params(length=0)
 
     values = np.full((len(signals), len(models)), np.nan)
-    for row in rows:
-        if row["log10_ratio"]:
-            place = signals.index(row["signal"]), models.index(row["model"])
-            values[place] = float(row["log10_ratio"])
+    for cell in cells:
+        if cell.log10_ratio is not None:
+            place = signals.index(cell.signal), models.index(cell.model)
+            values[place] = cell.log10_ratio
     image = axes.pcolormesh(
         values, cmap=_MAP, norm=Normalize(-_LIMIT, _LIMIT), edgecolor="white"
     )
     axes.invert_yaxis()
-    for row in rows:
-        x, y = models.index(row["model"]), signals.index(row["signal"])
+    for cell in cells:
+        x, y = models.index(cell.model), signals.index(cell.signal)
         value = values[y, x]
         axes.text(
             x + 0.5,
             y + 0.5,
-            _number(value) if math.isfinite(value) else _word(row["status"]),
+            _number(value) if math.isfinite(value) else _word(cell.status),
             horizontalalignment="center",
             verticalalignment="center_baseline",
             color="white" if abs(value) > 0.6 * _LIMIT else style.BLACK,
             fontsize="small",
         )
-        if row["published_consistent"] != "yes":
-            axes.add_patch(_frame(x, y, row["published_consistent"]))
+        if cell.published_consistent != "yes":
+            axes.add_patch(_frame(x, y, cell.published_consistent))
     axes.set_xticks(np.arange(len(models)) + 0.5, [_two_lines(m) for m in models])
-    unseen = {row["signal"] for row in rows if row["half"] == "held-out"}
+    unseen = {cell.signal for cell in cells if cell.half == "held-out"}
     titles = [
         style.signal_title(s) + (f" {_HELD_OUT}" if s in unseen else "")
         for s in signals

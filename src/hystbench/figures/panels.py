@@ -9,15 +9,13 @@ from matplotlib.lines import Line2D
 
 from hystbench.figures import style
 from hystbench.figures.data import Output, thin
-from hystbench.record import Record
+from hystbench.record import FloatArray, Record
 
 
 def loop(axes: Axes, record: Record, output: Output, part: slice) -> None:
     """Draw output against input."""
     axes.plot(record.u[part], record.y[part], **style.BEHIND)
-    if len(output.y) < part.stop:
-        say_diverged(axes, record, output)
-    else:
+    if _reaches(axes, record, output, part):
         axes.plot(record.u[part], output.y[part], **style.look(output.run.model).line)
 
 
@@ -27,29 +25,33 @@ def in_time(
     """Draw both outputs over time; thinner lines (points) keep dense ones apart."""
     behind = {**style.BEHIND, "linewidth": width * style.BEHIND["linewidth"]}
     axes.plot(*thin(record.time[part], record.y[part]), **behind)
-    if len(output.y) < part.stop:
-        say_diverged(axes, record, output)
-    else:
+    if _reaches(axes, record, output, part):
         line = style.look(output.run.model).line
         axes.plot(*thin(record.time[part], output.y[part]), linewidth=width, **line)
 
 
 def error_in_time(axes: Axes, record: Record, output: Output, part: slice) -> None:
     """Draw the error, the record's output minus the model's, over time."""
-    if len(output.error) < part.stop:
-        say_diverged(axes, record, output)
-    else:
-        x, y = thin(record.time[part], output.error[part])
-        axes.plot(x, y, color=style.look(output.run.model).color, linewidth=0.6)
+    if _reaches(axes, record, output, part):
+        _error(axes, output, *thin(record.time[part], output.error[part]))
 
 
 def error_over_input(axes: Axes, record: Record, output: Output, part: slice) -> None:
     """Draw the error, the record's output minus the model's, over the input."""
-    if len(output.error) < part.stop:
+    if _reaches(axes, record, output, part):
+        _error(axes, output, record.u[part], output.error[part])
+
+
+def _error(axes: Axes, output: Output, x: FloatArray, y: FloatArray) -> None:
+    axes.plot(x, y, color=style.look(output.run.model).color, linewidth=0.6)
+
+
+def _reaches(axes: Axes, record: Record, output: Output, part: slice) -> bool:
+    """Tell whether a run reached the end of a part; where not, the panel says so."""
+    reached: bool = len(output.y) >= part.stop
+    if not reached:
         say_diverged(axes, record, output)
-    else:
-        color = style.look(output.run.model).color
-        axes.plot(record.u[part], output.error[part], color=color, linewidth=0.6)
+    return reached
 
 
 def say_diverged(axes: Axes, record: Record, output: Output) -> None:

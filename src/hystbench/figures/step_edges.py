@@ -7,7 +7,8 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hystbench.compare.edges import Edge, read_edges
+from hystbench.compare.edges import Edge
+from hystbench.compare.evidence import read_edges
 from hystbench.errors import InputError
 from hystbench.figures import style
 

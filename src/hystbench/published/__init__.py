@@ -30,6 +30,11 @@ class Interval:
     low: float
     high: float
 
+    @property
+    def middle(self) -> float:
+        """The number in its middle."""
+        return (self.low + self.high) / 2
+
     def meets(self, other: Interval) -> bool:
         """Tell whether the two share a point."""
         return self.low <= other.high and other.low <= self.high
@@ -84,9 +89,14 @@ class Pair:
         return Interval(mse.low**0.5 / re_.high, mse.high**0.5 / re_.low)
 
 
-def _read_csv(name: str) -> list[dict[str, str]]:
-    text = files(__package__).joinpath(name).read_text(encoding="utf-8")
-    return list(csv.DictReader(text.splitlines()))
+def read_text(name: str) -> str:
+    """Read a file of this package."""
+    return files(__package__).joinpath(name).read_text(encoding="utf-8")
+
+
+def read_csv(name: str) -> list[dict[str, str]]:
+    """Read the rows of a table of this package."""
+    return list(csv.DictReader(read_text(name).splitlines()))
 
 
 @cache
@@ -100,7 +110,7 @@ def load() -> tuple[Pair, ...]:
             mse=Printed(row["mse_um2"]),
             re=Printed(row["relative_error"]),
         )
-        for row in _read_csv("errors.csv")
+        for row in read_csv("errors.csv")
     )
 
 
@@ -118,7 +128,7 @@ def load_table4_gpo() -> tuple[Table4Row, ...]:
     """Read the GPO column of Table 4, which repeats Tables 1-3."""
     return tuple(
         Table4Row(row["label"], Printed(row["mse_um2"]), Printed(row["relative_error"]))
-        for row in _read_csv("table4_gpo.csv")
+        for row in read_csv("table4_gpo.csv")
     )
 
 
@@ -155,8 +165,7 @@ class Text:
 @cache
 def load_text() -> Text:
     """Read the numbers of the text."""
-    source = files(__package__).joinpath("text.yaml").read_text(encoding="utf-8")
-    content: dict[str, Any] = parse_yaml(source, "text.yaml")
+    content: dict[str, Any] = parse_yaml(read_text("text.yaml"), "text.yaml")
     chirp = content.pop("chirp")
     random = content.pop("random_sum")
     low, high = random["band_of_nyquist"]
@@ -181,9 +190,10 @@ def in_order(models: Iterable[str]) -> list[str]:
     return own + sorted(there.difference(own))
 
 
-def signals(pairs: tuple[Pair, ...]) -> tuple[str, ...]:
-    """List the signals in the order of the tables, each once."""
-    return tuple(dict.fromkeys(pair.signal for pair in pairs))
+def signals(pairs: Iterable[Pair], *tables: int) -> tuple[str, ...]:
+    """List the signals in the order of the tables, each once; of some tables or all."""
+    known = (p.signal for p in pairs if not tables or p.table in tables)
+    return tuple(dict.fromkeys(known))
 
 
 def sine_frequency(signal: str) -> float | None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import combinations
+from statistics import fmean
 from typing import Literal
 
 from hystbench.published import FILTERS, Interval, Pair, signals
@@ -79,7 +80,7 @@ class SignalCheck:
     @property
     def implied_rms(self) -> float:
         """RMS displacement (um) of the signal: the middle of what is left."""
-        return sum((each.low + each.high) / 2 for each in self.rms) / len(self.rms)
+        return fmean(each.middle for each in self.rms)
 
     def standing(self, model: str) -> Standing:
         """Tell whether a row agrees with the largest consistent set(s) of filters.

@@ -19,6 +19,7 @@ from hystbench.published import (
     load,
     load_table4_gpo,
     load_text,
+    read_text,
     sine_frequency,
 )
 from hystbench.published.equations import (
@@ -28,6 +29,7 @@ from hystbench.published.equations import (
     generalized_play_eq12,
 )
 from hystbench.record import FloatArray
+from hystbench.yaml_files import parse_yaml
 
 
 @dataclass(frozen=True)
@@ -241,12 +243,12 @@ def units_of_sums(pairs: tuple[Pair, ...], text: Text) -> Iterator[AuditRow]:
     """Compare displacement per input of the two sums with that of the sines."""
     rms = {p.signal: p.rms for p in pairs if p.model == "backlash"}
     gains = [
-        (pair.rms.low + pair.rms.high) / 2 / (text.amplitude_a / 2**0.5)
+        pair.rms.middle / (text.amplitude_a / 2**0.5)
         for pair in _sines(pairs, "backlash").values()
     ]
     for signal, lines in text.sums.items():
         amplitude = (sum(a**2 for a in lines.values()) / 2) ** 0.5
-        gain = (rms[signal].low + rms[signal].high) / 2 / amplitude
+        gain = rms[signal].middle / amplitude
         if gain > max(gains):
             yield AuditRow(
                 "unit",
@@ -258,57 +260,12 @@ def units_of_sums(pairs: tuple[Pair, ...], text: Text) -> Iterator[AuditRow]:
             )
 
 
-def wording() -> Iterator[AuditRow]:
+def wording(text: Text) -> Iterator[AuditRow]:
     """List what the words and the symbols of the paper leave wrong or open."""
-    length = load_text().filter_length
-    yield from (
-        AuditRow(
-            "equation",
-            "Eq. 13",
-            "the weights are written w_i(k-i), but Eq. 18 updates w(k) as one vector",
-            "w^T(k) H in the same equation asks for w_i(k)",
-        ),
-        AuditRow(
-            "equation",
-            "Eqs. 7-8",
-            "f takes v, but is given the largest gamma_r(v) or the smallest gamma_l(v)",
-            "f(v, w) of Eq. 4 applies the envelopes itself, so here they are applied "
-            "twice",
-        ),
-        AuditRow(
-            "equation",
-            "Algorithm 1, step 2, and Eq. 9",
-            "the number of GPOs is set to N, but Eq. 9 sums over i = 0 to N",
-            f"{length} against {length + 1} for N = {length}",
-        ),
-        AuditRow(
-            "text",
-            "Section 4, after Figure 7",
-            "a sentence on the number of weights breaks off: that of the other filters "
-            "'of the N-th-order was set at 30'",
-            f"order 30 has {length + 1} weights by Eq. 13 and the Volterra filter "
-            f"{length + 1 + (length + 1) ** 2} by N + 1 + (N + 1)^2; length 30 is "
-            f"order {length - 1}",
-        ),
-        AuditRow(
-            "text",
-            "Section 4, sensor",
-            "8 mV/um is called a resolution; its unit is that of a sensitivity",
-            "a resolution is a displacement, in um",
-        ),
-        AuditRow(
-            "missing",
-            "Section 4, RDGPI model",
-            "11 parameters are printed, but the equations that take them are not",
-            "the equations are in the paper's reference [32]",
-        ),
-        AuditRow(
-            "missing",
-            "Section 4",
-            "step sizes mu, length of the records and number of passes are not given",
-            "MSE and RE depend on all three",
-        ),
-    )
+    n = text.filter_length
+    numbers = {"n": n, "taps": n + 1, "volterra": n + 1 + (n + 1) ** 2, "less": n - 1}
+    for row in parse_yaml(read_text("wording.yaml"), "wording.yaml"):
+        yield AuditRow(**row | {"evidence": row["evidence"].format(**numbers)})
 
 
 def discrepancies() -> tuple[AuditRow, ...]:
@@ -323,5 +280,5 @@ def discrepancies() -> tuple[AuditRow, ...]:
         *chirp_rate(text),
         *envelopes(text),
         *units_of_sums(pairs, text),
-        *wording(),
+        *wording(text),
     )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from typing import Any, TypeVar
 
 from hystbench.report.picture import Link
 
+Item = TypeVar("Item")
 #: What a cell is sorted by.
 Key = float | str | None
 
@@ -146,3 +148,28 @@ def number(value: float | None, shown: str = "", mark: str = "") -> Cell:
     if math.isinf(value):
         return Cell(shown or "diverged", "Infinity", mark or "bad")
     return Cell(shown or f"{value:.4g}", value, mark)
+
+
+def table_of(
+    name: str,
+    caption: str,
+    items: Iterable[Item],
+    shown: Mapping[Column, Callable[[Item], Cell | str]],
+    **about: Any,
+) -> Table:
+    """Make a table with a row an item.
+
+    Parameters
+    ----------
+    name, caption : str
+    items : iterable
+    shown : mapping
+        Each column, and what it shows of an item: text or a cell.
+    **about
+        What else a :class:`Table` is told.
+    """
+    rows = [
+        [cell if isinstance(cell, Cell) else words(cell) for cell in cells]
+        for cells in ([show(item) for show in shown.values()] for item in items)
+    ]
+    return Table(name, caption, list(shown), [Body(rows)], **about)

@@ -9,13 +9,14 @@ a constant tap.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Mapping
-from itertools import combinations
+from collections.abc import Iterator, Mapping
 from statistics import geometric_mean
 from typing import Any
 
 from hystbench.compare.constants import Row
 from hystbench.compare.evidence import Cell
+from hystbench.compare.summary import pairs_in_order
+from hystbench.published import FILTERS
 from hystbench.twins.read import Twin
 from hystbench.twins.runs import (
     Settings,
@@ -70,41 +71,34 @@ def vary_constants(
             mse |= {cell: run.error("mse") for cell, run in runs.items()}
         first = {s: min(jobs, key=lambda model: mse[s, model]) for s in records}
         others = {s: model for s, model in first.items() if model != "gpo"}
+        pairs = [
+            pairs_in_order(
+                {cell: mse[cell] for cell in mse if cell[0] in half}, published
+            )
+            for half in halves
+        ]
         yield Row(
             twin=twin.name,
             family=twin.family,
-            zero_error=zero,
+            zero_error_mA=1e3 * zero,
             constant_tap=size,
-            configured=(zero, size) == (usual, tap),
-            signals=len(records),
+            configured="yes" if (zero, size) == (usual, tap) else "",
             gpo_first=len(records) - len(others),
-            not_first="; ".join(f"{s}: {model}" for s, model in others.items()),
-            pairs_calibrated=as_published(mse, published, halves[0]),
-            pairs_held_out=as_published(mse, published, halves[1]),
+            signals=len(records),
+            first_elsewhere="; ".join(f"{s}: {model}" for s, model in others.items()),
+            pairs_calibrated="{} of {}".format(*pairs[0]),
+            pairs_held_out="{} of {}".format(*pairs[1]),
             diverged=sum(map(math.isinf, mse.values())),
-            mean={m: _mean([mse[s, m] for s in records]) for m in jobs},
+            **{
+                f"mean_mse_{model}_um2": _mean([mse.get((s, model)) for s in records])
+                for model in FILTERS
+            },
         )
 
 
-def as_published(
-    mse: Errors, published: Errors, signals: Collection[str]
-) -> tuple[int, int]:
-    """Count pairs of filters under one of some signals in the paper's order, and all.
-
-    Pairs that the paper does not print are left out. A pair with the same MSE, as
-    where both diverged, has no order.
-    """
-    pairs = [
-        pair
-        for pair in combinations([cell for cell in mse if cell in published], 2)
-        if pair[0][0] == pair[1][0] and pair[0][0] in signals
-    ]
-    agree = [
-        mse[a] != mse[b] and (mse[a] < mse[b]) == (published[a] < published[b])
-        for a, b in pairs
-    ]
-    return sum(agree), len(pairs)
-
-
-def _mean(values: list[float]) -> float:
-    return math.inf if any(map(math.isinf, values)) else geometric_mean(values)
+def _mean(values: list[float | None]) -> float:
+    """Give the geometric mean to three digits; infinite where one is or has not run."""
+    known = [value for value in values if value is not None and math.isfinite(value)]
+    if len(known) < len(values):
+        return math.inf
+    return float(f"{geometric_mean(known):.3g}")

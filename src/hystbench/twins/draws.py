@@ -68,7 +68,7 @@ def run_draws(
             for model, own in filter_jobs(settings).items():
                 runs |= run_records(model, own, records, identified)
             found += [
-                Draw(sines, draw, model, run.error("mse"), run.error("re"), rms)
+                Draw(name, sines, draw, model, run.error("mse"), run.error("re"), rms)
                 for (_, model), run in runs.items()
             ]
     return found

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from hystbench.adaptive import make_filter, steps_of
+from hystbench.adaptive import make_filter, steps_of, with_steps
 from hystbench.compare.edges import Edge
 from hystbench.filters import AdaptiveFilter, run_many
 from hystbench.metrics import (
@@ -82,16 +82,14 @@ def sweep(
 def _run(
     adaptive: AdaptiveFilter, record: Record, steps: Sequence[float], job: Settings
 ) -> list[Point]:
-    own = adaptive.step_sizes.values()
+    usual = steps_of(adaptive)
     found: list[Point] = []
     for start in range(0, len(steps), BATCH):
         batch = steps[start : start + BATCH]
-        filters = []
-        for factor in batch:
-            scaled: dict[str, Any] = {
-                name: factor * getattr(adaptive, name) for name in own
-            }
-            filters.append(replace(adaptive, **scaled))
+        filters = [
+            with_steps(adaptive, {name: factor * mu for name, mu in usual.items()})
+            for factor in batch
+        ]
         results = run_many(((f, record.u, record.y) for f in filters), workers=1)
         for factor, result in zip(batch, results, strict=True):
             place = (record.name, adaptive.name, factor, factor * adaptive.step_size)

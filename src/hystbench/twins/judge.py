@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from hystbench.compare.claims import CLAIMS
 from hystbench.compare.claims.claim import Claim
 from hystbench.compare.claims.halves import holds
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.twins import CLAIM_COLUMNS, ERROR_COLUMNS
-from hystbench.files import write_csv
+from hystbench.compare.rows import names_of, or_empty, write_fields
+from hystbench.compare.twins import TwinClaim, TwinError
 from hystbench.twins.experiments import CONFIGURED
 from hystbench.twins.parts import Outcome
 
@@ -40,18 +39,23 @@ def write_twins(outcomes: Iterable[Outcome], errors: Path, claims: Path) -> None
     errors, claims : Path
         Files to write.
     """
-    error_rows: list[list[Any]] = []
-    claim_rows: list[list[Any]] = []
+    found: list[TwinError] = []
+    held: list[TwinClaim] = []
     judged: tuple[Claim, ...] = ()
     for each in outcomes:
-        about = [each.twin.name, each.twin.family]
+        twin, seed = (each.twin.name, each.twin.family), each.experiment.seed
         judged = judged or results_on_runs(each.evidence)
         if each.experiment is CONFIGURED:
-            for run in each.evidence.runs.values():
-                cell = [run.signal, run.model, run.mse, run.re, run.status]
-                error_rows.append([*about, *cell])
-        for claim in judged:
-            word = WORDS[holds(claim, each.evidence)]
-            claim_rows.append([*about, each.experiment.seed, claim.id, word])
-    write_csv(errors, ERROR_COLUMNS, error_rows)
-    write_csv(claims, CLAIM_COLUMNS, claim_rows)
+            found += [
+                TwinError(
+                    *(*twin, run.signal, run.model),
+                    *(run.error("mse"), run.error("re"), run.status),
+                )
+                for run in each.evidence.runs.values()
+            ]
+        held += [
+            TwinClaim(*twin, seed, claim.id, WORDS[holds(claim, each.evidence)])
+            for claim in judged
+        ]
+    write_fields(errors, names_of(TwinError), found, or_empty)
+    write_fields(claims, names_of(TwinClaim), held)

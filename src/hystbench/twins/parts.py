@@ -14,9 +14,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from hystbench.compare.evidence import ClaimEvidence, OrderPoint, Run, identification_of
+from hystbench.compare.evidence import ClaimEvidence, Run, identification_of
 from hystbench.errors import InputError, nearest
-from hystbench.order_errors import filters_by_order
+from hystbench.order_errors import OrderError, filters_by_order, order_errors
 from hystbench.record import Record
 from hystbench.twins.experiments import (
     CONFIGURED,
@@ -32,7 +32,6 @@ from hystbench.twins.runs import (
     filter_jobs,
     measure_twin,
     run_records,
-    sweep_orders,
 )
 
 Part = dict[str, dict[str, Any]]
@@ -95,7 +94,7 @@ def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
             "experiments": others,
             "order_sweep": [
                 [point.model, point.order, _finite(point.mse)]
-                for point in sweep_orders(swept, by_order)
+                for point in order_errors(swept, by_order)
             ],
         }
     return part
@@ -147,7 +146,7 @@ def join(
                 for given in each["runs"]
             },
             order_sweep=tuple(
-                OrderPoint(name, order, _infinite(mse))
+                OrderError(name, order, _infinite(mse))
                 for each in filters
                 for name, order, mse in each["order_sweep"]
             ),

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
 import numpy as np
 
 from hystbench.envelope import PUBLISHED_ENVELOPE, thresholds
 from hystbench.model import Model
 from hystbench.record import FloatArray
 from hystbench.twins.search import Unknown, Values
+from hystbench.yaml_files import parse_yaml
 
 ORDER = 30
 AMPLITUDE = 0.632  # A, section 4
@@ -75,59 +81,36 @@ def make_twin(values: Values) -> Model:
         By the names of :data:`UNKNOWNS`; step sizes, and the zero error and the noise
         of the recorded input, are no part of the model and are left aside.
     """
-    fitted = "Fitted to the published errors and implied RMS of eight signals"
-    sweep = f"{fitted}, held to the times of the chirp in the text."
-    lag = f"{fitted}; pole at {values['pole']:.4g} Hz, zero at {values['zero']:.4g} Hz."
-    content = {
-        "name": "gma",
-        "input": {"name": "current", "unit": "A"},
-        "output": {"name": "displacement", "unit": "um"},
-        "chain": [
-            {
-                "gpi": {
-                    "envelope": PUBLISHED_ENVELOPE.to_dict(),
-                    "thresholds": _rounded(
-                        thresholds(PUBLISHED_ENVELOPE, AMPLITUDE, ORDER)
-                    ),
-                    "weights": _rounded(
-                        weights(values["gain"], values["first"], values["decay"])
-                    ),
-                }
-            },
-            {"asymmetry": {"coefficient": _round(values["asymmetry"])}},
-            {
-                "transfer-function": {
-                    "numerator": [*_rounded([_lag(values["zero"])]), 1.0],
-                    "denominator": [*_rounded([_lag(values["pole"])]), 1.0],
-                }
-            },
-            {
-                "resonance": {
-                    "frequency_hz": _round(values["mode"]),
-                    "damping_ratio": _round(values["damping"]),
-                    "participation": _round(values["participation"]),
-                }
-            },
-            {"calibration-error": {"gain": 1.0, "offset": _round(values["offset"])}},
-            {"sensor-noise": {"rms": _round(values["noise"])}},
-        ],
-        "provenance": {
-            name: {"source": source, "note": note}
-            for name, source, note in (
-                ("gpi.envelope", "published", "Section 4, from a 1 Hz sine."),
-                ("gpi.thresholds", "derived", "Eq. 10 with N = 30 at 0.632 A."),
-                ("gpi.weights", "calibrated", f"{fitted}."),
-                ("asymmetry.coefficient", "calibrated", f"{fitted}."),
-                ("transfer-function.numerator", "calibrated", lag),
-                ("transfer-function.denominator", "calibrated", lag),
-                ("resonance.frequency_hz", "calibrated", sweep),
-                ("resonance.damping_ratio", "calibrated", sweep),
-                ("resonance.participation", "calibrated", sweep),
-                ("calibration-error.gain", "derived", "One: inside the weights."),
-                ("calibration-error.offset", "calibrated", f"{fitted}."),
-                ("sensor-noise.rms", "calibrated", f"{fitted}."),
-            )
-        },
+    operators = weights(values["gain"], values["first"], values["decay"])
+    twin = _unfilled().with_values(
+        {
+            "gpi.weights": _rounded(operators),
+            "asymmetry.coefficient": _round(values["asymmetry"]),
+            "transfer-function.numerator": [_round(_lag(values["zero"])), 1.0],
+            "transfer-function.denominator": [_round(_lag(values["pole"])), 1.0],
+            "resonance.frequency_hz": _round(values["mode"]),
+            "resonance.damping_ratio": _round(values["damping"]),
+            "resonance.participation": _round(values["participation"]),
+            "calibration-error.offset": _round(values["offset"]),
+            "sensor-noise.rms": _round(values["noise"]),
+        }
+    )
+    filled = {
+        key: replace(item, note=item.note.format(**values))
+        for key, item in twin.provenance.items()
+    }
+    return replace(twin, provenance=filled)
+
+
+@cache
+def _unfilled() -> Model:
+    text = files(__package__).joinpath("plant.yaml").read_text(encoding="utf-8")
+    steps = thresholds(PUBLISHED_ENVELOPE, AMPLITUDE, ORDER)
+    content: dict[str, Any] = parse_yaml(text, "plant.yaml")
+    content["chain"][0]["gpi"] = {
+        "envelope": PUBLISHED_ENVELOPE.to_dict(),
+        "thresholds": _rounded(steps),
+        "weights": [1.0] * len(steps),
     }
     return Model.from_mapping(content, "calibration")
 

@@ -6,16 +6,14 @@ takes longer, and imports more, is in :mod:`hystbench.twins.fits`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from hystbench.adaptive import make_filter, steps_of
-from hystbench.compare.evidence import Cell, OrderPoint, Run
+from hystbench.compare.evidence import Cell, Run
 from hystbench.filters import AdaptiveFilter, Result, run_many
 from hystbench.measurement import measure
 from hystbench.metrics import mean_square_error, relative_error
-from hystbench.order_errors import order_errors
 from hystbench.published import in_order
 from hystbench.record import Record
 from hystbench.signals import Signal, make_signal
@@ -104,31 +102,14 @@ def bare_run(record: Record, model: str, error: Any, **about: Any) -> Run:
     **about
         ``error_kind``, and what else is known.
     """
-    known: dict[str, Any] = {"order": None, "weight_count": None, "diverged": None}
     return Run(
         signal=record.name,
         model=model,
         origin=record.origin,
-        bound={},
+        unit=f"{record.output.unit}^2",
         mse=None if error is None else mean_square_error(error),
         re=None if error is None else relative_error(error, record.y),
-        mse_after_transient=None,
-        re_after_transient=None,
-        unit=f"{record.output.unit}^2",
-        largest_eigenvalue=None,
-        spread=None,
-        convergence_s=None,
-        **{"step_size": {}, **known, **about},
-    )
-
-
-def sweep_orders(
-    record: Record, filters: Iterable[AdaptiveFilter]
-) -> tuple[OrderPoint, ...]:
-    """Run filters of several orders on a record (Figure 7)."""
-    return tuple(
-        OrderPoint(each.model, each.order, math.inf if each.mse is None else each.mse)
-        for each in order_errors(record, filters)
+        **about,
     )
 
 

@@ -1,22 +1,13 @@
 """``hystbench job blind-make``: the cases of a chunk, as solvers get them."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
-import click
-
-from hystbench import options
 from hystbench.challenge.contest.chunk import WRITTEN, make_chunk
 from hystbench.challenge.contest.plan import chunks, plan
 from hystbench.files import whole_folder
+from hystbench.job import OutFolder, Settings, job
 
 
-@click.command()
-@options.settings
-@options.out_folder
-def blind_make(settings: dict[str, Any], out: Path) -> None:
+@job
+def blind_make(*, settings: Settings, out: OutFolder) -> None:
     """Write a folder a case; no truth is written anywhere."""
     entries = chunks(plan(**settings["plan"]), settings["size"])
     with whole_folder(out, WRITTEN) as fresh:

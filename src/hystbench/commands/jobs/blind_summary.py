@@ -1,31 +1,21 @@
 """``hystbench job blind-summary``: the score of a solver, and its rivals'."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
-import click
-
-from hystbench import options
 from hystbench.challenge.contest.frames import read_rows
 from hystbench.challenge.contest.plan import DEVELOPMENT_SEEDS, RETIRED_SEEDS, plan
 from hystbench.challenge.contest.writing import WRITTEN, write_score
 from hystbench.files import whole_folder
+from hystbench.job import In, OutFolder, Settings, job
 
 
-@click.command()
-@click.argument("judged", type=options.FILE, nargs=-1, required=True)
-@click.option("--transfer", type=options.FILE, multiple=True, help="Judged elsewhere.")
-@options.settings
-@options.out_folder
+@job
 def blind_summary(
-    judged: tuple[Path, ...],
-    transfer: tuple[Path, ...],
-    settings: dict[str, Any],
-    out: Path,
+    judged: tuple[In, ...],
+    *,
+    transfer: tuple[In, ...] = (),
+    settings: Settings,
+    out: OutFolder,
 ) -> None:
-    """Sum up the JUDGED chunks of a set."""
+    """Sum up the JUDGED chunks of a set, beside those of the TRANSFER set."""
     held = settings["plan"]
     seeds = [entry.spec.seed for entry in plan(**held)]
     about = {
@@ -43,12 +33,8 @@ def blind_summary(
             )
         },
     }
+    solver, skipped = settings["solver"], settings["skipped"]
     with whole_folder(out, WRITTEN) as fresh:
         write_score(
-            read_rows(judged),
-            read_rows(transfer),
-            settings["solver"],
-            about,
-            settings["skipped"],
-            fresh,
+            read_rows(judged), read_rows(transfer), solver, about, skipped, fresh
         )

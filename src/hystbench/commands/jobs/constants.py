@@ -1,29 +1,20 @@
 """``hystbench job constants``: the ranking with other constants."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
-import click
-
-from hystbench import options
-from hystbench.compare.constants import write_constants
+from hystbench.compare.constants import Row
+from hystbench.compare.rows import four_digits, names_of, write_fields
+from hystbench.job import In, Json, Out, Settings, job
 from hystbench.published import load
 from hystbench.twins.constants import vary_constants
 from hystbench.twins.read import read_twins
 
 
-@click.command()
-@click.argument("twins", type=options.FILE, nargs=-1, required=True)
-@options.identified
-@options.settings
-@options.out
+@job
 def constants(
-    twins: tuple[Path, ...],
-    identified: dict[str, Any] | None,
-    settings: dict[str, Any],
-    out: Path,
+    twins: tuple[In, ...],
+    *,
+    identified: Json | None = None,
+    settings: Settings,
+    out: Out,
 ) -> None:
     """Rank the filters on TWINS with other zero errors and with a constant tap."""
     published = {(p.signal, p.model): p.mse.value for p in load()}
@@ -32,4 +23,4 @@ def constants(
         for twin in read_twins(twins)
         for row in vary_constants(twin, settings, identified, published)
     ]
-    write_constants(rows, out)
+    write_fields(out, names_of(Row), rows, four_digits)

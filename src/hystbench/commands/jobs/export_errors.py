@@ -1,18 +1,11 @@
 """``hystbench job export-errors``: how far exported code is from the simulation."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
-import click
-
-from hystbench import options
 from hystbench.files import write_csv
+from hystbench.job import Out, job
 
 
-@click.command()
-@options.out
-def export_errors(out: Path) -> None:
+@job
+def export_errors(*, out: Out) -> None:
     """Measure exported code on typical cases, as a table (CSV).
 
     Rms errors as shares of the output's rms, by the options of hystbench export.

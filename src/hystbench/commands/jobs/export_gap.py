@@ -1,30 +1,16 @@
 """``hystbench job export-gap``: models of the gap as code, beside their simulation."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
-import click
-
-from hystbench import options
 from hystbench.dataset import load_dataset
 from hystbench.files import write_csv
+from hystbench.job import DatasetFile, In, Out, job
 from hystbench.model import load_model
 
 
-@click.command()
-@click.option(
-    "--case",
-    "cases",
-    type=(options.DATASET, options.FILE),
-    multiple=True,
-    required=True,
-    help="A dataset, and the model file that 'hystbench gap' wrote for it.",
-)
-@options.out
-def export_gap(cases: tuple[tuple[Path, Path], ...], out: Path) -> None:
+@job
+def export_gap(*, cases: tuple[tuple[DatasetFile, In], ...], out: Out) -> None:
     """Export each model and feed it the dataset's hold-out records, as a table (CSV).
 
+    A case is a dataset, and the model file that 'hystbench gap' wrote for it.
     Differences from the simulation are shares of the range of the simulated output.
     """
     from hystbench.export.compared import COLUMNS, row  # late: it runs

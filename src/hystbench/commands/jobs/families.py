@@ -1,14 +1,9 @@
 """``hystbench job families``: twins with other hysteresis than the twin's own."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
 import click
 
-from hystbench import options
 from hystbench.files import whole_folder, write_json
+from hystbench.job import In, OutFolder, Settings, job
 from hystbench.model import load_model
 from hystbench.signals import load_signal
 from hystbench.twins.families import FAMILIES, FamilyTask
@@ -16,26 +11,23 @@ from hystbench.twins.family_fit import fit_family, judge
 from hystbench.twins.targets import targets
 
 
-@click.command()
-@click.argument("signals", type=options.FILE, nargs=-1, required=True)
-@click.option("--model", type=options.FILE, required=True, help="The twin (YAML).")
-@click.option("--loop", type=options.FILE, required=True, help="The slow signal.")
-@options.settings
-@options.out_folder
+@job
 def families(
-    signals: tuple[Path, ...],
-    model: Path,
-    loop: Path,
-    settings: dict[str, Any],
-    out: Path,
+    signals: tuple[In, ...],
+    *,
+    model: In,
+    loop: In,
+    settings: Settings,
+    out: OutFolder,
 ) -> None:
     """Fit Preisach and Jiles-Atherton twins to the MODEL's loop and published RMS.
 
     SIGNALS are calibration signals; the tables' implied RMS displacement of each is a
-    target. Writes a model file a family, and ``families.json``: the relative error of
-    the loop and the errors of the RMS, the first twin's own beside them.
+    target. LOOP is the slow signal. Writes a model file a family, and
+    ``families.json``: the relative error of the loop and the errors of the RMS, the
+    first twin's own beside them.
     """
-    excitations = tuple(load_signal(path) for path in signals)
+    excitations = tuple(map(load_signal, signals))
     wanted = targets(signal.name for signal in excitations)
     task = FamilyTask(
         load_model(model),

@@ -1,39 +1,31 @@
 """``hystbench job figure``: draw one figure from files of results."""
 
-from __future__ import annotations
-
 import inspect
-from pathlib import Path
 from typing import Any
 
-import click
-
-from hystbench import options
 from hystbench.errors import InputError
 from hystbench.figures import drawer
+from hystbench.job import In, Out, job
 
 
-@click.command()
-@click.argument("name")
-@click.option("--record", "records", multiple=True, type=options.FILE, help="Record.")
-@click.option(
-    "--run", "runs", multiple=True, type=options.FILE, help="Run, its arrays beside it."
-)
-@click.option("--table", type=options.FILE, help="Table (CSV).")
-@options.identified_file
-@click.option(
-    "--out",
-    "outs",
-    multiple=True,
-    required=True,
-    type=options.NEW_FILE,
-    help="PNG or SVG file to write; once for each.",
-)
-def figure(name: str, outs: tuple[Path, ...], **given: Any) -> None:
-    """Draw the figure NAME and write it to every --out."""
+@job
+def figure(
+    name: str,
+    *,
+    records: tuple[In, ...] = (),
+    runs: tuple[In, ...] = (),
+    table: In | None = None,
+    identified: In | None = None,
+    outs: tuple[Out, ...],
+) -> None:
+    """Draw the figure NAME and write it to every --out, a PNG or SVG file.
+
+    The arrays of a run lie beside it.
+    """
     draw = drawer(name)
     from hystbench.figures import style
 
+    given = {"records": records, "runs": runs, "table": table, "identified": identified}
     with style.in_style():
         drawn = draw(**_inputs(name, inspect.signature(draw), given))
         for out in outs:

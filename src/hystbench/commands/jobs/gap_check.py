@@ -1,9 +1,5 @@
 """``hystbench job gap-check``: whether all records can be used, before a search."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import click
 
 from hystbench import options
@@ -12,17 +8,15 @@ from hystbench.gap.bases.kinds import IDENTIFIED, check_base
 from hystbench.gap.bases.load import given_base
 from hystbench.gap.fitting.start import run_base
 from hystbench.gap.records.evidence import load_evidence
+from hystbench.job import DatasetFile, Out, job
 
 
-@click.command()
-@click.argument("dataset", type=options.DATASET)
-@click.option("--model", required=True, help="As for hystbench gap.")
-@click.option("--out", type=options.NEW_FILE, help="Empty file to write.")
+@job
 @options.kept_calls
-def gap_check(dataset: Path, model: str, out: Path | None = None) -> None:
+def gap_check(dataset: DatasetFile, *, model: str, out: Out | None = None) -> None:
     """Check all records of DATASET, those held out too, and the base MODEL on them.
 
-    A base that is to be identified is not checked.
+    A base that is to be identified is not checked. OUT is an empty file.
     """
     check_base(model)
     evidence = load_evidence(dataset)

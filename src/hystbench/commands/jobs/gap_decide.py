@@ -1,7 +1,5 @@
 """``hystbench job gap-decide``: what to name, from the fit records alone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click
@@ -11,19 +9,18 @@ from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import check_units, load_evidence
 from hystbench.gap.run import decide_in, write_next_experiment
 from hystbench.gap.vocabulary import Vocabulary
+from hystbench.job import DatasetFile, OutFolder, job
 
 
-@click.command()
-@click.argument("dataset", type=options.DATASET)
-@click.option("--model", required=True, help="As for hystbench gap.")
+@job
 @options.write_experiment
 @options.vocabulary
 @options.limits
 @options.unnamed_share
-@options.out_folder
 @options.kept_calls
 def gap_decide(
-    dataset: Path,
+    dataset: DatasetFile,
+    *,
     model: str,
     without: tuple[str, ...],
     with_: tuple[str, ...],
@@ -32,7 +29,7 @@ def gap_decide(
     limit_high: float | None,
     limit_rate: float | None,
     unnamed_share: float,
-    out: Path,
+    out: OutFolder,
 ) -> None:
     """Decide what MODEL lacks beside the fit records of DATASET; opens no other.
 

@@ -1,24 +1,16 @@
 """``hystbench job gap-show``: read the hold-out records, once, and write gap.json."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
-import click
-
 from hystbench import options
 from hystbench.gap.bases.load import checked_base
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import show_in
+from hystbench.job import DatasetFile, In, OutFolder, job
 from hystbench.model import load_model
 
 
-@click.command()
-@click.argument("dataset", type=options.DATASET)
-@click.option("--base", type=options.FILE, required=True, help="Model file.")
-@options.out_folder
+@job
 @options.kept_calls
-def gap_show(dataset: Path, base: Path, out: Path) -> None:
+def gap_show(dataset: DatasetFile, *, base: In, out: OutFolder) -> None:
     """Show on the hold-out records of DATASET how far the gap shrinks.
 
     Reads what hystbench job gap-decide wrote to OUT; writes gap.json, model.yaml and

@@ -1,13 +1,5 @@
 """``hystbench job gap-summary``: the verdicts on several datasets as tables."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
-import click
-
-from hystbench import options
-from hystbench.files import read_json
 from hystbench.gap.report.tables import (
     write_adds,
     write_effects,
@@ -15,43 +7,28 @@ from hystbench.gap.report.tables import (
     write_sentences,
     write_summary,
 )
+from hystbench.job import In, Json, Out, job
 from hystbench.model import load_model
 
 
-@click.command()
-@click.argument("gaps", nargs=-1, type=options.FILE)
-@click.option(
-    "--effects", type=options.NEW_FILE, required=True, help="Table of what was named."
-)
-@click.option(
-    "--records",
-    type=options.NEW_FILE,
-    required=True,
-    help="Table of the hold-out records.",
-)
-@click.option(
-    "--sentences",
-    type=options.NEW_FILE,
-    required=True,
-    help="Table of the verdicts in a sentence.",
-)
-@click.option("--twin", type=options.FILE, help="Model file of the twin.")
-@click.option("--adds", type=options.NEW_FILE, help="Table of what it adds.")
-@options.out
+@job
 def gap_summary(
-    gaps: tuple[Path, ...],
-    effects: Path,
-    records: Path,
-    sentences: Path,
-    twin: Path | None,
-    adds: Path | None,
-    out: Path,
+    gaps: tuple[Json, ...] = (),
+    *,
+    effects: Out,
+    records: Out,
+    sentences: Out,
+    twin: In | None = None,
+    adds: Out | None = None,
+    out: Out,
 ) -> None:
-    """Write tables of GAPS, gap.json files: datasets, parameters, records, words."""
-    contents = [read_json(path) for path in gaps]
-    write_effects(contents, effects)
-    write_records(contents, records)
-    write_sentences(contents, sentences)
-    write_summary(contents, out)
+    """Write tables of GAPS, gap.json files: datasets, parameters, records, words.
+
+    ADDS is a table of what the TWIN, a model file, adds to its hysteresis.
+    """
+    write_effects(gaps, effects)
+    write_records(gaps, records)
+    write_sentences(gaps, sentences)
+    write_summary(gaps, out)
     if twin is not None and adds is not None:
         write_adds(load_model(twin), adds)

@@ -1,40 +1,23 @@
 """``hystbench job gap-twin``: the worked example's records and base."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
-import click
-
-from hystbench import options
-from hystbench.files import read_json, whole_folder
+from hystbench.files import whole_folder
 from hystbench.gap.example import WRITTEN, write_example
+from hystbench.job import In, Json, OutFolder, job
 from hystbench.record import load_record
 
 
-@click.command()
-@click.option("--fit", multiple=True, required=True, type=options.FILE, help="Record.")
-@click.option(
-    "--hold-out", multiple=True, required=True, type=options.FILE, help="Record."
-)
-@click.option(
-    "--identified",
-    type=options.FILE,
-    required=True,
-    help="What Algorithm 1 found (JSON).",
-)
-@options.out_folder
+@job
 def gap_twin(
-    fit: tuple[Path, ...], hold_out: tuple[Path, ...], identified: Path, out: Path
+    *,
+    fit: tuple[In, ...],
+    hold_out: tuple[In, ...],
+    identified: Json,
+    out: OutFolder,
 ) -> None:
     """Write records as a dataset and the identified model as the base beside them.
 
     Writes OUT/dataset/ and OUT/base.yaml.
     """
+    fitted, held = ([*map(load_record, paths)] for paths in (fit, hold_out))
     with whole_folder(out, WRITTEN) as fresh:
-        write_example(
-            [load_record(path) for path in fit],
-            [load_record(path) for path in hold_out],
-            read_json(identified),
-            fresh,
-        )
+        write_example(fitted, held, identified, fresh)

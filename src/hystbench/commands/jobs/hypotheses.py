@@ -1,28 +1,16 @@
 """``hystbench job hypotheses``: what could explain the errors that stay far off."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
-from typing import Any
 
-import click
-
-from hystbench import options
 from hystbench.files import write_csv
+from hystbench.job import In, Out, Settings, job
 from hystbench.published import FILTERS, load
 from hystbench.twins.hypotheses import CHIRP, FAST, chirp_rows, volterra_rows
 from hystbench.twins.read import read_twins
 
 
-@click.command()
-@click.argument("twin", type=options.FILE)
-@options.settings
-@click.option("--chirp", type=options.NEW_FILE, required=True, help="CSV to write.")
-@click.option("--volterra", type=options.NEW_FILE, required=True, help="CSV to write.")
-def hypotheses(
-    twin: Path, settings: dict[str, Any], chirp: Path, volterra: Path
-) -> None:
+@job
+def hypotheses(twin: In, *, settings: Settings, chirp: Out, volterra: Out) -> None:
     """Run the filters on TWIN with one thing changed at a time; nothing is fitted."""
     (read,) = read_twins([twin])
     printed = {(p.signal, p.model): p.mse.text for p in load()}

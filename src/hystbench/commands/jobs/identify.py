@@ -1,23 +1,15 @@
 """``hystbench job identify``: Algorithm 1 on a slow record."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
 import click
 
-from hystbench import options
 from hystbench.files import write_json
+from hystbench.job import In, Out, Settings, job
 from hystbench.record import load_record
 from hystbench.slow_loop import identify_slow_loop
 
 
-@click.command()
-@click.argument("record", type=options.FILE)
-@options.settings
-@options.out
-def identify(record: Path, settings: dict[str, Any], out: Path) -> None:
+@job
+def identify(record: In, *, settings: Settings, out: Out) -> None:
     """Identify envelope functions, thresholds and weights on the slow RECORD."""
     slow = load_record(record)
     found = identify_slow_loop(slow, settings, _tell)

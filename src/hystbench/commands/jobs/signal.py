@@ -1,20 +1,10 @@
 """``hystbench job signal``: make an excitation signal."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
-import click
-
-from hystbench import options
+from hystbench.job import Out, Settings, job
 from hystbench.signals import make_signal
 
 
-@click.command()
-@click.argument("name")
-@options.settings
-@options.out
-def signal(name: str, settings: dict[str, Any], out: Path) -> None:
+@job
+def signal(name: str, *, settings: Settings, out: Out) -> None:
     """Make the signal NAME from its definition in the settings."""
     make_signal(name, settings["definition"], settings["common"]).save(out)

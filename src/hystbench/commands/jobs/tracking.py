@@ -1,19 +1,14 @@
 """``hystbench job tracking``: follow references with and without the inverse."""
 
-from __future__ import annotations
-
-from pathlib import Path
 from typing import Any
 
-import click
 import numpy as np
 
-from hystbench import options
 from hystbench.blocks.rdgpi import RateDependentPrandtlIshlinskii
 from hystbench.blocks.step import Sampling
 from hystbench.export import python
 from hystbench.export.inverse import describe_inverse
-from hystbench.files import read_json, whole_folder, write_csv, write_text
+from hystbench.files import whole_folder, write_columns, write_csv, write_text
 from hystbench.inverse.told import left, table, verdict
 from hystbench.inverse.tracking import (
     CODE,
@@ -31,6 +26,7 @@ from hystbench.inverse.tracking import (
     references,
     track,
 )
+from hystbench.job import In, Json, OutFolder, Settings, job
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray
 from hystbench.signals import load_signal
@@ -42,40 +38,25 @@ ROOM = 2.0
 WRITTEN = ("tracking.csv", "raster.csv", "tracking.md", "verdict.md")
 
 
-@click.command()
-@click.argument("signals", type=options.FILE, nargs=-1, required=True)
-@click.option("--plant", type=options.FILE, required=True, help="The twin (YAML).")
-@click.option("--base", type=options.FILE, required=True, help="Its slow loop's model.")
-@click.option(
-    "--slow", type=options.FILE, required=True, help="Signal of the linear gain."
-)
-@click.option(
-    "--augmented", type=options.FILE, required=True, help="The model with the effects."
-)
-@click.option(
-    "--rate-dependent",
-    type=options.FILE,
-    required=True,
-    help="The RDGPI model as identified from the twin's records (JSON).",
-)
-@options.settings
-@options.out_folder
+@job
 def tracking(
-    signals: tuple[Path, ...],
-    plant: Path,
-    base: Path,
-    slow: Path,
-    augmented: Path,
-    rate_dependent: Path,
-    settings: dict[str, Any],
-    out: Path,
+    signals: tuple[In, ...],
+    *,
+    plant: In,
+    base: In,
+    slow: In,
+    augmented: In,
+    rate_dependent: Json,
+    settings: Settings,
+    out: OutFolder,
 ) -> None:
     """Drive the twin open loop with inputs for references of the SIGNALS' forms.
 
     Each reference is followed with a linear gain, with the inverse of the slow loop's
     model, with that of the rate-dependent Prandtl-Ishlinskii model, with that of the
     augmented model, also as code that is fed sample by sample, and with that of the
-    twin itself.
+    twin itself, the PLANT. BASE is the model of the slow loop, RATE-DEPENDENT what was
+    identified from the twin's records; the linear gain is that of the SLOW signal.
     """
     given = [load_signal(path) for path in signals]
     twin, of_loop = load_model(plant), load_model(base)
@@ -98,15 +79,14 @@ def tracking(
         cells = [_cells(row, twin.output.unit) for row in rows]
         values = (list(each.values()) for each in cells)
         write_csv(fresh / "tracking.csv", list(cells[0]), values)
-        scan = _part(rows, wanted[-1])
-        write_csv(fresh / "raster.csv", list(scan), _lines(scan))
+        write_columns(fresh / "raster.csv", _part(rows, wanted[-1]), 9)
         write_text(fresh / "tracking.md", table(rows, twin.output.unit))
         write_text(fresh / "verdict.md", verdict(rows) + left(rows, of_field))
 
 
-def _rdgpi(identified: Path, twin: Model) -> Model:
+def _rdgpi(identified: dict[str, Any], twin: Model) -> Model:
     """Give the identified RDGPI model: what the field inverts for such actuators."""
-    numbers = read_json(identified)["parameters"]
+    numbers = identified["parameters"]
     chain = (RateDependentPrandtlIshlinskii.from_mapping(numbers),)
     return Model("rdgpi", twin.input, twin.output, chain)
 
@@ -133,11 +113,6 @@ def _cells(row: Tracked, unit: str) -> dict[str, str]:
         "largest_percent": f"{100 * row.largest:.3g}",
         "largest_input": f"{np.abs(row.u).max():.4g}",
     }
-
-
-def _lines(columns: dict[str, FloatArray]) -> list[list[str]]:
-    together = zip(*columns.values(), strict=True)
-    return [[f"{value:.9g}" for value in line] for line in together]
 
 
 def _part(rows: list[Tracked], reference: Reference) -> dict[str, FloatArray]:

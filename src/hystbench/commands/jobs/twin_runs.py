@@ -1,25 +1,14 @@
 """``hystbench job twin-runs``: one filter on several twins."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
-import click
-
-from hystbench import options
-from hystbench.files import read_json, write_json
+from hystbench.files import write_json
+from hystbench.job import In, Json, Out, Settings, job
 from hystbench.twins.parts import run
 from hystbench.twins.read import read_twins
 
 
-@click.command()
-@click.argument("twins", type=options.FILE, nargs=-1, required=True)
-@click.option("--fits", type=options.FILE, required=True, help="Of twin-fits.")
-@options.settings
-@options.out
+@job
 def twin_runs(
-    twins: tuple[Path, ...], fits: Path, settings: dict[str, Any], out: Path
+    twins: tuple[In, ...], *, fits: Json, settings: Settings, out: Out
 ) -> None:
-    """Run one filter on TWINS as configured."""
-    write_json(out, run(read_twins(twins), settings, read_json(fits)))
+    """Run one filter on TWINS as configured, with what twin-fits found."""
+    write_json(out, run(read_twins(twins), settings, fits))

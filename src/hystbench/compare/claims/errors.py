@@ -10,7 +10,15 @@ from hystbench.compare.cells import twin_runs
 from hystbench.compare.claims.claim import NotTestable, Numbers, need_runs, number
 from hystbench.compare.claims.statistics import rank_correlation
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.published import FILTERS, METRICS, MODELS, Metric, Pair, sine_frequency
+from hystbench.published import (
+    FILTERS,
+    METRICS,
+    MODELS,
+    Metric,
+    Pair,
+    signals,
+    sine_frequency,
+)
 
 TABLES = {"sines": (1,), "chirp": (2,), "sums": (3,), "all": (1, 2, 3)}
 """Tables of the paper that hold a sort of signals."""
@@ -45,10 +53,9 @@ class Errors:
             raise NotTestable("none of the signals that it is about is asked for")
         need_runs(cells, {(signal, model) for signal, model, _ in self.values})
 
-    def signals(self, *tables: int) -> list[str]:
+    def signals(self, *tables: int) -> tuple[str, ...]:
         """List the signals of tables of the paper."""
-        found = [p.signal for n in tables for p in self.published if p.table == n]
-        return list(dict.fromkeys(found))
+        return signals(self.published, *tables)
 
     @property
     def sines(self) -> dict[str, float]:

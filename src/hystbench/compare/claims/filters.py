@@ -8,7 +8,8 @@ from statistics import median
 
 from hystbench.compare.claims.claim import NotTestable, Numbers, lms_runs
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import ClaimEvidence, OrderPoint
+from hystbench.compare.evidence import ClaimEvidence
+from hystbench.order_errors import OrderError
 from hystbench.published import FILTERS
 
 ONE_STEP_SIZE = ("gpo", "backlash", "delayed")
@@ -140,7 +141,7 @@ def _under_each_rule(
     return {"worst": max(worst for worst, _ in found.values()), "told": told}
 
 
-def _curves(points: Sequence[OrderPoint], knee: int) -> Curves:
+def _curves(points: Sequence[OrderError], knee: int) -> Curves:
     """Sort a sweep by order; each filter needs orders on both sides of the knee."""
     found: dict[str, list[tuple[int, float]]] = {}
     for point in sorted(points, key=lambda p: p.order):

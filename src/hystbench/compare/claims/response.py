@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from hystbench.compare.claims.claim import NotTestable, Numbers
@@ -18,7 +20,7 @@ from hystbench.record import FloatArray, Record
 RANDOM = "multisine-random-0-100hz"
 
 
-def records(evidence: ClaimEvidence, names: list[str]) -> list[Record]:
+def records(evidence: ClaimEvidence, names: Iterable[str]) -> list[Record]:
     """Give the twin's records of these signals.
 
     Raises
@@ -26,6 +28,7 @@ def records(evidence: ClaimEvidence, names: list[str]) -> list[Record]:
     NotTestable
         If one is missing, or none is asked for.
     """
+    names = list(names)
     if not names:
         raise NotTestable("none of the signals that it is about is asked for")
     for name in names:
@@ -42,14 +45,9 @@ def sine_records(evidence: ClaimEvidence) -> list[Record]:
     return records(evidence, found)
 
 
-def _table(evidence: ClaimEvidence, number: int) -> list[str]:
-    found = [pair.signal for pair in evidence.published if pair.table == number]
-    return list(dict.fromkeys(found))
-
-
 def chirp_record(evidence: ClaimEvidence) -> Record:
     """Give the record of the chirp; raises as :func:`records`."""
-    return records(evidence, _table(evidence, 2))[0]
+    return records(evidence, signals(evidence.published, 2))[0]
 
 
 def settled(x: FloatArray) -> FloatArray:
@@ -162,7 +160,7 @@ def turns_under_sums(evidence: ClaimEvidence) -> Numbers:
     """Count the turns of input and output of the sums inside their range."""
     counts = {
         r.name: (minor_turning_points(settled(r.u)), minor_turning_points(settled(r.y)))
-        for r in records(evidence, _table(evidence, 3))
+        for r in records(evidence, signals(evidence.published, 3))
     }
     told = "; ".join(f"{u} and {y} on {name}" for name, (u, y) in counts.items())
     return {"fewest": min(map(min, counts.values())), "told": told}
@@ -173,7 +171,7 @@ def sizes_over_frequency(evidence: ClaimEvidence, of: str = "twin") -> Numbers:
     if of == "published":
         name = "implied RMS displacement"
         sizes = {
-            frequency: (pair.rms.low + pair.rms.high) / 2
+            frequency: pair.rms.middle
             for pair in evidence.published
             if pair.model == "backlash"
             and (frequency := sine_frequency(pair.signal)) is not None

@@ -3,30 +3,22 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from operator import itemgetter
 
 from markupsafe import Markup
 
 from hystbench.report.markup import inline
 from hystbench.report.picture import Link
 from hystbench.report.reproduction.read import Row
-from hystbench.report.table import Body, Cell, Column, Table, number, words
+from hystbench.report.table import Body, Cell, Column, Table, number, table_of, words
 
 #: How a verdict looks; one that is not listed looks as text.
 _SIGNS = {"reproduced": ("✓", "good"), "not reproduced": ("✗", "bad")}
 #: Columns of claims.csv that have a place in the table; others stand behind them.
 _PLACED = {
-    "id",
-    "claim",
-    "where",
-    "kind",
-    "basis",
-    "reading",
-    "verdict",
-    "holds_on",
-    "evidence",
-    "published_bears_out",
-    "published_evidence",
+    *("id", "claim", "where", "kind", "basis", "reading", "verdict", "holds_on"),
+    *("evidence", "published_bears_out", "published_evidence"),
 }
 #: Held-out evidence leads; an empty basis is that of theory and notation.
 BASES = ("held-out", "fitted", "constrained", "built-in", "")
@@ -59,35 +51,23 @@ def counts_table(claims: Sequence[Row]) -> Table:
 
 def claims_table(claims: Sequence[Row], caption: str, file: Link) -> Table:
     """Show every claim with its verdict and the evidence for it."""
-    more = [key for key in (claims[0] if claims else {}) if key not in _PLACED]
-    columns = [
-        Column("verdict"),
-        Column("basis"),
-        Column("kind"),
-        Column("claim of the paper"),
-        Column("evidence"),
-        Column("the paper's own numbers"),
-        Column("holds on twins"),
-        *(Column(key.replace("_", " ")) for key in more),
-    ]
-    rows = [
-        [
-            _verdict(row["verdict"]),
-            words(row["basis"] or "none"),
-            words(row["kind"]),
-            _claim(row),
-            words(row["evidence"]),
-            words(_borne_out(row)),
-            words(row.get("holds_on", "")),
-            *(words(row[key]) for key in more),
-        ]
-        for row in _in_order(claims)
-    ]
-    return Table(
+    shown: dict[Column, Callable[[Row], Cell | str]] = {
+        Column("verdict"): lambda row: _verdict(row["verdict"]),
+        Column("basis"): lambda row: row["basis"] or "none",
+        Column("kind"): itemgetter("kind"),
+        Column("claim of the paper"): _claim,
+        Column("evidence"): itemgetter("evidence"),
+        Column("the paper's own numbers"): _borne_out,
+        Column("holds on twins"): lambda row: row.get("holds_on", ""),
+    }
+    for key in claims[0] if claims else ():
+        if key not in _PLACED:
+            shown[Column(key.replace("_", " "))] = itemgetter(key)
+    return table_of(
         "claims",
         inline(caption),
-        columns,
-        [Body(rows)],
+        _in_order(claims),
+        shown,
         files=(file,),
         filtered=("verdict", "basis", "kind"),
         cards=True,
@@ -125,23 +105,19 @@ def _borne_out(row: Row) -> str:
 
 def audit_table(audit: Sequence[Row], caption: str, file: Link) -> Table:
     """Show where the paper's own numbers contradict each other, conflicts first."""
-    columns = [Column("kind"), Column("where"), Column("statement"), Column("evidence")]
-    listed = sorted(audit, key=lambda row: row["kind"] != "conflict")
-    rows = [
-        [
-            words(row["kind"], "bad" if row["kind"] == "conflict" else ""),
-            words(row["where"]),
-            words(row["statement"]),
-            words(row["evidence"]),
-        ]
-        for row in listed
-    ]
-    return Table(
+    shown: dict[Column, Callable[[Row], Cell | str]] = {
+        Column(key): itemgetter(key) for key in ("where", "statement", "evidence")
+    }
+    return table_of(
         "audit",
         inline(caption),
-        columns,
-        [Body(rows)],
+        sorted(audit, key=lambda row: row["kind"] != "conflict"),
+        {Column("kind"): _kind, **shown},
         files=(file,),
         filtered=("kind",),
         cards=True,
     )
+
+
+def _kind(row: Row) -> Cell:
+    return words(row["kind"], "bad" if row["kind"] == "conflict" else "")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import FACTOR, nearness
@@ -13,9 +13,8 @@ from hystbench.published import FILTERS, METRICS, MODELS, in_order
 from hystbench.report.markup import inline
 from hystbench.report.picture import Link
 from hystbench.report.reproduction.read import Row, Shown
-from hystbench.report.table import Body, Cell, Column, Table, number, words
+from hystbench.report.table import Body, Cell, Column, Table, number, table_of, words
 
-HALVES = ("held-out", "calibrated")
 #: What a half is called in a table.
 HALF_WORDS = {"held-out": "held out", "calibrated": "fitted"}
 
@@ -83,30 +82,22 @@ def _ours(cell: ComparedCell) -> Cell:
 
 def nearness_table(cells: Sequence[ComparedCell]) -> Table:
     """Tell how near ours come, by half and model; halves are never added up."""
-    columns = [
-        Column("model"),
-        Column("errors run", True),
-        Column("within a factor of 2", True),
-        Column("typical factor", True),
-        Column("worst factor", True),
-        Column("diverged", True),
-    ]
+    titles = ("errors run", "within a factor of 2", "typical factor", "worst factor")
     bodies = []
-    for half in HALVES:
+    for half, heading in (
+        ("held-out", "Held-out signals: the twin was not fitted to them"),
+        ("calibrated", "Signals that the twin was fitted to"),
+    ):
         chosen = [c for c in cells if c.metric == "mse" and c.half == half]
-        parts = [("all four filters", [c for c in chosen if c.model in FILTERS])]
-        parts += [(look(m).label, [c for c in chosen if c.model == m]) for m in MODELS]
-        rows = [_near(name, part) for name, part in parts if part]
-        heading = {
-            "held-out": "Held-out signals: the twin was not fitted to them",
-            "calibrated": "Signals that the twin was fitted to",
-        }[half]
+        parts = {"all four filters": [c for c in chosen if c.model in FILTERS]}
+        parts |= {look(m).label: [c for c in chosen if c.model == m] for m in MODELS}
+        rows = [_near(name, part) for name, part in parts.items() if part]
         bodies.append(Body(rows, heading))
     return Table(
         "nearness",
         "How near our errors (MSE) come to the paper's, by model. The filters' errors "
         "are one-step a priori with running weights, the RDGPI model's free-run.",
-        columns,
+        [Column("model"), *(Column(title, True) for title in (*titles, "diverged"))],
         bodies,
         note="The typical factor is the median over the errors, in either direction.",
     )
@@ -114,21 +105,22 @@ def nearness_table(cells: Sequence[ComparedCell]) -> Table:
 
 def _near(name: str, part: Sequence[ComparedCell]) -> list[Cell]:
     found = nearness(part)
-    ran, median = found["cells"], found["median_abs_log10_ratio"]
-    worst = found["worst_finite"]
-    near = within(part)
+    ran, near, worst = found["cells"], within(part), found["worst_finite"]
     return [
         words(name),
         number(ran, f"{ran} of {len(part)}"),
         number(near, f"{near} of {ran}") if ran else number(None),
-        number(None) if median is None else number(10**median, f"{10**median:.2f}"),
-        number(None)
-        if worst is None
-        else number(
-            10 ** abs(worst["log10_ratio"]), f"{10 ** abs(worst['log10_ratio']):.2f}"
-        ),
+        _factor(found["median_abs_log10_ratio"]),
+        _factor(worst and worst["log10_ratio"]),
         number(found["diverged"], str(found["diverged"])),
     ]
+
+
+def _factor(log10_ratio: float | None) -> Cell:
+    """Make a cell of a factor in either direction, of which there may be none."""
+    if log10_ratio is None:
+        return number(None)
+    return number(10 ** abs(log10_ratio), f"{10 ** abs(log10_ratio):.2f}")
 
 
 def paper_table(shown: Shown, halves: Mapping[str, str]) -> Table:
@@ -187,41 +179,29 @@ def _printed(text: str) -> Cell:
 
 def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> Table:
     """Show every printed error with ours, the spread of equally good twins and all."""
-    columns = [
-        Column("twin"),
-        Column("signal"),
-        Column("model"),
-        Column("error"),
-        Column("paper", True),
-        Column("ours", True),
-        Column("ours / paper", True),
-        Column("least", True, "equally good twins"),
-        Column("most", True, "equally good twins"),
-        Column("printed pair can be true"),
-        Column("status"),
-    ]
-    ordered = sorted(cells, key=lambda cell: cell.half != "held-out")
-    rows = [
-        [
-            words(HALF_WORDS[cell.half]),
-            words(signal_title(cell.signal)),
-            words(look(cell.model).label),
-            words(cell.metric.upper()),
-            number(float(cell.published), cell.published),
-            number(cell.ours, "" if cell.ours is not None else "none"),
-            number(None if cell.log10_ratio is None else 10**cell.log10_ratio),
-            number(cell.spread_low),
-            number(cell.spread_high),
-            words(cell.published_consistent),
-            words(cell.status),
-        ]
-        for cell in ordered
-    ]
-    return Table(
+    spread = "equally good twins"
+    shown: dict[Column, Callable[[ComparedCell], Cell | str]] = {
+        Column("twin"): lambda c: HALF_WORDS[c.half],
+        Column("signal"): lambda c: signal_title(c.signal),
+        Column("model"): lambda c: look(c.model).label,
+        Column("error"): lambda c: c.metric.upper(),
+        Column("paper", True): lambda c: number(float(c.published), c.published),
+        Column("ours", True): lambda c: number(
+            c.ours, "none" if c.ours is None else ""
+        ),
+        Column("ours / paper", True): lambda c: number(
+            None if c.log10_ratio is None else 10**c.log10_ratio
+        ),
+        Column("least", True, spread): lambda c: number(c.spread_low),
+        Column("most", True, spread): lambda c: number(c.spread_high),
+        Column("printed pair can be true"): lambda c: c.published_consistent,
+        Column("status"): lambda c: c.status,
+    }
+    return table_of(
         "cells",
         inline(caption),
-        columns,
-        [Body(rows)],
+        sorted(cells, key=lambda cell: cell.half != "held-out"),
+        shown,
         files=(file,),
         filtered=("twin", "model", "error"),
         dense=True,
@@ -230,94 +210,62 @@ def all_cells(cells: Sequence[ComparedCell], caption: str, file: Link) -> Table:
 
 def off_table(off: Sequence[Row], caption: str, file: Link) -> Table:
     """Show the errors that are off by more than a factor of 2."""
-    columns = [
-        Column("twin"),
-        Column("signal"),
-        Column("model"),
-        Column("paper", True),
-        Column("ours", True),
-        Column("ours / paper", True),
-        Column("what is known"),
-    ]
+    shown: dict[Column, Callable[[Row], Cell | str]] = {
+        Column("twin"): lambda row: HALF_WORDS.get(row["half"], row["half"]),
+        Column("signal"): lambda row: signal_title(row["signal"]),
+        Column("model"): lambda row: look(row["model"]).label,
+        Column("paper", True): lambda row: number(
+            float(row["published"]), row["published"]
+        ),
+        Column("ours", True): lambda row: _error(row["ours"]),
+        Column("ours / paper", True): lambda row: _error(row["ratio"]),
+        Column("what is known"): lambda row: row["known"],
+    }
     ordered = sorted(off, key=lambda row: row["half"] != "held-out")
-    rows = [
-        [
-            words(HALF_WORDS.get(row["half"], row["half"])),
-            words(signal_title(row["signal"])),
-            words(look(row["model"]).label),
-            number(float(row["published"]), row["published"]),
-            number(float(row["ours"])) if row["ours"] else number(math.inf),
-            number(float(row["ratio"])) if row["ratio"] else number(math.inf),
-            words(row["known"]),
-        ]
-        for row in ordered
-    ]
-    return Table(
-        "off", inline(caption), columns, [Body(rows)], files=(file,), cards=True
-    )
+    return table_of("off", inline(caption), ordered, shown, files=(file,), cards=True)
 
 
 def measured_table(
     errors: Sequence[Row], caption: str, files: tuple[Link, ...]
 ) -> Table:
     """Show the errors on a measured dataset: a row a record and model."""
-    columns = [
-        Column("record"),
-        Column("model"),
-        Column("error"),
-        Column("RE", True),
-        Column("MSE", True),
-        Column("unit"),
-        Column("RE after the transient", True),
-        Column("status"),
-    ]
-    rows = [
-        [
-            words(row["signal"]),
-            words(look(row["model"]).label),
-            words(row["error_kind"]),
-            _error(row["re"]),
-            _error(row["mse"]),
-            words(unit_text(row["unit"])),
-            _error(row.get("re_after_transient", "")),
-            words(row["status"]),
-        ]
-        for row in errors
-    ]
-    return Table(
-        "errors",
-        inline(caption),
-        columns,
-        [Body(rows)],
-        files=files,
-        filtered=("record", "model"),
+    shown: dict[Column, Callable[[Row], Cell | str]] = {
+        Column("record"): lambda row: row["signal"],
+        Column("model"): lambda row: look(row["model"]).label,
+        Column("error"): lambda row: row["error_kind"],
+        Column("RE", True): lambda row: _error(row["re"]),
+        Column("MSE", True): lambda row: _error(row["mse"]),
+        Column("unit"): lambda row: unit_text(row["unit"]),
+        Column("RE after the transient", True): lambda row: _error(
+            row.get("re_after_transient", "")
+        ),
+        Column("status"): lambda row: row["status"],
+    }
+    filtered = ("record", "model")
+    return table_of(
+        "errors", inline(caption), errors, shown, files=files, filtered=filtered
     )
 
 
 def measured_headline(errors: Sequence[Row]) -> Table:
     """Set the relative errors of all models side by side, a row a record."""
+    by_key = {(row["signal"], row["model"]): row["re"] for row in errors}
+
+    def shown(model: str) -> Callable[[str], Cell | str]:
+        return lambda signal: (
+            _error(by_key[signal, model])
+            if (signal, model) in by_key
+            else words("not run", "quiet")
+        )
+
     models = in_order(row["model"] for row in errors)
-    by_key = {(row["signal"], row["model"]): row for row in errors}
-    signals = dict.fromkeys(row["signal"] for row in errors)
-    rows = [
-        [
-            words(signal),
-            *(
-                _error(by_key[signal, model]["re"])
-                if (signal, model) in by_key
-                else words("not run", "quiet")
-                for model in models
-            ),
-        ]
-        for signal in signals
-    ]
-    columns = [Column("record"), *(Column(look(m).label, True) for m in models)]
-    return Table(
+    return table_of(
         "by-record",
         "Relative error of every model on every measured record. The filters' errors "
         "are one-step a priori, the RDGPI model's free-run: not the same task.",
-        columns,
-        [Body(rows)],
+        dict.fromkeys(row["signal"] for row in errors),
+        {Column("record"): str}
+        | {Column(look(model).label, True): shown(model) for model in models},
         dense=True,
     )
 

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from hystbench.figures.style import look, looks, signal_title
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import inline, one_micro, paragraphs
 from hystbench.report.picture import Link, Picture
 from hystbench.report.reproduction import claims, errors, words
-from hystbench.report.reproduction.read import Content, Measured, Reproduction, Shown
-from hystbench.report.table import Body, Cell, Column, Table, number
-from hystbench.report.table import words as text_cell
+from hystbench.report.reproduction.read import (
+    Content,
+    Measured,
+    Reproduction,
+    Row,
+    Shown,
+)
+from hystbench.report.table import Cell, Column, Table, number, table_of
 
 TEMPLATE = "page.html.j2"
 #: The picture of the first screen.
@@ -106,26 +113,25 @@ def _in_order(figures: list[Picture]) -> list[Picture]:
 
 def _as_it_is(shown: Shown) -> Table:
     """Show a CSV file; signals and models by their names, numbers as numbers."""
-    keys = list(shown.rows[0]) if shown.rows else []
-    numeric = {key for key in keys if all(_is_number(row[key]) for row in shown.rows)}
 
-    def cell(key: str, text: str) -> Cell:
+    def cell(key: str, row: Row) -> Cell | str:
+        text = row[key]
         if key in numeric:
             return number(float(text)) if text else number(None)
         if key == "signal":
-            return text_cell(signal_title(text))
-        if key == "model" and text in looks():
-            return text_cell(look(text).label)
-        return text_cell(text)
+            return signal_title(text)
+        return look(text).label if key == "model" and text in looks() else text
 
-    columns = [
-        Column(_HEADINGS.get(key, key.replace("_", " ")), key in numeric)
+    keys = list(shown.rows[0]) if shown.rows else []
+    numeric = {key for key in keys if all(_is_number(row[key]) for row in shown.rows)}
+    columns = {
+        Column(_HEADINGS.get(key, key.replace("_", " ")), key in numeric): partial(
+            cell, key
+        )
         for key in keys
-    ]
-    rows = [[cell(key, row[key]) for key in keys] for row in shown.rows]
-    return Table(
-        shown.name, inline(shown.caption), columns, [Body(rows)], files=(shown.file,)
-    )
+    }
+    caption = inline(shown.caption)
+    return table_of(shown.name, caption, shown.rows, columns, files=(shown.file,))
 
 
 def _is_number(text: str) -> bool:

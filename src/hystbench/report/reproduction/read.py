@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hystbench.compare import measured, off
 from hystbench.compare.cells import ComparedCell
-from hystbench.compare.rows import read_rows
+from hystbench.compare.rows import headers, names_of, read_items, read_rows
 from hystbench.errors import InputError
+from hystbench.published.discrepancies import AuditRow
 from hystbench.report.markup import first_sentence, inline
 from hystbench.report.picture import Link, Picture, embedded
 from hystbench.report.reproduction.captions import caption
@@ -19,11 +21,7 @@ from hystbench.report.reproduction.captions import caption
 Row = dict[str, str]
 
 #: Columns that the page cannot do without; others are shown as they are.
-_CELLS = tuple(ComparedCell.__dataclass_fields__)
 _CLAIMS = ("id", "claim", "where", "kind", "basis", "verdict", "evidence")
-_OFF = ("table", "signal", "model", "half", "published", "ours", "ratio", "known")
-_AUDIT = ("kind", "where", "statement", "evidence")
-_ERRORS = ("signal", "model", "error_kind", "mse", "re", "unit", "status")
 
 
 @dataclass(frozen=True)
@@ -110,11 +108,11 @@ def read_content(
     found: Reproduction | Measured
     if settings["dataset"] is None:
         found = Reproduction(
-            cells=[_cell(row) for row in read_rows(compare / "cells.csv", _CELLS)],
+            cells=read_items(compare / "cells.csv", ComparedCell),
             claims=read_rows(compare / "claims.csv", _CLAIMS),
             on_held_out=_on_held_out(compare / "summary.json"),
-            off=read_rows(compare / "off.csv", _OFF),
-            audit=read_rows(compare / "audit.csv", _AUDIT),
+            off=read_rows(compare / "off.csv", headers(off.COLUMNS)),
+            audit=read_rows(compare / "audit.csv", names_of(AuditRow)),
             tables=[
                 shown(compare / "tables" / f"table-{number}.csv", "")
                 for number in (1, 2, 3, 4)
@@ -123,7 +121,7 @@ def read_content(
         )
         names = ["cells", "claims", "off", "audit"]
     else:
-        rows = read_rows(compare / "errors.csv", _ERRORS)
+        rows = read_rows(compare / "errors.csv", measured.COLUMNS)
         found = Measured(settings["dataset"], rows)
         names = ["errors"]
     return Content(
@@ -166,12 +164,3 @@ def _text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path}: not readable ({error.strerror})") from error
-
-
-def _cell(row: Row) -> ComparedCell:
-    """Read a row of cells.csv; what is empty is None."""
-    values: dict[str, Any] = {key: row[key] for key in _CELLS}
-    for key, text in row.items():
-        if key == "ours" or key.endswith(("_low", "_high")):
-            values[key] = float("inf" if text == "diverged" else text) if text else None
-    return ComparedCell(**values | {"table": int(row["table"])})

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.summary import nearness
 from hystbench.figures.style import look
-from hystbench.published import FILTERS
 from hystbench.report.reproduction.errors import filter_cells, within
 from hystbench.report.reproduction.read import Measured, Reproduction, Row
 
@@ -132,7 +131,6 @@ def missing(found: Reproduction | Measured, figures: Iterable[str]) -> list[str]
     said = []
     if isinstance(found, Reproduction):
         said += _not_run(found.cells)
-        said += _no_rdgpi(found.cells)
     expected = OF_MEASURED if isinstance(found, Measured) else OF_TWIN
     absent = [name for name in expected if name not in there]
     if absent:
@@ -155,15 +153,9 @@ def _not_run(cells: Sequence[ComparedCell]) -> list[str]:
         )
         if none:
             said.append(f"Not run, of the {whole}: {listed(list(none))}.")
+    if len(absent) == len(cells):
+        said.append("No model was run on a signal of the paper's tables.")
     return said
-
-
-def _no_rdgpi(cells: Sequence[ComparedCell]) -> list[str]:
-    if any(cell.ran for cell in cells if cell.model == "rdgpi"):
-        return []
-    if not any(cell.ran for cell in cells if cell.model in FILTERS):
-        return ["No model was run on a signal of the paper's tables."]
-    return []
 
 
 def listed(names: Sequence[str]) -> str:
