@@ -13,6 +13,7 @@ import numpy as np
 
 from hystbench import kernels
 from hystbench.export.described import Described, Language, Piece, needed
+from hystbench.export.names import filled
 
 #: The laws of forces are those of the compiled kernel.
 LIBRARY = (
@@ -23,12 +24,6 @@ LIBRARY = (
     Path(__file__).with_name("inverse_steps.c"),
 )
 WIDTH = 88
-
-
-def filled(file: str, **words: str) -> str:
-    """Read a file beside this module, with words in the places of their ``@names@``."""
-    text = Path(__file__).with_name(file).read_text(encoding="utf-8")
-    return re.sub("@(\\w+)@", lambda found: words[found[1]], text)
 
 
 def header(model: Described) -> str:

@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr
 from hystbench import __version__
 from hystbench.export import c
 from hystbench.export.described import Described
+from hystbench.export.names import filled
 
 #: The major version of FMI, and by its name.
 Version = Literal[2, 3]
@@ -60,7 +61,7 @@ def contents(model: Described, fmi: Version = 3) -> dict[str, str]:
         "output_unit": model.output.unit,
     }
     own = {"name": model.name, "NAME": model.name.upper(), "token": token}
-    description = c.filled(
+    description = filled(
         f"fmi{fmi}.xml",
         units="\n".join(f"    <Unit name={quoteattr(unit)}/>" for unit in units),
         **{key: quoteattr(value) for key, value in values.items()},
@@ -68,12 +69,10 @@ def contents(model: Described, fmi: Version = 3) -> dict[str, str]:
     return {
         "modelDescription.xml": description,
         # Later releases of FMI 2.0 have this file of FMI 3.0 too.
-        "sources/buildDescription.xml": c.filled(
+        "sources/buildDescription.xml": filled(
             "buildDescription.xml", name=model.name, fmi=str(fmi)
         ),
         f"sources/{model.name}.h": header,
         f"sources/{model.name}.c": source,
-        **{
-            f"sources/{file}": c.filled(file, **own) for file in (SHARED, f"fmi{fmi}.c")
-        },
+        **{f"sources/{file}": filled(file, **own) for file in (SHARED, f"fmi{fmi}.c")},
     }

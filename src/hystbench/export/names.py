@@ -1,10 +1,14 @@
-"""Names that code may bear: of a model, of its channels and of its states."""
+"""Names that code may bear: of a model, of its channels and of its states.
+
+And what is the same in the code of all models, but for such words.
+"""
 
 from __future__ import annotations
 
 import keyword
 import re
 import sys
+from pathlib import Path
 
 #: Keywords of C and C++ that a model may be called, and the standard headers.
 C_WORDS = """
@@ -27,6 +31,12 @@ TAKEN = (
     | {name.lower() for name in sys.stdlib_module_names}
     | DEVICES
 )
+
+
+def filled(file: str, **words: str) -> str:
+    """Read a file beside this module, with words in the places of their ``@names@``."""
+    text = Path(__file__).with_name(file).read_text(encoding="utf-8")
+    return re.sub("@(\\w+)@", lambda found: words[found[1]], text)
 
 
 def identifier(name: str) -> str:

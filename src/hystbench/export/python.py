@@ -13,34 +13,13 @@ from typing import Any
 import numpy as np
 
 from hystbench.export.described import Described, Language, Piece, needed
+from hystbench.export.names import filled
 
 LIBRARY = tuple(
     Path(__file__).with_name(f"{name}.py")
     for name in ("steps", "hysteresis_steps", "forces", "inside", "inverse_steps")
 )
 WIDTH = 88
-
-CLASS = '''\
-class Model:
-    """The model as a machine that is fed one sample after the other."""
-
-    def __init__(self):
-        self.reset()
-
-    def reset(self):
-        """Forget all that has entered. {begins}"""
-{reset}
-
-    def step(self, u):
-        """Give the output for the next sample of the input."""
-        y = float(u)
-{steps}
-        return float(y)
-
-    def simulate(self, u):
-        """Give the output for the next samples of the input."""
-        return np.array([self.step(value) for value in u])
-'''
 
 
 def module(model: Described) -> str:
@@ -80,7 +59,8 @@ def module(model: Described) -> str:
         if piece.inner is not None
         for part in piece.all_inside()
     ]
-    body = CLASS.format(
+    body = filled(
+        "model_class.txt",
         begins=model.begins,
         reset=indent("\n".join(reset or ["pass"]), " " * 8),
         steps=indent("\n".join(filter(None, steps)), " " * 8),
