@@ -94,8 +94,16 @@ def end_at_once() -> None:
     """From here on a signal ends the process, for there is nothing left to tidy up.
 
     One that was told already changes nothing any more.
+
+    Raises
+    ------
+    Interrupted
+        If a signal has come and waits still: imports made it wait to the end.
     """
     signal.setitimer(signal.ITIMER_REAL, 0)
+    if _state.waiting and not _state.raised:
+        _state.raised = True
+        raise Interrupted(_state.waiting)
     last = signal.SIG_IGN if _state.raised else _end
     for number in (signal.SIGINT, signal.SIGTERM):
         if signal.getsignal(number) is _come:

@@ -294,9 +294,12 @@ def beside_their_own_shapes(
 
 
 def above_noise_of_its_own(state: ModelState, floor: float) -> float:
-    """Score a model above noise, beside what a wrong shape of its own could do."""
+    """Score a model above noise, beside what a wrong shape of its own could do.
+
+    Its numbers stay charged.
+    """
     own = make_score(state, float(np.sqrt(floor)), forms=False)
-    return score_of(state, own) - own.least(state.freedom)
+    return score_of(state, own) - own.least()
 
 
 def first_on_folds(
