@@ -127,23 +127,22 @@ def test_a_wrong_shape_behind_a_lag_is_what_the_lagged_model_may_leave():
     (variant, *_) = effects()["sensor-lag"].variants(state.simulation)
     right = with_effect(state, variant, {"time_constant_s": 0.02}).settled()
     beside_the_base_s = score.of(right.residual) - score.least()
-    assert above_noise_of_its_own(right, NOISE**2) < beside_the_base_s - PAYS
+    assert above_noise_of_its_own(right, state, NOISE**2) < beside_the_base_s - PAYS
 
 
 def test_those_that_score_alike_are_compared_beside_their_own_shapes(monkeypatch):
     """The best of them keeps its score and gain; one that is far behind has no part."""
     state = state_of(LOOP, measured((OTHER,), NOISE, given=records() * 3))
-    score = make_score(state, NOISE)
-    own = iter((70.0, 50.0, 50.0))
+    own = iter((70.0, 50.0))
     monkeypatch.setattr(module, "above_noise_of_its_own", lambda *_: next(own))
     given = [
         Candidate(name, "drive", score=value, gain=300.0 - value, state=state)
         for name, value in (("delay", 100.0), ("lag", 110.0), ("far", 290.0))
     ]
-    found = beside_their_own_shapes(given, ("delay", "lag"), score)
+    found = beside_their_own_shapes(given, ("delay", "lag"), state, NOISE**2)
     assert [(x.effect, x.score, x.gain) for x in found] == [
         ("lag", 110.0, 190.0),
         ("delay", 130.0, 170.0),
         ("far", 290.0, 10.0),
     ]
-    assert beside_their_own_shapes(given, ("lag",), score) == given
+    assert beside_their_own_shapes(given, ("lag",), state, NOISE**2) == given

@@ -28,6 +28,7 @@ from hystbench.gap.thresholds import (
     SHAPE,
     UNNAMED_SHARE,
 )
+from hystbench.record import FloatArray
 
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
@@ -51,10 +52,17 @@ def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score
         Whether the added effects may be of another form too; not when their own
         numbers are to be found.
     """
-    wrong = state.wrong_shape
-    if forms and state.other_forms.shape[1]:
-        wrong = orthonormal(np.hstack([wrong, state.other_forms]))
-    return Score(state.sample, wrong, floor_rms**2)
+    shape = state.wrong_shape
+    directions = _directions(shape, state) if forms else shape
+    return Score(state.sample, directions, floor_rms**2)
+
+
+def _directions(wrong_shape: FloatArray, state: ModelState) -> FloatArray:
+    """Give a wrong shape's directions with other forms of what a model has added."""
+    forms = state.other_forms
+    return (
+        orthonormal(np.hstack([wrong_shape, forms])) if forms.shape[1] else wrong_shape
+    )
 
 
 def rank(
@@ -133,7 +141,7 @@ def rank(
         exactly(item, score, now) if item.effect in exact else item
         for item in candidates
     )
-    candidates = beside_their_own_shapes(candidates, exact, score)
+    candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
     if not folds:
         return (*beyond_simpler_laws(candidates, state, score), *declined)
     judged = [
@@ -255,7 +263,10 @@ def exactly(item: Candidate, score: Score, now: float) -> Candidate:
 
 
 def beside_their_own_shapes(
-    candidates: Sequence[Candidate], alike: Sequence[str], score: Score
+    candidates: Sequence[Candidate],
+    alike: Sequence[str],
+    before: ModelState,
+    floor: float,
 ) -> list[Candidate]:
     """Compare candidates that score alike beside what a wrong shape does in each.
 
@@ -269,15 +280,19 @@ def beside_their_own_shapes(
     candidates : sequence of Candidate
     alike : sequence of str
         Effects of those that are compared.
-    score : Score
-        Beside what a wrong shape does in the model without them.
+    before : ModelState
+        Without them; where it has no hysteresis, nothing is to be compared.
+    floor : float
+        Mean square of the noise.
     """
+    if len(alike) < 2 or not before.wrong_shape.shape[1]:
+        return list(candidates)
     own = {
-        item.effect: above_noise_of_its_own(item.state, score.floor)
+        item.effect: above_noise_of_its_own(item.state, before, floor)
         for item in candidates
         if item.effect in alike and item.state is not None
     }
-    if len(own) < 2:
+    if not own:
         return list(candidates)
     best = next(x for x in candidates if x.effect == min(own, key=lambda k: own[k]))
     behind = {name: value - own[best.effect] for name, value in own.items()}
@@ -293,12 +308,14 @@ def beside_their_own_shapes(
     )
 
 
-def above_noise_of_its_own(state: ModelState, floor: float) -> float:
+def above_noise_of_its_own(
+    state: ModelState, before: ModelState, floor: float
+) -> float:
     """Score a model above noise, beside what a wrong shape of its own could do.
 
-    Its numbers stay charged.
+    Its numbers stay charged; effects that were there before may be of another form.
     """
-    own = make_score(state, float(np.sqrt(floor)), forms=False)
+    own = Score(state.sample, _directions(state.wrong_shape, before), floor)
     return score_of(state, own) - own.least()
 
 

@@ -39,9 +39,9 @@ def named_apart(
     what the records have of their own, and so on while the score falls and the names
     change. The whole has to lower the score of the first names by as much as a first
     effect has to lower it, all numbers charged; of names that are themselves new in
-    every record, such as a drift, it only has to be the better one. And noise alone has
-    to be left: numbers of one record stand in for any law that its rate or its
-    amplitude brings out.
+    every record, such as a drift, it only has to be the better one. And no more may be
+    left than noise, or than may stay unnamed: numbers of one record stand in for any
+    law that its rate or its amplitude brings out.
 
     Parameters
     ----------
@@ -91,10 +91,11 @@ def named_apart(
         if same:
             break  # naming has told all that it can
         likely = _likely(start, (on_records(again.state, start.records),), score)
-    # Beside more than noise they cannot be told from what the simulator does wrong.
-    if found[1].state.power(score.floor) > ABOVE_NOISE * score.floor:
+    # Beside more than that they cannot be told from what the simulator does wrong.
+    most = max(ABOVE_NOISE * square, unnamed_share * start.power(square))
+    if found[1].state.power(square) > most:
         if found[2].records:
-            say("more than noise is left beside that: it is not told")
+            say("too much is left beside that: it is not told")
         return start, named, NONE
     return found
 
