@@ -47,7 +47,8 @@ LOOSE = 0.25
 """In all: half of the gap's rms.
 
 Nor may an effect widen the gap by more, as it can where a wrong shape hides what it
-does; and a hysteresis of the wrong shape matters where it takes more.
+does; and a hysteresis of the wrong shape matters where it takes more. Where forces
+inside leave less, records have no numbers of their own.
 """
 
 # With nothing named: whether there is a gap.

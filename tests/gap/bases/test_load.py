@@ -86,6 +86,13 @@ class TestLinear:
         assert error.max() < 0.05
         assert found.model.chain[-1].offset == pytest.approx(0.4, abs=0.05)
 
+    def test_periods_that_are_left_out_change_no_sampling(self):
+        """Of a fast input the last periods are taken, at the rate that they have."""
+        u = np.tile(np.random.default_rng(3).standard_normal(500), 10)
+        found = identified_linear(evidence(record(u, 2.0 * u, period_samples=500)))
+        (block,) = found.model.chain
+        assert block.value == pytest.approx(2.0)
+
     @pytest.mark.parametrize(("gain", "offset"), [(3.0, 0.0), (-0.2, 5.0)])
     def test_a_gain_gets_no_dynamics(self, gain, offset):
         u = steady(multisine())

@@ -1,9 +1,11 @@
 """Long records of a slow input with fewer samples."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from hystbench.gap.records.coarser import ENOUGH, coarser, sparing
+from hystbench.gap.records.coarser import ENOUGH, coarser, left_out, sparing
 from hystbench.record import Channel, Record
 
 
@@ -54,3 +56,23 @@ def test_a_period_stays_whole():
     one = record(0.02, n=2 * 6005, period=6005)
     (kept,) = coarser([one], "band-limited")
     assert kept.period_samples == len(kept) == 6005
+
+
+def test_no_period_is_left_out_beside_a_record_that_does_not_repeat():
+    """On that one a model could not begin as if its periods had come before."""
+    repeats = record(0.02, n=8 * ENOUGH, period=4 * ENOUGH)
+    others = (repeats, record(0.02, n=8 * ENOUGH))
+    kept = coarser(others, "band-limited")
+    assert [len(item) * item.dt for item in kept] == pytest.approx(
+        [len(item) * item.dt for item in others]
+    )
+    assert not left_out(kept, others)
+    assert left_out(coarser(others[:1], "band-limited"), others[:1])
+
+
+def test_samples_that_were_not_measured_are_not_the_ones_that_stay():
+    one = record(0.02)
+    lost = np.zeros(len(one), dtype=bool)
+    lost[::4] = True
+    (kept,) = coarser([replace(one, interpolated=lost)], "band-limited")
+    assert kept.counted.sum() >= ENOUGH

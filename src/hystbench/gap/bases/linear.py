@@ -181,7 +181,9 @@ def _coarse(evidence: Evidence) -> Evidence:
     if evidence.quantities.causality == "motion to force":
         return evidence
     records = coarser(evidence.fit, evidence.hold)
-    return evidence if records == evidence.fit else replace(evidence, fit=records)
+    if all(a is b for a, b in zip(records, evidence.fit, strict=True)):
+        return evidence
+    return replace(evidence, fit=records)
 
 
 def _spectra(evidence: Evidence) -> Spectra:

@@ -24,7 +24,7 @@ STRAIGHT = 3e-3
 LEAST = 150
 """Samples that a record keeps."""
 EACH = 3
-"""Of the scored samples, one of so many is looked at."""
+"""Of the scored samples, one of so many is looked at, where enough are left."""
 
 
 def glance_of(attempt: Attempt) -> Attempt:
@@ -69,10 +69,15 @@ def _coarser(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     longer steps is made up for, as that of a quick one is.
     """
     steps = tuple(_step(record) for record in state.records)
-    rows = np.concatenate(
-        [np.arange(part.start, part.stop, EACH) for part in state.sample.slices]
-    )
-    places = tuple(positions[::EACH] for positions in state.sample.positions)
+    kept = [
+        np.arange(part.start, part.stop, EACH if len(places) >= EACH * LEAST else 1)
+        for part, places in zip(
+            state.sample.slices, state.sample.positions, strict=True
+        )
+    ]
+    rows = np.concatenate(kept)
+    every = np.concatenate(state.sample.positions)
+    places = tuple(every[own] for own in kept)
     few = replace(
         state,
         records=tuple(map(_every, state.records, steps)),

@@ -15,7 +15,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.least_squares import Fitted, fitted, judged
 from hystbench.gap.inside.search import FEW, Hypothesis
-from hystbench.gap.records.coarser import coarser
+from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.quantities import Quantities
@@ -46,7 +46,7 @@ def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
     if all(a is b for a, b in zip(records, start.records, strict=True)):
         return start
     chain = start.chain
-    if any(record.repeats for record in records):
+    if left_out(records, start.records):
         chain = starting(chain, "repeating")
     return replace(
         start, chain=chain, records=records, sample=Sample.of(records)

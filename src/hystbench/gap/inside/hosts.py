@@ -194,7 +194,9 @@ def masses(
     found: list[tuple[float, tuple[Block, ...]]] = []
     sample = Sample.of(records)
     wanted = sample.take([record.y for record in records])
-    starts = ("rest",) if _from_rest(records) else possible_starts(records)
+    # Where periods were left out the first sample is in the middle of a motion.
+    at_rest = _from_rest(records) and not all(item.repeats for item in records)
+    starts = ("rest",) if at_rest else possible_starts(records)
     span = max(record.dt * len(record) for record in records)
     fastest = 0.8 * np.pi / min(record.dt for record in records)
     grid = np.geomspace(2 * np.pi / span, fastest, FREQUENCIES)

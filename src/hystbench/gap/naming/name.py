@@ -200,7 +200,8 @@ def advance(
     little = progress.little_left(floor)
     found = None if little else _before_a_round(progress.state, floor_rms)
     if found is None:
-        say("nothing is left that an effect could gain")
+        why = "no more is left than may stay unnamed"
+        say(why if little else "nothing is left that an effect could gain")
         return replace(progress, closed=True)
     state, score = found
     ranking = rank(state, score)

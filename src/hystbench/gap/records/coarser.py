@@ -36,7 +36,7 @@ def coarser(records: Sequence[Record], hold: Hold) -> tuple[Record, ...]:
     hold : {"zero-order", "linear", "band-limited"}
         Only a band-limited input is told by fewer samples.
     """
-    records = tuple(_last_periods(record) for record in records)
+    records = _last_periods(records)
     factor = sparing(records, hold)
     return tuple(_every(record, factor) for record in records)
 
@@ -44,7 +44,7 @@ def coarser(records: Sequence[Record], hold: Hold) -> tuple[Record, ...]:
 def sparing(records: Sequence[Record], hold: Hold) -> int:
     """Tell of how many samples one is enough.
 
-    Whole periods stay whole.
+    Whole periods stay whole, and of samples that were measured enough stay.
     """
     if hold != "band-limited":
         return 1
@@ -52,7 +52,9 @@ def sparing(records: Sequence[Record], hold: Hold) -> int:
     fewest = min(len(record) for record in records)
     most = min(int(TOLD / max(fastest, TOLD / fewest)), fewest // ENOUGH)
     for factor in range(most, 1, -1):
-        if all((record.period_samples or 0) % factor == 0 for record in records):
+        whole = all((item.period_samples or 0) % factor == 0 for item in records)
+        counted = min(int(item.counted[::factor].sum()) for item in records)
+        if whole and counted >= ENOUGH:
             return factor
     return 1
 
@@ -77,11 +79,30 @@ def _every(record: Record, factor: int) -> Record:
     )
 
 
-def _last_periods(record: Record) -> Record:
-    """Keep the last whole periods, as many as hold enough samples."""
-    period = record.period_samples
-    kept = ceil(ENOUGH / period) * period if period and record.repeats else len(record)
-    return record if kept >= len(record) else _cut(record, slice(-kept, None))
+def left_out(fewer: Sequence[Record], records: Sequence[Record]) -> bool:
+    """Tell whether whole periods of records were left out, beside single samples."""
+    return any(
+        a.dt * (len(a) + 1) < b.dt * len(b) for a, b in zip(fewer, records, strict=True)
+    )
+
+
+def _last_periods(records: Sequence[Record]) -> tuple[Record, ...]:
+    """Keep the last whole periods, as many as hold enough samples.
+
+    All records begin as if their periods had come before, or none is cut.
+    """
+    kept = [
+        ceil(ENOUGH / item.period_samples) * item.period_samples
+        if item.period_samples and item.repeats
+        else len(item)
+        for item in records
+    ]
+    if any(count >= len(item) for count, item in zip(kept, records, strict=True)):
+        return tuple(records)
+    return tuple(
+        _cut(item, slice(-count, None))
+        for count, item in zip(kept, records, strict=True)
+    )
 
 
 def _cut(record: Record, kept: slice) -> Record:
