@@ -45,3 +45,12 @@ def test_a_round_beside_a_model_that_has_all_is_none():
     assert after.closed
     assert after.done
     assert not after.rounds
+
+
+@pytest.mark.parametrize(("share", "closed"), [(0.01, False), (0.2, True)])
+def test_the_search_ends_where_no_more_is_left_than_may_stay_unnamed(share, closed):
+    """A mode is missing still, and takes more of the gap than the lesser share."""
+    progress = progress_with(LAG_S, (block("resonance", **MODE),))
+    left = progress.state.power(NOISE**2)
+    asked = replace(progress, gap=10 * left, share=share)
+    assert advance(asked, NOISE, print).closed is closed
