@@ -81,3 +81,26 @@ def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
         make([3, 4]).save(tmp_path / "r.npz")
     assert (tmp_path / "r.npz").read_bytes() == before
     assert {item.name for item in tmp_path.iterdir()} == {"r.npz", ENTRIES}
+
+
+def test_a_part_of_a_record_keeps_what_belongs_to_its_samples():
+    record = replace(
+        make(np.arange(20)),
+        simulated=np.arange(20.0) + 0.5,
+        interpolated=np.arange(20) == 8,
+        period_samples=5,
+        lead=6,
+    )
+    every = record.cut(slice(None, None, 4))
+    np.testing.assert_array_equal(every.u, [0, 4, 8, 12, 16])
+    np.testing.assert_array_equal(every.simulated, [0.5, 4.5, 8.5, 12.5, 16.5])
+    np.testing.assert_array_equal(every.counted, [False, False, False, True, True])
+    assert (every.dt, every.lead, every.period_samples) == (0.04, 2, None)
+    assert record.cut(slice(-3, None)).lead == 0
+    assert record.cut(slice(5)).lead == 5
+
+
+def test_what_is_left_out_of_a_score_makes_another_record_of_it():
+    record = make(np.arange(20))
+    assert replace(record, lead=6).digest != record.digest
+    np.testing.assert_array_equal(replace(record, lead=6).counted, np.arange(20) >= 6)

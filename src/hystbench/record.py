@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from hashlib import blake2b
 from pathlib import Path
@@ -75,6 +75,9 @@ class Record:
         Of a record that begins in the middle of a motion: the time constant, in
         seconds, with which an unknown velocity at its first sample dies out. Scores
         leave out what such a velocity does.
+    lead : int
+        Samples at the beginning that remember what was before the record. Models run
+        over them; scores leave them out.
     """
 
     name: str
@@ -89,6 +92,7 @@ class Record:
     simulated: FloatArray | None = None
     interpolated: Mask | None = None
     decay_s: float | None = None
+    lead: int = 0
 
     def __post_init__(self) -> None:
         """Freeze the arrays: a record is evidence."""
@@ -114,10 +118,9 @@ class Record:
 
     @property
     def counted(self) -> Mask:
-        """Samples that were measured, shape (n,): those that a score may count."""
-        if self.interpolated is None:
-            return np.ones(len(self), dtype=np.bool_)
-        return ~self.interpolated
+        """Samples that a score may count, shape (n,): measured, and behind the lead."""
+        behind = np.arange(len(self)) >= self.lead
+        return behind if self.interpolated is None else behind & ~self.interpolated
 
     @property
     def repeats(self) -> bool:
@@ -148,12 +151,36 @@ class Record:
         about += [*asdict(self.output).values(), self.use, self.period_samples]
         if self.decay_s is not None:
             about.append(self.decay_s)
+        if self.lead:
+            about.append({"lead": self.lead})
         whole = blake2b(json.dumps(about).encode(), digest_size=16)
         for array in (self.u, self.y, self.simulated):
             whole.update(b"none" if array is None else array.tobytes())
         if self.interpolated is not None:
             whole.update(self.interpolated.tobytes())
         return whole.hexdigest()
+
+    def cut(self, kept: slice) -> Record:
+        """Give the record of some of its samples; its period is not known then.
+
+        Parameters
+        ----------
+        kept : slice
+            Samples in a row, or every so-manieth of them.
+        """
+        arrays = (self.u, self.y, self.simulated, self.interpolated)
+        u, y, simulated, lost = (None if x is None else x[kept].copy() for x in arrays)
+        first, _, step = kept.indices(len(self))
+        return replace(
+            self,
+            dt=self.dt * step,
+            u=u,
+            y=y,
+            period_samples=None,
+            simulated=simulated,
+            interpolated=lost,
+            lead=min(len(range(first, self.lead, step)), len(u)),
+        )
 
     def save(self, path: str | Path) -> None:
         """Write the record as a NumPy archive (no pickle), all of it or nothing."""

@@ -188,8 +188,13 @@ class Mechanism(HeldBlock):
         return float(q[0])
 
     def _parts(self, dt: float, forces: tuple[Force, ...]) -> int:
-        """Steps of an interval: short for the linear coordinate, and for a contact."""
-        contact = max((item.stiffest for item in forces), default=0.0)
+        """Steps of an interval: one without forces, as the linear part is exact.
+
+        With forces they are short for the linear coordinate, and for a contact.
+        """
+        if not forces:
+            return 1
+        contact = max(item.stiffest for item in forces)
         linear, stiff = (
             dt * max(sqrt(k / self.mass), self.damping / self.mass) / PHASE
             for k in (self.stiffness, self.stiffness + contact)

@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
+from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects import among
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
@@ -49,8 +50,6 @@ from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
-LINEAR = "linear"
-"""Name of the base that is identified as a linear model."""
 NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "asymmetry", "saturation")
 """Effects that windows of a free mass cannot tell. An integrator makes a path of its
 own in every window of any error; and each begins at zero wherever the mass is, so that
@@ -129,7 +128,7 @@ def find(
     start, floor = start_state(records, base, hold, declared, offered)
     inside = None
     if quantities is not None:
-        identified = base.name == LINEAR and bool(base.free)
+        identified = is_identified(base)
         inside = named_inside(base, start, floor.rms, quantities, identified, say)
     if inside is not None and inside.named.state.power(floor.rms**2) < floor.rms**2:
         say(

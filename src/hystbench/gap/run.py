@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_csv, write_json
+from hystbench.gap.bases.lead import without_lead
 from hystbench.gap.decision import Decision, find
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import OwnValues
@@ -124,6 +125,7 @@ def closed_gap(
     check_units(evidence, base, place)
     vocabulary = vocabulary.in_device(evidence.device_kind)
     say = say_in_words(say)
+    evidence = without_lead(evidence, base, say)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
@@ -253,6 +255,7 @@ def decide_in(
     """
     writes(*(folder / name for name in DECIDED))
     say = say_in_words(say)
+    evidence = without_lead(evidence, base, say)
     vocabulary = vocabulary.in_device(evidence.device_kind)
     decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
@@ -292,6 +295,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """
     tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
     writes(*(folder / name for name in (*DECISIVE, *tables)))
+    evidence = without_lead(evidence, base)
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)

@@ -139,6 +139,12 @@ def test_what_stands_for_the_whole_base_has_the_outputs_unit():
     assert unit_behind(1, state) == "um"
 
 
+def test_behind_a_mechanism_everything_has_the_outputs_unit():
+    mass = block("mechanism", mass=1.0, damping=1.0, stiffness=1.0)
+    state = state_of((mass, block("stiffness", quadratic=0.0, cubic=1.0), GAIN))
+    assert [unit_behind(k, state) for k in range(3)] == ["um"] * 3
+
+
 MASS = {"mass": 1.0, "damping": 1.0, "stiffness": 1.0}
 DRY = ("friction-force", {"coulomb": 1.0, "presliding_distance": 1.0})
 

@@ -49,6 +49,15 @@ ROUNDS = 20
 FOLD_ROUNDS = 4
 
 
+LINEAR = "linear"
+"""Name of the base that is identified as a linear model."""
+
+
+def is_identified(base: Model) -> bool:
+    """Tell whether a base is the linear model that was identified from the records."""
+    return base.name == LINEAR and bool(base.free)
+
+
 class Linear(NamedTuple):
     """A linear base, and how it was found.
 
@@ -169,7 +178,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     if halves is not None:
         chain, fit, more = halves
         note += more
-    model = Model("linear", evidence.input, evidence.output, chain)
+    model = Model(LINEAR, evidence.input, evidence.output, chain)
     return Linear(model, note, fit, fold)
 
 

@@ -125,12 +125,4 @@ def _step(record: Record) -> int:
 
 def _every(record: Record, step: int) -> Record:
     """Give every so many samples of a record."""
-    return replace(
-        record,
-        dt=record.dt * step,
-        u=record.u[::step].copy(),
-        y=record.y[::step].copy(),
-        period_samples=None,
-        simulated=None,
-        interpolated=None,
-    )
+    return replace(record.cut(slice(None, None, step)), simulated=None)

@@ -87,8 +87,8 @@ def unit_behind(place: int, state: ModelState) -> str:
     """Give the unit of the signal behind a block of the chain.
 
     It is the input's up to the block of the base that turns it into the output: the
-    first that has a unit of both (a gain, a hysteresis, a simulator), or where there is
-    none the last transfer function, which has no units of its own.
+    first that has a unit of both (a gain, a hysteresis, a mechanism, a simulator), or
+    where there is none the last transfer function, which has no units of its own.
     """
     record = state.records[0]
     return (record.input if place < _turn(state) else record.output).unit
@@ -109,5 +109,7 @@ def _turn(state: ModelState) -> int:
 
 
 def _has_both(block: Block) -> bool:
+    if isinstance(block, Mechanism | Impedance | Store):
+        return True
     units = [about.unit for about in block.parameters().values()]
     return block.hysteretic or not block.seen or "Y/U" in units

@@ -72,7 +72,7 @@ class Beginnings:
             if repeats:
                 count = len(places)
             end = len(record) if count == len(places) else int(places[count - 1]) + 1
-            records.append(_until(record, end))
+            records.append(record.cut(slice(end)))
             positions.append(places[:count])
             if start is not None:
                 of_start.append(start[:count])
@@ -102,15 +102,3 @@ class Beginnings:
 def with_numbers_of(state: ModelState, other: ModelState) -> ModelState:
     """Give a model with the free numbers of another one of the same blocks."""
     return at_values(state, np.array([other.value(free) for free in state.free]))
-
-
-def _until(record: Record, end: int) -> Record:
-    simulated, lost = record.simulated, record.interpolated
-    return replace(
-        record,
-        u=record.u[:end].copy(),
-        y=record.y[:end].copy(),
-        period_samples=None,
-        simulated=None if simulated is None else simulated[:end].copy(),
-        interpolated=None if lost is None else lost[:end].copy(),
-    )

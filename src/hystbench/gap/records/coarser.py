@@ -73,8 +73,7 @@ def _every(record: Record, factor: int) -> Record:
         return record
     period = record.period_samples
     return replace(
-        _cut(record, slice(None, None, factor)),
-        dt=record.dt * factor,
+        record.cut(slice(None, None, factor)),
         period_samples=None if period is None else period // factor,
     )
 
@@ -100,17 +99,6 @@ def _last_periods(records: Sequence[Record]) -> tuple[Record, ...]:
     if any(count >= len(item) for count, item in zip(kept, records, strict=True)):
         return tuple(records)
     return tuple(
-        _cut(item, slice(-count, None))
+        replace(item.cut(slice(-count, None)), period_samples=item.period_samples)
         for count, item in zip(kept, records, strict=True)
-    )
-
-
-def _cut(record: Record, kept: slice) -> Record:
-    simulated, lost = record.simulated, record.interpolated
-    return replace(
-        record,
-        u=record.u[kept].copy(),
-        y=record.y[kept].copy(),
-        simulated=None if simulated is None else simulated[kept].copy(),
-        interpolated=None if lost is None else lost[kept].copy(),
     )

@@ -1,0 +1,60 @@
+"""Records that begin in the middle of a motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.bases.lead import without_lead
+from hystbench.gap.records.evidence import Evidence
+from hystbench.model import Model
+from hystbench.record import Channel, Record
+
+DT = 0.01
+CHANNELS = Channel("force", "N"), Channel("position", "mm")
+LAG = TransferFunction(numerator=(1.0,), denominator=(0.3, 1.0))
+FREE = ("transfer-function.numerator",)
+
+
+def record(start, use="fit", count=2000):
+    """A lag of .3 s that has run from zero until the record starts."""
+    u = np.sin(1.7 * DT * np.arange(start + count)) + 1.0
+    u[0] = 0.0
+    y = LAG.simulate(u, u, DT) if start == 0 else LAG.simulate(u, u, DT)[start:]
+    noise = 0.001 * np.random.default_rng(start).standard_normal(count)
+    return Record("r", DT, u[start:], y + noise, *CHANNELS, "measured", use)
+
+
+def linear(free=FREE):
+    return Model("linear", *CHANNELS, (LAG,), free)
+
+
+def leads(base, *records):
+    fit = tuple(item for item in records if item.use == "fit")
+    held = tuple(item for item in records if item.use == "hold-out")
+    found = without_lead(Evidence("device", fit, held), base)
+    return [item.lead for item in (*found.fit, *found.hold_out)]
+
+
+def test_of_a_record_that_was_cut_out_of_a_longer_one_the_first_tenth_is_left_out():
+    assert leads(linear(), record(537), record(537, "hold-out")) == [200, 200]
+
+
+def test_each_record_is_looked_at_by_itself():
+    early = record(0)
+    quiet = replace(early, y=np.where(np.arange(2000) < 200, early.y, early.y + 0.01))
+    assert leads(linear(), quiet, record(537)) == [0, 200]
+
+
+def test_a_base_that_was_given_starts_as_it_says():
+    assert leads(linear(free=()), record(537)) == [0]
+
+
+def test_a_window_of_a_free_mass_knows_its_start_otherwise():
+    assert leads(linear(), replace(record(537), decay_s=1.0)) == [0]
+
+
+def test_scores_leave_a_lead_out():
+    found = without_lead(Evidence("device", (record(537),), ()), linear())
+    assert found.fit[0].counted.sum() == pytest.approx(1800)
