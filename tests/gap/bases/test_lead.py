@@ -47,6 +47,16 @@ def test_each_record_is_looked_at_by_itself():
     assert leads(linear(), quiet, record(537)) == [0, 200]
 
 
+def test_what_no_state_at_the_start_would_do_is_scored():
+    first = record(0)
+    hum = np.where(np.arange(2000) < 200, np.sin(9 * DT * np.arange(2000)), 0.0)
+    assert leads(linear(), replace(first, y=first.y + hum)) == [0]
+
+
+def test_a_base_that_does_not_settle_within_a_tenth_is_scored_from_the_start():
+    assert leads(linear(), record(537, count=1000)) == [0]
+
+
 def test_a_base_that_was_given_starts_as_it_says():
     assert leads(linear(free=()), record(537)) == [0]
 

@@ -192,3 +192,29 @@ def test_a_slider_without_a_clearance_is_friction_and_no_rival_of_it():
         best_host([begun], score), score, offered=["friction", "slider-with-gap"]
     )
     assert {item.effects for item in every} == {(), ("friction",)}
+
+
+def test_friction_that_gives_way_along_a_curve_is_no_hysteretic_force():
+    """Dahl's friction by small steps of Euler: it slides on nearly all of its way."""
+    random = np.random.default_rng(8)
+    records = []
+    for size in (3.0, 6.0):
+        u = size * np.repeat(random.uniform(-1, 1, 80), 20)
+        q, v, held, out = 0.0, 0.0, 0.0, []
+        for force in np.repeat(u, 40):
+            out.append(q)
+            v += DT / 40 * (force - 1.5 * v - 60.0 * q - held)
+            held += DT / 40 * v * (0.8 - np.sign(v) * held) / 4e-4  # N per m
+            q += DT / 40 * v
+        noise = 1e-5 * random.standard_normal(1600)
+        records.append(record(f"{size:g}", u, np.array(out[::40]) + noise, ("N", "m")))
+    begun = one_coordinate(tuple(records), MOVES, "zero-order")
+    sample = Sample.of(tuple(records))
+    score = Score(sample, np.zeros((len(sample), 0)), 1e-10)
+    offered = ["friction", "hysteretic-force"]
+    host = best_host(list(begun), score)
+    best = min(search(host, score, offered), key=lambda x: x.score)
+    assert (best.effects, best.forms) == (("friction",), ("Dahl",))
+    law = best.fitted.state.chain[1]
+    assert law.largest == pytest.approx(0.8, rel=0.05)
+    assert law.yield_distance == pytest.approx(4e-4, rel=0.25)

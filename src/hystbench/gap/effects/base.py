@@ -279,7 +279,7 @@ class Effect(ABC):
             Other parameters.
         """
         block = registry()[self.name].from_mapping({name: 2 * moved.step, **given})
-        return Law("", block, (name,), place, least=moved.step)
+        return Law("", block, (name,), place, ranges={name: (moved.step, np.inf)})
 
     def curve(
         self,

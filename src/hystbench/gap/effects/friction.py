@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from hystbench.blocks.friction_force import FrictionForce
+from hystbench.blocks.hysteretic_force import HystereticForce
 from hystbench.blocks.smooth_friction import SmoothFriction
 from hystbench.gap.effects.base import Effect, Variant, logarithmic
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import SLIDES, Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
 HOLDS = 1e-7
 """Share of the reach by which dry friction gives way where it holds: no record shows
 so little."""
+SOON = 1e-3
+"""The same where it gives way along a curve."""
 
 
 class Friction(Effect):
@@ -21,7 +24,7 @@ class Friction(Effect):
     name = "friction"
     shows = "branch"
     place = "mechanics"
-    laws = ("friction-force", "smooth-friction")
+    laws = ("friction-force", "smooth-friction", "hysteretic-force")
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer it behind the mechanics, by the velocity at which it saturates."""
@@ -57,6 +60,17 @@ class Friction(Effect):
                 "stribeck_velocity": 0.1 * moved.speed,
             }
             yield Law("Stribeck", FrictionForce(**own), tuple(own))
+        for share in (0.03, 0.3):
+            dahl = {
+                "largest": share * moved.force,
+                "yield_distance": SOON * moved.reach,
+            }
+            yield Law(
+                "Dahl",
+                HystereticForce(**dahl, sharing=0.0),
+                tuple(dahl),
+                ranges={"yield_distance": (0.0, SLIDES * moved.reach)},
+            )
         for share in (0.03, 0.3):
             smooth = {
                 "coulomb": 0.1 * moved.force,

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from hystbench.blocks.hysteretic_force import HystereticForce as Block
 from hystbench.gap.effects.base import ForceEffect
-from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.law import SLIDES, Law, Moved
 
 
 class HystereticForce(ForceEffect):
@@ -20,4 +22,5 @@ class HystereticForce(ForceEffect):
         names = ("largest", "yield_distance", "sharing")
         for share, way in ((0.03, 0.03), (0.1, 0.3), (0.3, 1.0)):
             block = Block(largest=share * moved.force, yield_distance=way * moved.reach)
-            yield Law("Bouc-Wen", block, names)
+            ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
+            yield Law("Bouc-Wen", block, names, ranges=ranges)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
-
-import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.store import Store
+
+SLIDES = 0.01
+"""Share of the reach within which a force gives way that is dry friction: it slides on
+nearly all of its way. What yields on a longer way is a hysteretic force."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +64,8 @@ class Law:
     place : {"inside", "before", "behind"}
     stands_for : float
         Share of the linear spring that the force stands for: it goes out of the spring.
-    least : float
-        Of its numbers, where that is more than their blocks' own bound.
+    ranges : mapping of str to (float, float)
+        Of its numbers, where beyond them it would be another effect.
     """
 
     form: str
@@ -70,7 +73,7 @@ class Law:
     free: tuple[str, ...]
     place: Literal["inside", "before", "behind"] = "inside"
     stands_for: float = 0.0
-    least: float = -np.inf
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 class Filled(NamedTuple):

@@ -43,7 +43,7 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         chain=chain,
         free=(
             *(free._replace(block=moved(free.block)) for free in state.free),
-            *(Free(place, name, low=law.least) for name in law.free),
+            *(_free(place, name, law) for name in law.free),
         ),
         added=(
             *(
@@ -53,6 +53,11 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
             item,
         ),
     )
+
+
+def _free(place: int, name: str, law: Law) -> Free:
+    low, high = law.ranges.get(name, (-np.inf, np.inf))
+    return Free(place, name, low=low, high=high)
 
 
 def evened(state: ModelState) -> ModelState:

@@ -244,6 +244,8 @@ def raced(
     """Fit starts a little, and the better half of them further, until one is left.
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
+    The best start of each law stays in the race for a round more: a law of more curvature
+    takes longer to get near.
 
     References
     ----------
@@ -262,7 +264,16 @@ def raced(
         running.sort(key=lambda pair: pair[1].score)
         if len(running) == 1 or evaluations >= QUICK:
             return running[0]
-        running = running[: ceil(len(running) / 2)]
+        half = ceil(len(running) / 2)
+        first = evaluations == FEW
+        best_of_law = (
+            {item.forms: item for item, _ in reversed(running)} if first else {}
+        )
+        running = [
+            (item, own)
+            for k, (item, own) in enumerate(running)
+            if k < half or best_of_law.get(item.forms) is item
+        ]
         evaluations = min(2 * evaluations, QUICK)
 
 
