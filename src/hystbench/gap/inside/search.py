@@ -244,8 +244,7 @@ def raced(
     """Fit starts a little, and the better half of them further, until one is left.
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
-    The best start of each law stays in the race for a round more: a law of more curvature
-    takes longer to get near.
+    The best start of each law stays for a round more: some laws take longer to get near.
 
     References
     ----------
