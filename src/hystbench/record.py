@@ -168,17 +168,17 @@ class Record:
         kept : slice
             Samples in a row, or every so-manieth of them.
         """
-        arrays = (self.u, self.y, self.simulated, self.interpolated)
-        u, y, simulated, lost = (None if x is None else x[kept].copy() for x in arrays)
+        simulated, lost = self.simulated, self.interpolated
+        u = self.u[kept].copy()
         first, _, step = kept.indices(len(self))
         return replace(
             self,
             dt=self.dt * step,
             u=u,
-            y=y,
+            y=self.y[kept].copy(),
             period_samples=None,
-            simulated=simulated,
-            interpolated=lost,
+            simulated=None if simulated is None else simulated[kept].copy(),
+            interpolated=None if lost is None else lost[kept].copy(),
             lead=min(len(range(first, self.lead, step)), len(u)),
         )
 

@@ -68,7 +68,7 @@ def _without(record: Record, base: Model) -> Record:
     rest = record.y - base.simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
-    free = free_motion(base, record.dt * np.arange(lead))[measured]
+    free = free_motion(base, record.time[:lead])[measured]
     first = first[measured]
     if len(behind) == 0 or len(first) <= free.shape[1]:
         return record

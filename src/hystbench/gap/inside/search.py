@@ -244,7 +244,8 @@ def raced(
     """Fit starts a little, and the better half of them further, until one is left.
 
     Successive halving [1]_: the same time is spent on all starts of a round together.
-    The best start of each law stays for a round more: some laws take longer to get near.
+    The best start of each law stays for a round more: some laws take longer to come
+    near.
 
     References
     ----------
