@@ -82,30 +82,61 @@ INLINE lanes driven(const double *drive, const double *v, index_t points, index_
     return even + odd;
 }
 
+/* The same for LANES states of diagonal A and a piece of samples: what they add to the
+ * output. The drive is read once for several samples. */
+#define PIECE 128
+INLINE void modes_piece(index_t count, index_t points, index_t size, index_t rests,
+                        const double *factors, const double *drive, const double *c,
+                        const double *v, double *state, lanes *outputs)
+{
+    const lanes factor = load(factors), weight = load(c);
+    lanes x = load(state);
+    for (index_t k = 0; k < count; k += AT_ONCE) {
+        lanes even[AT_ONCE] = {{0}}, odd[AT_ONCE] = {{0}};
+        const index_t many = count - k < AT_ONCE ? count - k : AT_ONCE;
+        if (many == AT_ONCE)
+            for (index_t j = 0; j < points; j += 2) {
+                const lanes first = load(drive + j * size);
+                const lanes second = load(drive + (j + 1) * size);
+                UNROLL
+                for (index_t i = 0; i < AT_ONCE; i++) {
+                    even[i] += first * v[k + i + j];
+                    odd[i] += second * v[k + i + j + 1];
+                }
+            }
+        else
+            for (index_t i = 0; i < many; i++)
+                even[i] = driven(drive, v + k + i, points, size);
+        for (index_t i = 0; i < many; i++) {
+            if (k + i >= rests) x = factor * x + (even[i] + odd[i]);
+            outputs[k + i] += weight * x;
+        }
+    }
+    store(state, x);
+}
+
 INLINE index_t curve_modes(index_t n, index_t points, index_t now, const double *factors,
                            const double *drive, const double *c, double d,
                            const double *v, double *y, index_t vectors)
 {
     const index_t size = vectors * LANES;
     double x[size] ALIGNED;
+    lanes outputs[PIECE];
     for (index_t j = 0; j < size; j++) x[j] = 0;
-    for (index_t k = 0; k < n; k++) {
-        lanes output = {0};
-        UNROLL
-        for (index_t j = 0; j < size; j += LANES) {
-            if (k > 0)
-                store(x + j, load(factors + j) * load(x + j) +
-                                 driven(drive + j, v + k, points, size));
-            output += load(c + j) * load(x + j);
-        }
-        y[k] = sum(output) + d * v[k + now];
+    for (index_t start = 0; start < n; start += PIECE) {
+        const index_t count = n - start < PIECE ? n - start : PIECE;
+        for (index_t k = 0; k < count; k++) outputs[k] = (lanes){0};
+        for (index_t j = 0; j < size; j += LANES)
+            modes_piece(count, points, size, start == 0, factors + j, drive + j, c + j,
+                        v + start, x + j, outputs);
+        for (index_t k = 0; k < count; k++)
+            y[start + k] = sum(outputs[k]) + d * v[start + k + now];
     }
     return n;
 }
 
 /* So few states would leave most lanes idle: there these take samples instead. */
 #define FEW 3
-#define PIECE 128
 #define WINDOW 64
 INLINE index_t curve_few(index_t n, index_t points, index_t now, const double *factors,
                          const double *drive, const double *c, double d,
