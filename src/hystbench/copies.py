@@ -187,7 +187,9 @@ def _places(block: Rows, rows: Rows, block_step: Rows, step: Rows) -> list[int]:
         if not len(found):
             return []
         at, own = found + k, [k]
-        found = found[_equal(block[:, own], rows[:, at], block_step[:, own], step[:, at])]
+        found = found[
+            _equal(block[:, own], rows[:, at], block_step[:, own], step[:, at])
+        ]
     found = found[np.isin(found, _near(block[0], rows[0]), assume_unique=True)]
     return [int(place) for place in found[:MOST_PLACES]]
 

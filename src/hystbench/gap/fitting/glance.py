@@ -1,4 +1,4 @@
-"""A model on fewer samples: few to choose a point of a grid, more to search around it."""
+"""A model on fewer samples: few choose a point of a grid, more search around it."""
 
 from __future__ import annotations
 

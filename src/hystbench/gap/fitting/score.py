@@ -288,7 +288,7 @@ def _solve(
 def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Solve a symmetric system; directions that it hardly knows stay at zero."""
     if len(vector) == 1 and matrix[0, 0] > 0:  # as most are
-        return vector / matrix[0]
+        return np.asarray(vector / matrix[0])
     try:
         pivots = np.linalg.cholesky(matrix).diagonal()
     except np.linalg.LinAlgError:

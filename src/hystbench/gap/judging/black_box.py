@@ -127,7 +127,7 @@ class BlackBox:
         weights = self.weights / signals.spreads
         ends = np.cumsum([len(lines), *(block.shape[1] for block in blocks)])
         own, *others = np.split(weights, ends[:-1])
-        predicted = own @ lines - signals.middles @ weights
+        predicted = own @ lines - np.sum(signals.middles * weights)
         for block, part in zip(blocks, others, strict=True):
             predicted += block @ part
         return np.asarray(predicted)

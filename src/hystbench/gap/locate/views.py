@@ -228,7 +228,9 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     def change(shifts: FloatArray, every: int = 1) -> FloatArray:
         """Give what shifts change, shape (shifts, samples)."""
         moved = [
-            path(np.clip(samples.time[part][::every] - shifts[:, None], *path.x[[0, -1]]))
+            path(
+                np.clip(samples.time[part][::every] - shifts[:, None], *path.x[[0, -1]])
+            )
             - samples.simulated[part][::every]
             for path, part in zip(paths, samples.slices, strict=True)
         ]
@@ -237,7 +239,7 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     def missed(shifts: FloatArray, every: int = 1) -> FloatArray:
         rest = [samples.residual[part][::every] for part in samples.slices]
         away = np.concatenate(rest) - change(shifts, every)
-        return np.einsum("ij,ij->i", away, away) / away.shape[1]
+        return np.asarray(np.einsum("ij,ij->i", away, away) / away.shape[1])
 
     def missed_by(shift: float) -> float:
         return float(missed(np.array([shift]))[0])
