@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import yaml
 
-from hystbench.copies import common_piece
+from hystbench.copies import Written, common_piece
 from hystbench.dataset import load_dataset
 from hystbench.doubts import doubts
 from hystbench.gap.records.evidence import load_evidence
@@ -16,6 +16,10 @@ U = sine(3.0, count=1200) + 0.5 * sine(7.1, count=1200)
 Y = 5 * U + 0.02 * RNG.standard_normal(1200)
 OTHER = sine(4.0, count=1200)
 OTHER_Y = 5 * OTHER + 0.02 * RNG.standard_normal(1200)
+
+
+def shared(one, two):
+    return common_piece(Written(one), Written(two))
 
 
 def printed(values, form):
@@ -56,21 +60,21 @@ NO_COPIES = {
 @pytest.mark.parametrize("name", COPIES)
 def test_a_copy_is_seen_from_either_side(name):
     plain = record(U, Y)
-    assert common_piece(plain, COPIES[name]) is not None
-    assert common_piece(COPIES[name], plain) is not None
+    assert shared(plain, COPIES[name]) is not None
+    assert shared(COPIES[name], plain) is not None
 
 
 @pytest.mark.parametrize("name", NO_COPIES)
 def test_what_is_no_copy(name):
     plain = record(np.append(np.zeros(400), U), np.append(np.zeros(400), Y))
-    assert common_piece(plain, NO_COPIES[name]) is None
-    assert common_piece(NO_COPIES[name], plain) is None
+    assert shared(plain, NO_COPIES[name]) is None
+    assert shared(NO_COPIES[name], plain) is None
 
 
 def test_a_copied_piece_is_told_with_its_place():
-    piece = common_piece(record(U, Y), rows(slice(400, 700)))
+    piece = shared(record(U, Y), rows(slice(400, 700)))
     assert piece == (300, 400, 0, True)
-    piece = common_piece(rows(slice(400, 700)), record(U, Y))
+    piece = shared(rows(slice(400, 700)), record(U, Y))
     assert piece == (300, 0, 400, True)
 
 

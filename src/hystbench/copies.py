@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -42,7 +43,29 @@ class Piece(NamedTuple):
     exact: bool
 
 
-def common_piece(record: Record, other: Record) -> Piece | None:
+class Written:
+    """A record and the digits to which it is written, which are read once.
+
+    Parameters
+    ----------
+    record : Record
+    """
+
+    def __init__(self, record: Record) -> None:
+        self.dt = record.dt
+        self.rows: Rows = np.stack([record.u, record.y])
+
+    @cached_property
+    def steps(self) -> Rows:
+        """Step of the last digit of each value."""
+        return np.stack([_last_digit(row) for row in self.rows])
+
+    def every(self, step: int, start: int = 0) -> tuple[Rows, Rows]:
+        """Give every so manyth sample, and the steps of their last digits."""
+        return self.rows[:, start::step], self.steps[:, start::step]
+
+
+def common_piece(one: Written, two: Written) -> Piece | None:
     """Find a piece that two records share: half of the shorter one or more.
 
     Input and output must both be equal, each up to the last digit that is written in
@@ -52,21 +75,23 @@ def common_piece(record: Record, other: Record) -> Piece | None:
     Returns
     -------
     Piece or None
+        As seen from the first record.
     """
-    ratio = record.dt / other.dt
-    for one, two, step in (
-        (record, other, round(ratio)),
-        (other, record, round(1 / ratio) if ratio > 0 else 1),
+    ratio = one.dt / two.dt
+    for coarse, other, step in (
+        (one, two, round(ratio)),
+        (two, one, round(1 / ratio) if ratio > 0 else 1),
     ):
         for every in {1, step} if 1 < step <= MOST_RATIO else {1}:
-            if every == 1 and two is record:
+            if every == 1 and other is one:
                 continue  # the first pair has compared them as they are
             for start in range(every):
-                found = _shared(_rows(one), _rows(two)[:, start::every])
+                ours, theirs = coarse.every(1), other.every(every, start)
+                found = _shared(ours[0], theirs[0], ours[1], theirs[1])
                 if found is not None:
                     inside = start + every * found.other_first
                     piece = found._replace(other_first=inside)
-                    return piece if one is record else _turned(piece)
+                    return piece if coarse is one else _turned(piece)
     return None
 
 
@@ -75,14 +100,10 @@ def _turned(piece: Piece) -> Piece:
     return piece._replace(first=piece.other_first, other_first=piece.first)
 
 
-def _rows(record: Record) -> Rows:
-    return np.stack([record.u, record.y])
-
-
-def _shared(one: Rows, two: Rows) -> Piece | None:
+def _shared(one: Rows, two: Rows, one_step: Rows, two_step: Rows) -> Piece | None:
     """Find half or more of the shorter of two runs of samples in the other."""
     if one.shape[1] > two.shape[1]:
-        found = _shared(two, one)
+        found = _shared(two, one, two_step, one_step)
         return None if found is None else _turned(found)
     count = one.shape[1]
     least = count // 2 + count % 2
@@ -90,20 +111,14 @@ def _shared(one: Rows, two: Rows) -> Piece | None:
         return None
     # A run of half the samples holds the second quarter of them or the third.
     quarter = count // 4
-    blocks = {first: slice(first, first + quarter) for first in (quarter, count // 2)}
-    near = {first: _near(one[0, blocks[first]], two[0]) for first in blocks}
-    if not any(map(len, near.values())):
-        return None
-    steps = [np.stack([_last_digit(row) for row in rows]) for rows in (one, two)]
-    for first, block in blocks.items():
-        for place in _places(
-            near[first], one[:, block], two, steps[0][:, block], steps[1]
-        ):
+    for first in (quarter, count // 2):
+        block = slice(first, first + quarter)
+        for place in _places(one[:, block], two, one_step[:, block], two_step):
             away = place - first
             low, high = max(0, -away), min(count, two.shape[1] - away)
             ours, theirs = slice(low, high), slice(low + away, high + away)
             alike = _equal(
-                one[:, ours], two[:, theirs], steps[0][:, ours], steps[1][:, theirs]
+                one[:, ours], two[:, theirs], one_step[:, ours], two_step[:, theirs]
             )
             start, stop = _run_around(alike, first - low)
             if stop - start >= least:
@@ -158,18 +173,24 @@ def _near(block: FloatArray, row: FloatArray) -> NDArray[np.intp]:
     return np.flatnonzero(apart <= length * FINE**2 * squares[-1] / count)
 
 
-def _places(
-    found: NDArray[np.intp], block: Rows, rows: Rows, block_step: Rows, step: Rows
-) -> list[int]:
-    """Sort out places of a block by a few of its samples, before any is compared."""
-    for k in np.linspace(0, block.shape[1] - 1, 32).astype(int):
+def _places(block: Rows, rows: Rows, block_step: Rows, step: Rows) -> list[int]:
+    """Give places where a block may stand: by a few samples, then by all of the input.
+
+    Few samples leave next to none where nothing is copied.
+    """
+    first, *others = np.linspace(0, block.shape[1] - 1, 32).astype(int).tolist()
+    there, own = slice(first, first + rows.shape[1] - block.shape[1] + 1), [first]
+    found = np.flatnonzero(
+        _equal(block[:, own], rows[:, there], block_step[:, own], step[:, there])
+    )
+    for k in others:
         if not len(found):
-            break
-        there = found + k
-        own = slice(k, k + 1)
+            return []
+        at, own = found + k, [k]
         found = found[
-            _equal(block[:, own], rows[:, there], block_step[:, own], step[:, there])
+            _equal(block[:, own], rows[:, at], block_step[:, own], step[:, at])
         ]
+    found = found[np.isin(found, _near(block[0], rows[0]), assume_unique=True)]
     return [int(place) for place in found[:MOST_PLACES]]
 
 

@@ -11,7 +11,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from hystbench.copies import Piece, common_piece
+from hystbench.copies import Piece, Written, common_piece
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError
 from hystbench.record import Record
@@ -57,10 +57,13 @@ def doubts(
     """
     concerned = [item for item in records if about in (None, item.name)]
     found = [*_other_columns(dataset), *_strange_time(dataset, concerned)]
-    for one, two in combinations(records, 2):
+    written = [Written(record) for record in records]
+    for (one, its), (two, others) in combinations(
+        zip(records, written, strict=True), 2
+    ):
         if about not in (None, one.name, two.name):
             continue
-        piece = common_piece(one, two)
+        piece = common_piece(its, others)
         if piece is None:
             continue
         if one.use != two.use:

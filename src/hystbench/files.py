@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from hystbench.interrupt import held
 from hystbench.written import (
@@ -205,21 +205,29 @@ def write_csv(
     path: str | Path, columns: Sequence[str], rows: Iterable[Sequence[Any]]
 ) -> None:
     """Write a CSV file whole or not at all; None makes an empty cell."""
-    with (
-        atomic_path(path) as temporary,
-        temporary.open("w", newline="", encoding="utf-8") as stream,
-    ):
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(rows)
+    with _table(path, columns) as stream:
+        csv.writer(stream, lineterminator="\n").writerows(rows)
 
 
 def write_columns(
     path: str | Path, columns: Mapping[str, Iterable[float]], digits: int = 12
 ) -> None:
     """Write columns of numbers as CSV, each with so many digits."""
-    cells = [[f"{x:.{digits}g}" for x in column] for column in columns.values()]
-    write_csv(path, list(columns), zip(*cells, strict=True))
+    line = ",".join([f"%.{digits}g"] * len(columns)) + "\n"
+    rows = zip(*(list(column) for column in columns.values()), strict=True)
+    with _table(path, list(columns)) as stream:
+        stream.write("".join(map(line.__mod__, rows)))
+
+
+@contextmanager
+def _table(path: str | Path, columns: Sequence[str]) -> Iterator[TextIO]:
+    """Open a CSV file, in which the names of its columns stand."""
+    with (
+        atomic_path(path) as temporary,
+        temporary.open("w", newline="", encoding="utf-8") as stream,
+    ):
+        csv.writer(stream, lineterminator="\n").writerow(columns)
+        yield stream
 
 
 def markdown_table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

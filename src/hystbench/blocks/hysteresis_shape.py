@@ -41,6 +41,11 @@ class HysteresisShape(WrappingBlock):
         "Y/U^k", "c_k, from k = 1 on", -HUGE, HUGE, optional=True
     )
 
+    @property
+    def count(self) -> int:
+        """How many play operators there are."""
+        return len(self.thresholds)
+
     def wrap(
         self,
         inner: Hysteresis,
@@ -50,23 +55,24 @@ class HysteresisShape(WrappingBlock):
         growth: FloatArray | None = None,
     ) -> FloatArray:
         """Add the correction, whose thresholds grow with those inside."""
-        plays = growing_play(v, self.thresholds, growth)
-        y: FloatArray = inner.grow(v, u, dt, growth) + plays @ np.array(self.weights)
-        if self.square_weights:
-            y += (plays * plays) @ np.array(self.square_weights)
+        weights = np.array([self.weights, self.square_weights or [0.0] * self.count])
+        used = weights.any(axis=0)  # mostly one alone, while its weight is looked for
+        plays = growing_play(v, np.array(self.thresholds)[used], growth)
+        y: FloatArray = inner.grow(v, u, dt, growth) + plays @ weights[0, used]
+        if weights[1].any():
+            y += (plays * plays) @ weights[1, used]
         if self.powers:
             y += v * np.polyval(self.powers[::-1], v)
         return y
 
     def step(self, sampling: Sampling) -> Step:
         """Give what is added to the hysteresis inside."""
-        count = len(self.thresholds)
         constants = {
-            "count": count,
+            "count": self.count,
             "thresholds": np.array(self.thresholds),
             "weights": np.array(self.weights),
-            "square_weights": np.array(self.square_weights or (0.0,) * count),
+            "square_weights": np.array(self.square_weights or (0.0,) * self.count),
             "degrees": 1 + len(self.powers),
             "powers": np.array((0.0, *self.powers)),
         }
-        return Step("hysteresis_shape", constants, {"w": count}, grows=True)
+        return Step("hysteresis_shape", constants, {"w": self.count}, grows=True)

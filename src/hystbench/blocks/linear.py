@@ -87,11 +87,14 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     if hold != "band-limited" or len(v) < 3:
         return _step_by_step(system, v, dt, hold)
     phi, drive = _curve_steps(*_bytes(system), dt)
-    n, padded = len(v), len(drive[0])
+    n = len(v)
     y, path = np.empty(n), continued(v)
     c = kernels.pad(system.c)
-    name = "hb_curve_modes" if phi.ndim == 1 else "hb_curve_space"
-    sizes = (n, POINTS, AHEAD + 1, padded // kernels.WIDTH)
+    if phi.ndim == 1:
+        name, states = "hb_curve_modes", len(system.c)
+    else:
+        name, states = "hb_curve_space", len(drive[0]) // kernels.WIDTH
+    sizes = (n, POINTS, AHEAD + 1, states)
     kernels.call(name, *sizes, phi, drive, c, float(system.d), path, y)
     return y
 

@@ -13,6 +13,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from pathlib import Path
 
 import numpy as np
@@ -83,11 +84,7 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
     layout = layout_of(path, lines)
     if layout is None:
         raise InputError(f"{path}: {_no_numbers(lines, wanted)}")
-    rows = [
-        k
-        for k in range(layout.first, len(lines))
-        if lines[k].strip() and not lines[k].lstrip().startswith(COMMENTS)
-    ]
+    rows = _rows(text, lines, layout.first)
     _check_widths(path, lines, rows, layout)
     columns = [
         k
@@ -124,6 +121,17 @@ def read(path: Path, wanted: Collection[str] | None = None) -> Table:
     )
 
 
+def _rows(text: str, lines: Sequence[str], first: int) -> Sequence[int]:
+    """Give the lines that may hold numbers: not those that are empty, nor comments."""
+    if all(map(str.strip, lines[first:])) and not any(map(text.count, COMMENTS)):
+        return range(first, len(lines))  # most texts: no need to look line by line
+    return [
+        k
+        for k in range(first, len(lines))
+        if lines[k].strip() and not lines[k].lstrip().startswith(COMMENTS)
+    ]
+
+
 def layout_of(path: Path, lines: Sequence[str]) -> Layout | None:
     """Find how a text is laid out; None where it has no two rows of numbers."""
     some = [
@@ -145,6 +153,8 @@ def layout_of(path: Path, lines: Sequence[str]) -> Layout | None:
                 # Of equals the first is taken: commas between, points inside.
                 found = (count, width, separator, decimal)
                 best = max(best, found, key=lambda each: each[0])
+                if best[0] == len(some):
+                    break  # no other layout takes more lines than all
         if best[0]:
             break
     else:
@@ -260,6 +270,9 @@ def _check_widths(
 ) -> None:
     """Refuse rows of more cells than the header: decimal commas, or a lost line end."""
     separator, columns = layout.separator, len(layout.names)
+    counts = map(str.count, map(lines.__getitem__, rows), repeat(separator))
+    if separator != " " and max(counts, default=0) < columns:
+        return
     for k in rows:
         if separator != " " and lines[k].count(separator) < columns:
             continue
@@ -291,7 +304,7 @@ def _numbers(
         return [], {}
     separator, decimal = layout.separator, layout.decimal
     texts = [lines[k] for k in rows]
-    if not any('"' in line for line in texts):
+    if not any(map(str.__contains__, texts, repeat('"'))):
         plain = [x.replace(",", ".") for x in texts] if decimal == "," else texts
         try:
             table = np.loadtxt(

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from hystbench.files import read_json, whole_folder, write_csv, write_json
+from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
 from hystbench.gap.decision import Decision, find
 from hystbench.gap.fitting.compare import compare
@@ -191,9 +191,9 @@ def _write_hold_out(
     path: Path, record: Record, before: FloatArray, after: FloatArray
 ) -> None:
     signals = (record.time, record.y, before, after)
-    columns = [map("{:.9g}".format, signal.tolist()) for signal in signals]
-    rows = zip(*columns, strict=True)
-    write_csv(path, ["time_s", "measured", "before", "after"], rows)
+    names = ("time_s", "measured", "before", "after")
+    columns = {name: x.tolist() for name, x in zip(names, signals, strict=True)}
+    write_columns(path, columns, 9)
 
 
 def write_next_experiment(decision: Decision, channel: Channel, path: Path) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from hystbench.copies import common_piece
+from hystbench.copies import Written, common_piece
 from hystbench.dataset import Dataset, dataset_of
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
@@ -107,7 +107,7 @@ def draft(files: Sequence[Path], place: Path, given: Given, ask: Ask) -> Draft:
         (part,) = owners
         cut = cut_in_two(entries[0], records[0], missing_in(part, signals))
         pieces = _read(place, about, cut)
-        if common_piece(*pieces) is None:
+        if common_piece(*map(Written, pieces)) is None:
             entries, records = cut, pieces
             notes.append(
                 "one record alone: its last part is held out, by whole periods where "

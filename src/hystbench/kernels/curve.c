@@ -3,33 +3,52 @@
  * of sample k begins at v[k], its oldest sample first. */
 #include "lanes.h"
 
+/* sum_j weights[j] v[j], and the same of the samples behind it, LANES or several times
+ * as many at once. Even and odd j are summed apart, whatever is taken at once. */
+INLINE double weighed(index_t points, const double *weights, const double *v)
+{
+    double even = 0, odd = 0;
+    for (index_t j = 0; j + 1 < points; j += 2) {
+        even += v[j] * weights[j];
+        odd += v[j + 1] * weights[j + 1];
+    }
+    if (points % 2) even += v[points - 1] * weights[points - 1];
+    return even + odd;
+}
+#define AT_ONCE 4
+INLINE void weighed_many(index_t points, const double *weights, const double *v,
+                         double *out, index_t vectors)
+{
+    lanes even[AT_ONCE] = {{0}}, odd[AT_ONCE] = {{0}};
+    for (index_t j = 0; j + 1 < points; j += 2) {
+        UNROLL
+        for (index_t i = 0; i < vectors; i++) {
+            even[i] += load(v + i * LANES + j) * weights[j];
+            odd[i] += load(v + i * LANES + j + 1) * weights[j + 1];
+        }
+    }
+    if (points % 2)
+        for (index_t i = 0; i < vectors; i++)
+            even[i] += load(v + i * LANES + points - 1) * weights[points - 1];
+    UNROLL
+    for (index_t i = 0; i < vectors; i++) store(out + i * LANES, even[i] + odd[i]);
+}
+INLINE void weighed_all(index_t n, index_t points, const double *weights,
+                        const double *v, double *out)
+{
+    index_t k = 0;
+    for (; k + AT_ONCE * LANES <= n; k += AT_ONCE * LANES)
+        weighed_many(points, weights, v + k, out + k, AT_ONCE);
+    for (; k + LANES <= n; k += LANES) weighed_many(points, weights, v + k, out + k, 1);
+    for (; k < n; k++) out[k] = weighed(points, weights, v + k);
+}
+
 /* out[row][k] = sum_j weights[row][j] v[k + j] */
 EXPORT void hb_weighed(index_t n, index_t points, index_t rows, const double *weights,
                        const double *v, double *out)
 {
-    for (index_t row = 0; row < rows; row++) {
-        const double *own = weights + row * points;
-        double *to = out + row * n;
-        index_t k = 0;
-        for (; k + LANES <= n; k += LANES) {
-            lanes even = {0}, odd = {0};
-            for (index_t j = 0; j + 1 < points; j += 2) {
-                even += load(v + k + j) * own[j];
-                odd += load(v + k + j + 1) * own[j + 1];
-            }
-            if (points % 2) even += load(v + k + points - 1) * own[points - 1];
-            store(to + k, even + odd);
-        }
-        for (; k < n; k++) {
-            double even = 0, odd = 0;
-            for (index_t j = 0; j + 1 < points; j += 2) {
-                even += v[k + j] * own[j];
-                odd += v[k + j + 1] * own[j + 1];
-            }
-            if (points % 2) even += v[k + points - 1] * own[points - 1];
-            to[k] = even + odd;
-        }
-    }
+    for (index_t row = 0; row < rows; row++)
+        weighed_all(n, points, weights + row * points, v, out + row * n);
 }
 
 /* out[k] = sum_j taps[j] v[step k + j]: a symmetrical filter, read every step samples. */
@@ -63,32 +82,99 @@ INLINE lanes driven(const double *drive, const double *v, index_t points, index_
     return even + odd;
 }
 
+/* The same for LANES states of diagonal A and a piece of samples: what they add to the
+ * output. The drive is read once for several samples. */
+#define PIECE 128
+INLINE void modes_piece(index_t count, index_t points, index_t size, index_t rests,
+                        const double *factors, const double *drive, const double *c,
+                        const double *v, double *state, lanes *outputs)
+{
+    const lanes factor = load(factors), weight = load(c);
+    lanes x = load(state);
+    for (index_t k = 0; k < count; k += AT_ONCE) {
+        lanes even[AT_ONCE] = {{0}}, odd[AT_ONCE] = {{0}};
+        const index_t many = count - k < AT_ONCE ? count - k : AT_ONCE;
+        if (many == AT_ONCE)
+            for (index_t j = 0; j < points; j += 2) {
+                const lanes first = load(drive + j * size);
+                const lanes second = load(drive + (j + 1) * size);
+                UNROLL
+                for (index_t i = 0; i < AT_ONCE; i++) {
+                    even[i] += first * v[k + i + j];
+                    odd[i] += second * v[k + i + j + 1];
+                }
+            }
+        else
+            for (index_t i = 0; i < many; i++)
+                even[i] = driven(drive, v + k + i, points, size);
+        for (index_t i = 0; i < many; i++) {
+            if (k + i >= rests) x = factor * x + (even[i] + odd[i]);
+            outputs[k + i] += weight * x;
+        }
+    }
+    store(state, x);
+}
+
 INLINE index_t curve_modes(index_t n, index_t points, index_t now, const double *factors,
                            const double *drive, const double *c, double d,
                            const double *v, double *y, index_t vectors)
 {
     const index_t size = vectors * LANES;
     double x[size] ALIGNED;
+    lanes outputs[PIECE];
     for (index_t j = 0; j < size; j++) x[j] = 0;
-    for (index_t k = 0; k < n; k++) {
-        lanes output = {0};
-        UNROLL
-        for (index_t j = 0; j < size; j += LANES) {
-            if (k > 0)
-                store(x + j, load(factors + j) * load(x + j) +
-                                 driven(drive + j, v + k, points, size));
-            output += load(c + j) * load(x + j);
-        }
-        y[k] = sum(output) + d * v[k + now];
+    for (index_t start = 0; start < n; start += PIECE) {
+        const index_t count = n - start < PIECE ? n - start : PIECE;
+        for (index_t k = 0; k < count; k++) outputs[k] = (lanes){0};
+        for (index_t j = 0; j < size; j += LANES)
+            modes_piece(count, points, size, start == 0, factors + j, drive + j, c + j,
+                        v + start, x + j, outputs);
+        for (index_t k = 0; k < count; k++)
+            y[start + k] = sum(outputs[k]) + d * v[start + k + now];
     }
     return n;
 }
 
-/* A is diagonal, factors holds its diagonal; points is even. */
-EXPORT index_t hb_curve_modes(index_t n, index_t points, index_t now, index_t wide,
+/* So few states would leave most lanes idle: there these take samples instead. */
+#define FEW 3
+#define WINDOW 64
+INLINE index_t curve_few(index_t n, index_t points, index_t now, const double *factors,
+                         const double *drive, const double *c, double d,
+                         const double *v, double *y, index_t modes)
+{
+    double taps[FEW][WINDOW], driven_by[FEW][PIECE], x[FEW] = {0};
+    for (index_t i = 0; i < modes; i++)
+        for (index_t j = 0; j < points; j++) taps[i][j] = drive[j * WIDTH + i];
+    for (index_t start = 0; start < n; start += PIECE) {
+        const index_t count = n - start < PIECE ? n - start : PIECE;
+        for (index_t i = 0; i < modes; i++)
+            weighed_all(count, points, taps[i], v + start, driven_by[i]);
+        if (start == 0) /* at rest */
+            for (index_t i = 0; i < modes; i++) driven_by[i][0] = 0;
+        for (index_t k = 0; k < count; k++) {
+            double output = 0;
+            UNROLL
+            for (index_t i = 0; i < modes; i++) {
+                x[i] = factors[i] * x[i] + driven_by[i][k];
+                output += c[i] * x[i];
+            }
+            y[start + k] = output + d * v[start + k + now];
+        }
+    }
+    return n;
+}
+
+/* A is diagonal, factors holds its diagonal of so many modes; points is even. */
+EXPORT index_t hb_curve_modes(index_t n, index_t points, index_t now, index_t modes,
                               const double *factors, const double *drive,
                               const double *c, double d, const double *v, double *y)
 {
+    if (points <= WINDOW) switch (modes) {
+        case 1: return curve_few(n, points, now, factors, drive, c, d, v, y, 1);
+        case 2: return curve_few(n, points, now, factors, drive, c, d, v, y, 2);
+        case FEW: return curve_few(n, points, now, factors, drive, c, d, v, y, FEW);
+        }
+    const index_t wide = (modes + WIDTH - 1) / WIDTH;
 #define CALL(size) curve_modes(n, points, now, factors, drive, c, d, v, y, size)
     FOR_SIZES(wide, CALL)
 #undef CALL

@@ -1,4 +1,4 @@
-"""A model on few samples, which are enough to choose a point of a grid."""
+"""A model on fewer samples: few choose a point of a grid, more search around it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from hystbench.blocks.base import Block
+from hystbench.blocks.linear import LinearBlock
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Variant
 from hystbench.gap.fitting.score import Score
@@ -19,8 +21,9 @@ from hystbench.record import Record
 
 ENOUGH = 4
 """Records of which half is looked at."""
-STRAIGHT = 3e-3
-"""Of an input's largest size, by which straight lines between samples may miss it."""
+STRAIGHT, STRAIGHTER = 3e-3, 1e-3
+"""Of an input's largest size, by which straight lines between samples may miss it: at a
+glance, and where all records are looked at."""
 LEAST = 150
 """Samples that a record keeps."""
 EACH = 3
@@ -39,6 +42,18 @@ def glance_of(attempt: Attempt) -> Attempt:
     half = _half(state, score)
     few = _coarser(*half) if _takes_any_step(state, variant) else half
     return Attempt(few[0], variant, few[1])
+
+
+def thinned(attempt: Attempt) -> Attempt:
+    """Give a variant on all records, with fewer samples of those that move slowly.
+
+    What is scored stays the same. A mode rings faster than its input moves.
+    """
+    state, variant = attempt.state, attempt.variant
+    if not _takes_any_step(state, variant) or any(map(_rings, _blocks(state, variant))):
+        return attempt
+    thin = _in_longer_steps(attempt.state, STRAIGHTER)
+    return Attempt(thin, attempt.variant, attempt.score, attempt.number)
 
 
 def records_at_a_glance(count: int) -> int:
@@ -63,12 +78,7 @@ def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
 
 @lru_cache(maxsize=1)
 def _coarser(state: ModelState, score: Score) -> tuple[ModelState, Score]:
-    """Give a model and its score on records of fewer samples.
-
-    What it leaves of the records stays as it is: the difference of the simulation in
-    longer steps is made up for, as that of a quick one is.
-    """
-    steps = tuple(_step(record) for record in state.records)
+    """Give a model and its score on fewer scored samples, and records of fewer."""
     kept = [
         np.arange(part.start, part.stop, EACH if len(places) >= EACH * LEAST else 1)
         for part, places in zip(
@@ -77,16 +87,31 @@ def _coarser(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     ]
     rows = np.concatenate(kept)
     every = np.concatenate(state.sample.positions)
-    places = tuple(every[own] for own in kept)
+    few = replace(
+        state,
+        sample=Sample(tuple(every[own] for own in kept)),
+        correction=None if state.correction is None else state.correction[rows],
+    )
+    directions = orthonormal(score.directions[rows])
+    few = _in_longer_steps(few, STRAIGHT)
+    return few, Score(few.sample, directions, score.floor)
+
+
+@lru_cache(maxsize=2)
+def _in_longer_steps(state: ModelState, straight: float) -> ModelState:
+    """Give a model on records of fewer samples.
+
+    What it leaves of the records stays as it is: the difference of the simulation in
+    longer steps is made up for, as that of a quick one is.
+    """
+    steps = tuple(_step(record, straight) for record in state.records)
     few = replace(
         state,
         records=tuple(map(_every, state.records, steps)),
-        sample=Sample(places, apart=steps),
+        sample=Sample(state.sample.positions, apart=steps),
         correction=None,
     )
-    few = replace(few, correction=few.residual - state.residual[rows])
-    directions = orthonormal(score.directions[rows])
-    return few, Score(few.sample, directions, score.floor)
+    return replace(few, correction=few.residual - state.residual)
 
 
 def _takes_any_step(state: ModelState, variant: Variant) -> bool:
@@ -99,9 +124,8 @@ def _takes_any_step(state: ModelState, variant: Variant) -> bool:
         return False
     if state.hold == "zero-order":
         return False
-    point = {name: float(axis[0]) for name, axis in variant.grids.items()}
     try:
-        blocks = (*state.chain, *variant.build(point | variant.unit))
+        blocks = _blocks(state, variant)
     except InputError:
         return False  # one end of the grid is refused: nothing is known of its blocks
     return not any(
@@ -110,9 +134,20 @@ def _takes_any_step(state: ModelState, variant: Variant) -> bool:
     )
 
 
-def _step(record: Record) -> int:
+def _blocks(state: ModelState, variant: Variant) -> tuple[Block, ...]:
+    """Give the blocks of a chain, and of an effect at one end of its grid."""
+    point = {name: float(axis[0]) for name, axis in variant.grids.items()}
+    return (*state.chain, *variant.build(point | variant.unit))
+
+
+def _rings(block: Block) -> bool:
+    """Tell whether a block has modes that are no lags."""
+    return isinstance(block, LinearBlock) and not block.continuous().is_diagonal
+
+
+def _step(record: Record, straight: float) -> int:
     """Give the longest step of which straight lines are the input, nearly."""
-    most = STRAIGHT * float(np.abs(record.u).max())
+    most = straight * float(np.abs(record.u).max())
     longest = max(len(record) // LEAST, 1)
     for step in range(2, longest + 1):
         kept = record.u[::step]

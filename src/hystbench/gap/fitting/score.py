@@ -142,28 +142,34 @@ class Score:
         scale = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
         scale[scale == 0] = 1.0
         grams, within = self._products(np.column_stack([residual, columns / scale]))
-        counts = np.array([len(part) for part in self.parts])
+        flat, inner = grams.reshape(len(grams), -1), within.ravel()
         charge = np.zeros(k) if stiffness is None else stiffness / scale**2
         d = max(self.directions.shape[1], 1)
-        beta, last = np.zeros(k), np.inf
-        best = (np.inf, beta)
+        full, last = np.eye(1, k + 1)[0], np.inf
+        best = (np.inf, full)
         for _ in range(ROUNDS + 1):
-            full = np.concatenate([[1.0], -beta])
-            squares = np.maximum(full @ grams @ full, 0.0) / counts
-            power = max(float(full @ within @ full), 0.0)
-            value = self._value(squares, power, freedom) + float(charge @ beta**2)
+            both = np.outer(full, full).ravel()
+            squares = np.maximum(flat @ both, 0.0) / self._counts
+            power = max(float(inner @ both), 0.0)
+            value = self._value(squares, power, freedom) + float(charge @ full[1:] ** 2)
             if value < best[0]:
-                best = (value, beta)
+                best = (value, full)
             if abs(last - value) < STILL:
                 break
             last = value
-            weights = self.weight / (counts * np.maximum(squares, self.floor))
-            inner = d / max(power, d * self.floor)
-            normal = np.tensordot(weights, grams, 1) + inner * within
+            weights = self.weight / (self._counts * np.maximum(squares, self.floor))
+            normal = weights @ flat + d / max(power, d * self.floor) * inner
+            normal = normal.reshape(k + 1, k + 1)
             matrix = normal[1:, 1:].copy()
             np.fill_diagonal(matrix, matrix.diagonal() * (1 + 1e-12) + charge)
             beta = _solve(matrix, normal[1:, 0], positive)
-        return Amplitudes(best[1] / scale, best[0])
+            full = np.concatenate([[1.0], -beta])
+        return Amplitudes(-best[1][1:] / scale, best[0])
+
+    @cached_property
+    def _counts(self) -> NDArray[np.intp]:
+        """Samples that count, by record."""
+        return np.array([len(part) for part in self.parts])
 
     @cached_property
     def _stacked(self) -> FloatArray | None:
@@ -281,6 +287,8 @@ def _solve(
 
 def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Solve a symmetric system; directions that it hardly knows stay at zero."""
+    if len(vector) == 1 and matrix[0, 0] > 0:  # as most are
+        return np.asarray(vector / matrix[0])
     try:
         pivots = np.linalg.cholesky(matrix).diagonal()
     except np.linalg.LinAlgError:

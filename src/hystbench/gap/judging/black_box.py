@@ -122,8 +122,15 @@ class BlackBox:
         ndarray, shape (n,)
             In the unit of the output.
         """
-        table = self.signals.table(Compared(record, simulated), slice(None))
-        return np.asarray(table @ self.weights)
+        signals = self.signals
+        lines, blocks = signals.columns(Compared(record, simulated), slice(None))
+        weights = self.weights / signals.spreads
+        ends = np.cumsum([len(lines), *(block.shape[1] for block in blocks)])
+        own, *others = np.split(weights, ends[:-1])
+        predicted = own @ lines - np.sum(signals.middles * weights)
+        for block, part in zip(blocks, others, strict=True):
+            predicted += block @ part
+        return np.asarray(predicted)
 
     def outside(self, record: Record) -> tuple[str, ...]:
         """Tell in what a record lies outside the records that were fitted.
@@ -220,14 +227,17 @@ class Signals:
         left, size, right = np.linalg.svd(found.near_landmarks(cloud[chosen]))
         root = np.sqrt(np.maximum(size, LEAST))
         found = replace(found, whitening=(left / root) @ right)
-        raw = np.concatenate([found.table(*pair) for pair in pairs])
+        raw = np.concatenate([_table(*found.columns(*pair)) for pair in pairs])
         middles, spreads = raw.mean(axis=0), raw.std(axis=0)
         middles[-1] = 0.0  # the last column is a constant
         spreads[spreads == 0] = 1.0
-        found = replace(found, middles=middles, spreads=spreads)
-        return found, (raw - found.middles) / found.spreads
+        raw -= middles
+        raw /= spreads
+        return replace(found, middles=middles, spreads=spreads), raw
 
-    def table(self, compared: Compared, rows: Any) -> FloatArray:
+    def columns(
+        self, compared: Compared, rows: Any
+    ) -> tuple[FloatArray, list[FloatArray]]:
         """Give all columns: linear in the past, and nonlinear in the present.
 
         Parameters
@@ -238,28 +248,31 @@ class Signals:
 
         Returns
         -------
-        ndarray, shape (rows, m)
+        lines : ndarray, shape (k, rows)
+            The first columns, one a row.
+        blocks : list of ndarray, shape (rows, m) each
+            Those that follow; the last is a constant.
         """
         dt = compared.record.dt
         u, s = self._scaled(compared)
         position = np.arange(len(u))[rows]
-        columns: list[FloatArray] = []
+        lines: list[FloatArray] = []
         for signal in (u, s):
-            columns += [_lagged(signal, lag * self.step / dt, position) for lag in LAGS]
+            lines += [_lagged(signal, lag * self.step / dt, position) for lag in LAGS]
         times = np.geomspace(
             self.step, max(self.longest / 3, 2 * self.step), LOW_PASSES
         )
         for signal in (u, s, u**2):
-            columns += [low_pass(signal, dt, tau, signal[0])[rows] for tau in times]
+            lines += [low_pass(signal, dt, tau, signal[0])[rows] for tau in times]
         for frequency in np.geomspace(3 / self.longest, 0.2 / self.step, MODES):
-            columns += [part[rows] for part in _ringing(s, dt, float(frequency))]
+            lines += [part[rows] for part in _ringing(s, dt, float(frequency))]
         plays, _ = play(u, self.excursion * np.array(THRESHOLDS))
         state = self.state(compared, rows)
         first, second = np.triu_indices(state.shape[1])
-        columns += [np.tanh(state / width) for width in TURNS]
-        columns += [plays[rows], state[:, first] * state[:, second]]
-        columns += [self.near_landmarks(state), np.ones(len(state))]
-        return (np.column_stack(columns) - self.middles) / self.spreads
+        blocks = [np.tanh(state / width) for width in TURNS]
+        blocks += [plays[rows], state[:, first] * state[:, second]]
+        blocks += [self.near_landmarks(state), np.ones((len(state), 1))]
+        return np.array(lines), blocks
 
     def near_landmarks(self, state: FloatArray) -> FloatArray:
         """Give a Gaussian of the distance from each landmark, shape (rows, k)."""
@@ -282,6 +295,11 @@ class Signals:
             np.gradient(x, dt) / r for x, r in zip((u, s), self.rates, strict=True)
         ]
         return np.column_stack([x[rows] for x in (u, s, *rates, middle[:, 0])])
+
+
+def _table(lines: FloatArray, blocks: Sequence[FloatArray]) -> FloatArray:
+    """Give all columns in one."""
+    return np.hstack([lines.T, *blocks])
 
 
 def ridges(table: FloatArray, target: FloatArray) -> FloatArray:
@@ -324,6 +342,8 @@ def _never_zero(value: float) -> float:
 
 def _lagged(signal: FloatArray, lag: float, position: NDArray[np.intp]) -> FloatArray:
     """Take a signal some samples ago; before the record it rests where it begins."""
+    if lag == int(lag):
+        return signal[np.maximum(position - int(lag), 0)]
     return np.asarray(np.interp(position - lag, np.arange(len(signal)), signal))
 
 

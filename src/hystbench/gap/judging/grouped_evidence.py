@@ -66,11 +66,12 @@ class Products:
     @classmethod
     def of(cls, columns: FloatArray, signal: FloatArray) -> Products:
         """Multiply columns, shape (n, k), and a signal, shape (n,)."""
-        size = np.sqrt(np.mean(columns**2, axis=0))
-        columns = columns / np.where(size > 0, size, 1.0)
+        gram = columns.T @ columns
+        size = np.sqrt(gram.diagonal() / len(signal))
+        size = np.where(size > 0, size, 1.0)
         return cls(
-            columns.T @ columns,
-            columns.T @ signal,
+            gram / np.outer(size, size),
+            columns.T @ signal / size,
             float(signal @ signal),
             len(signal),
         )

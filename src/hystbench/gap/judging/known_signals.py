@@ -57,12 +57,12 @@ def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]
     """
     before, after = base.simulation.output, state.simulation.output
     increments = [b - a for a, b in zip(before, after, strict=True)]
-    over_time = _each_record(state, lambda record: _cosines(record, SLOW_COSINES))
+    over_time = _cosines(state, SLOW_COSINES)
     groups = {}
     if any(x.any() for x in increments):
         groups["strength"] = state.sample.take(increments)[:, None] * over_time
     groups["gain"] = state.sample.take(before)[:, None] * over_time
-    groups["path"] = _each_record(state, lambda record: _cosines(record, PATH_COSINES))
+    groups["path"] = _cosines(state, PATH_COSINES)
     largest = max(float(np.abs(record.u).max()) for record in state.records) or 1.0
     size = max(float(np.abs(y).max()) for y in after) or 1.0
     step = min(record.dt for record in state.records)
@@ -78,10 +78,11 @@ def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]
     }
     for name, make in makers.items():
         made = [
-            np.column_stack(make(record, record.u / largest, y / size))
+            make(record, record.u / largest, y / size)
             for record, y in zip(state.records, after, strict=True)
         ]
-        groups[name] = state.sample.take(made)
+        columns = [state.sample.take(signals) for signals in zip(*made, strict=True)]
+        groups[name] = np.column_stack(columns)
     return groups
 
 
@@ -107,22 +108,18 @@ def halves(state: ModelState, signals: FloatArray) -> FloatArray:
     return np.hstack(columns)
 
 
-def _each_record(state: ModelState, make: Callable[[Record], FloatArray]) -> FloatArray:
-    """Give every record columns of its own, zero in the others."""
-    made = []
-    for record, rows, positions in zip(
-        state.records, state.sample.slices, state.sample.positions, strict=True
+def _cosines(state: ModelState, count: int) -> FloatArray:
+    """Give every record cosines of its own, zero in the others; the first is one."""
+    sample, each = state.sample, count + 1
+    columns = np.zeros((len(sample), each * len(state.records)))
+    for k, (record, rows, positions) in enumerate(
+        zip(state.records, sample.slices, sample.positions, strict=True)
     ):
-        own = make(record)[positions]
-        full = np.zeros((len(state.sample), own.shape[1]))
-        full[rows] = own
-        made.append(full)
-    return np.hstack(made)
-
-
-def _cosines(record: Record, count: int) -> FloatArray:
-    phase = np.pi * (np.arange(len(record)) + 0.5) / len(record)
-    return np.cos(phase[:, None] * np.arange(count + 1))
+        phase = np.pi * (positions + 0.5) / len(record)
+        columns[rows, k * each : (k + 1) * each] = np.cos(
+            phase[:, None] * np.arange(each)
+        )
+    return columns
 
 
 def _slow_power(dt: float, u: FloatArray, y: FloatArray, times: FloatArray) -> Columns:

@@ -99,21 +99,29 @@ def fit_form(
     by_record : bool
         Whether each record has coefficients of its own.
     """
-    design = np.stack(columns, axis=1)
+    design = np.array(columns)
     fitted = np.empty_like(samples.residual)
     freedom = searched
     for part in samples.slices if by_record else (slice(None),):
-        own = design[part]
-        scale = np.linalg.norm(own, axis=0)
-        scale = np.where(scale > 0, scale, 1.0)
-        own = own / scale
-        found, _, rank, _ = np.linalg.lstsq(own, samples.residual[part], DEPENDENT)
-        fitted[part] = own @ found
-        freedom += int(rank)
+        weights, rank = _least_squares(design[:, part], samples.residual[part])
+        fitted[part] = weights @ design[:, part]
+        freedom += rank
     explained = samples.power - float(np.mean((samples.residual - fitted) ** 2))
     gained = saved(samples, explained, freedom)
     share = samples.share(explained, freedom)
-    return FittedForm(words, fitted, explained, freedom, gained, share, found / scale)
+    return FittedForm(words, fitted, explained, freedom, gained, share, weights)
+
+
+def _least_squares(rows: FloatArray, wanted: FloatArray) -> tuple[FloatArray, int]:
+    """Give the weights of rows that come nearest, the least of them, and their rank."""
+    gram = rows @ rows.T
+    size = np.sqrt(gram.diagonal())
+    size = np.where(size > 0, size, 1.0)
+    squares, vectors = np.linalg.eigh(gram / np.outer(size, size))
+    there = squares > max(DEPENDENT**2 * squares[-1], 0.0)
+    vectors = vectors[:, there]
+    along = vectors.T @ (rows @ wanted / size) / squares[there]
+    return vectors @ along / size, int(there.sum())
 
 
 def best(forms: Sequence[FittedForm]) -> FittedForm:

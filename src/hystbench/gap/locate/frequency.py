@@ -41,8 +41,8 @@ def frequency(samples: ViewSamples) -> View:
     p-value is that of the filter.
     """
     spectra, distortion = take_spectra(samples), take_distortion(samples)
-    bands = _bands(spectra)
-    pairs = [(band, [samples.thin(of) for of in band]) for band in bands]
+    bands = _bands(samples, spectra)
+    pairs = [(band, [samples.thinned(of()) for of in band]) for band in bands]
     whole = [of for band in bands for of in band]
     filtered = fit_form(samples, "linear", [c for _, columns in pairs for c in columns])
     # A mode that is missing lies in one band.
@@ -50,10 +50,8 @@ def frequency(samples: ViewSamples) -> View:
     own, passed = max([(filtered, whole), *found], key=lambda one: one[0].saved)
     form = named_or(samples, "frequency", [own])
     signals = form.added or [
-        np.sum(
-            [w * of(item) for w, of in zip(own.weights, passed, strict=True)], axis=0
-        )
-        for item in samples.compared
+        np.sum([w * x for w, x in zip(own.weights, parts, strict=True)], axis=0)
+        for parts in zip(*(of() for of in passed), strict=True)
     ]
     power, edges = _power(samples, signals)
     first, last = narrowest_bins(power)
@@ -76,27 +74,27 @@ def frequency(samples: ViewSamples) -> View:
     )
 
 
-Passed = Callable[[Compared], FloatArray]
+Passed = Callable[[], list[FloatArray]]
 
 
-def _bands(spectra: Spectra) -> list[list[Passed]]:
+def _bands(samples: ViewSamples, spectra: Spectra) -> list[list[Passed]]:
     """Give what passes each excited band, and the same a quarter of a period later."""
+    lines = [
+        (fft.rfft(item.simulated), fft.rfftfreq(len(item.record), item.record.dt))
+        for item in samples.compared
+    ]
+    counts = [len(item.record) for item in samples.compared]
+
+    def passed(low: float, high: float, turn: complex) -> list[FloatArray]:
+        inside = [turn * x * ((at >= low) & (at < high)) for x, at in lines]
+        return [fft.irfft(x, n) for x, n in zip(inside, counts, strict=True)]
+
     excited = np.flatnonzero(spectra.excited)
     if not len(excited):
-        return [[partial(_passed, band=(0.0, np.inf), turn=1.0)]]
+        return [[partial(passed, 0.0, np.inf, 1.0)]]
     low, high = spectra.low[excited[0]], spectra.high[excited[-1]]
     bands = pairwise(np.geomspace(low, high, BANDS + 1))
-    return [
-        [partial(_passed, band=ends, turn=turn) for turn in (1, 1j)] for ends in bands
-    ]
-
-
-def _passed(item: Compared, band: tuple[float, float], turn: complex) -> FloatArray:
-    """Let a band of the simulated output pass."""
-    count = len(item.record)
-    frequency = fft.rfftfreq(count, item.record.dt)
-    inside = (frequency >= band[0]) & (frequency < band[1])
-    return np.asarray(fft.irfft(turn * inside * fft.rfft(item.simulated), count))
+    return [[partial(passed, *ends, turn) for turn in (1, 1j)] for ends in bands]
 
 
 def _power(
@@ -241,23 +239,23 @@ def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
     frequency : ndarray, shape (m,)
     matrix : ndarray of complex, shape (9, m)
     """
-    from scipy.signal import csd  # late: it takes long to load
-
     record = item.record
     signals = np.stack([record.u, item.residual, item.simulated])
     n, period = len(record), record.period_samples
-    size, window, overlap = n // SEGMENTS, "hann", n // SEGMENTS // 2
+    size = n // SEGMENTS
+    step = size - size // 2
+    # That of Hann, one period long, or none over whole periods.
+    window = 0.5 - 0.5 * np.cos(2 * np.pi / size * np.arange(size))
     if period and n >= SEGMENTS * period:
         signals = whole_periods(signals, period).reshape(3, -1)
-        size, window, overlap = period, "boxcar", 0
+        size = step = period
+        window = np.ones(size)
     centred = signals - signals.mean(axis=1, keepdims=True)
-    frequency, matrix = csd(
-        centred[None],
-        centred[:, None],
-        1 / record.dt,
-        window=window,
-        nperseg=size,
-        noverlap=overlap,
-        detrend=False,
-    )
-    return frequency[1:], matrix.reshape(9, -1)[:, 1:] * frequency[1]
+    pieces = np.lib.stride_tricks.sliding_window_view(centred, size, axis=1)[:, ::step]
+    lines = fft.rfft(pieces * window)[:, :, 1:]
+    # Power of both signs of frequency; half the sampling rate has one.
+    both = np.full(lines.shape[2], 2.0)
+    both[-1] -= size % 2 == 0
+    scale = both / (pieces.shape[1] * size * np.sum(window**2))
+    matrix = np.einsum("ask,bsk->abk", lines, lines.conj()) * scale
+    return fft.rfftfreq(size, record.dt)[1:], matrix.reshape(9, -1)

@@ -136,7 +136,7 @@ def find_line(samples: ViewSamples) -> tuple[float | None, float]:
         height += np.log1p(strength)
         seen += strength > 0
         tested = white[free & ~_harmonics(cause)]
-        bins, strongest = bins + len(tested), max([strongest, *tested])
+        bins, strongest = bins + len(tested), tested.max(initial=strongest)
         found.append((at, white))
     often = seen >= max(0.5 * len(samples.compared), 1)
     # A bin exceeds x times its level with probability exp(-x); as the level is itself

@@ -40,6 +40,8 @@ EXPONENTS = (0.25, 0.5, 1.0)
 """Of the rate."""
 TIMES = 7
 """Time constants that are tried."""
+LOOKED_AT = 3000
+"""Samples of all records together that choose among them."""
 STARTS = 61
 """Delays that are tried, of both signs, before the best is refined."""
 PERIODS = 1.5
@@ -222,27 +224,38 @@ def fit_delay(samples: ViewSamples) -> tuple[float, FloatArray]:
     from scipy.optimize import minimize_scalar
 
     paths = [CubicSpline(item.record.time, item.simulated) for item in samples.compared]
-    times = [samples.time[part] for part in samples.slices]
 
-    def change(shift: float) -> FloatArray:
+    def change(shifts: FloatArray, every: int = 1) -> FloatArray:
+        """Give what shifts change, shape (shifts, samples)."""
         moved = [
-            path(np.clip(at - shift, path.x[0], path.x[-1]))
-            for path, at in zip(paths, times, strict=True)
+            path(
+                np.clip(samples.time[part][::every] - shifts[:, None], *path.x[[0, -1]])
+            )
+            - samples.simulated[part][::every]
+            for path, part in zip(paths, samples.slices, strict=True)
         ]
-        return np.concatenate(moved) - samples.simulated
+        return np.hstack(moved)
 
-    def missed(shift: float) -> float:
-        return float(np.mean((samples.residual - change(shift)) ** 2))
+    def missed(shifts: FloatArray, every: int = 1) -> FloatArray:
+        rest = [samples.residual[part][::every] for part in samples.slices]
+        away = np.concatenate(rest) - change(shifts, every)
+        return np.asarray(np.einsum("ij,ij->i", away, away) / away.shape[1])
+
+    def missed_by(shift: float) -> float:
+        return float(missed(np.array([shift]))[0])
 
     longest = 4 * max(item.record.dt for item in samples.compared)
     most = max(PERIODS / float(np.max(samples.main_frequencies)), longest)
     # From zero on, which wins ties: a record that tells nothing has no delay.
-    grid = sorted(np.linspace(-most, most, STARTS).tolist(), key=abs)
-    start, step = min(grid, key=missed), 2 * most / (STARTS - 1)
+    grid = np.linspace(-most, most, STARTS)
+    grid = grid[np.argsort(np.abs(grid), kind="stable")]
+    few = max(1, len(samples.residual) // LOOKED_AT)
+    start, step = float(grid[np.argmin(missed(grid, few))]), 2 * most / (STARTS - 1)
     ends = (start - step, start + step)
-    search = minimize_scalar(missed, bounds=ends, options={"xatol": 1e-4 * step})
-    shift = float(search.x) if missed(float(search.x)) < missed(0.0) else 0.0
-    return shift, change(shift)
+    search = minimize_scalar(missed_by, bounds=ends, options={"xatol": 1e-4 * step})
+    shift = float(search.x)
+    shift = shift if missed_by(shift) < missed_by(0.0) else 0.0
+    return shift, change(np.array([shift]))[0]
 
 
 def record(samples: ViewSamples) -> View:

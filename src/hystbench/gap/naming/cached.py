@@ -8,7 +8,7 @@ from typing import Any
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
 from hystbench.gap.fitting import refit, search
-from hystbench.gap.fitting.glance import glance_of
+from hystbench.gap.fitting.glance import glance_of, thinned
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.search import Attempt, Trial, coarse
 from hystbench.gap.fitting.serialize import (
@@ -40,7 +40,7 @@ def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried],
         kept, why = content
         found = [
             (
-                Attempt(state, variants[number], score, number),
+                thinned(Attempt(state, variants[number], score, number)),
                 Trial(variants[number], values, value),
             )
             for number, values, value in kept
@@ -119,7 +119,9 @@ def _tried(
     for number, item in runnable:
         attempt = Attempt(state, item, score, number)
         try:
-            trial = coarse(attempt, glance_of(attempt))
+            glance = glance_of(attempt)
+            attempt = thinned(attempt)
+            trial = coarse(attempt, glance)
         except Declined as reason:
             refused = str(reason)
             continue

@@ -36,6 +36,8 @@ STILL = 0.5
 """The same as a share of the best's gain: a grid's step may miss much of a gain."""
 FINALISTS = 6
 """Effects that are added and refitted jointly before one is taken."""
+BEHIND = 0.75
+"""Share of the best's gain that one of them may lack: a refit makes up for less."""
 EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
 AT_AN_END = "fits best at the end of what it can be"
@@ -119,7 +121,7 @@ def rank(
     likely = [
         trial
         for number, trial in enumerate(of_effect.values())
-        if number < FINALISTS
+        if (number < FINALISTS and trial.score < now - (now - best) * (1 - BEHIND))
         or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
     ]
     judged = [_judged(trial, state, score, now) for trial in likely]
