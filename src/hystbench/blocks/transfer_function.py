@@ -103,6 +103,15 @@ class TransferFunction(LinearBlock):
         return StateSpace(scale * a, b, (n - direct * d)[1:], direct)
 
 
+def stable(denominator: Sequence[float]) -> tuple[float, ...]:
+    """Reflect poles at the imaginary axis that lie behind it."""
+    poles = np.roots(denominator)
+    if np.all(poles.real < 0.0):
+        return tuple(denominator)
+    poles.real = -np.abs(poles.real)
+    return tuple((denominator[0] * np.real(np.poly(poles))).tolist())
+
+
 def possible_starts(records: Sequence[Record]) -> tuple[Start, ...]:
     """Give the starts that records may have: only whole periods repeat."""
     return STARTS if all(record.repeats for record in records) else STARTS[:-1]

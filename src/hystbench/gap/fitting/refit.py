@@ -56,7 +56,7 @@ def refit(
             ).values
             change = dict(enumerate(found[:count].tolist()))
             try:
-                moved = state.with_chain(state.moved(change))
+                moved = state.with_chain(state.moved(change, reflected=True))
                 value = score_of(moved, score)
             except InputError:
                 continue  # out of what the blocks accept together: go less far

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.blocks.calls import CallsUsedUp
+from hystbench.blocks.parameter import HUGE
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Values, Variant
 from hystbench.gap.fitting.score import Amplitudes, Score
@@ -88,6 +89,11 @@ class Attempt:
         """Charge for the square of a change of each of them."""
         return self.state.stiffness_of(self.more.shape[1])
 
+    @cached_property
+    def power(self) -> float:
+        """Mean square of the measured output about its mean."""
+        return max(float(np.var(self.state.measured)), 1.0 / HUGE)
+
     def at(self, point: Point) -> Trial:
         """Score the variant at a point of the grid."""
         if point not in self.known:
@@ -137,8 +143,15 @@ class Attempt:
     def _solve(
         self, residual: FloatArray, columns: FloatArray, first: int = 0
     ) -> Amplitudes:
-        """Solve for the amplitudes of columns and what the model may re-tune."""
+        """Solve for the amplitudes of columns and what the model may re-tune.
+
+        An amplitude that alone moves the output by its own rms costs a point: where a
+        number of the base does the same as one of the effect, the two must not run away
+        against each other.
+        """
         variant = self.variant
+        charge = np.mean(columns**2, axis=0) / self.power
+        charge[:first] = 0.0
         positive = [
             first + k for k, name in enumerate(variant.unit) if name in variant.positive
         ]
@@ -146,7 +159,7 @@ class Attempt:
             residual,
             np.hstack([columns, self.more]),
             self.freedom,
-            np.concatenate([np.zeros(columns.shape[1]), self.stiffness]),
+            np.concatenate([charge, self.stiffness]),
             positive,
         )
 

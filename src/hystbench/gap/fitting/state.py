@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
+from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Beside, Refused, Values
 from hystbench.gap.records.sample import Sample
@@ -243,21 +244,41 @@ class ModelState:
         value = getattr(self.chain[free.block], free.parameter)
         return float(value if free.element is None else value[free.element])
 
-    def moved(self, changes: dict[int, float]) -> tuple[Block, ...]:
-        """Give the chain with some free numbers changed by so much, inside bounds."""
-        chain = list(self.chain)
+    def moved(
+        self, changes: dict[int, float], reflected: bool = False
+    ) -> tuple[Block, ...]:
+        """Give the chain with some free numbers changed by so much, inside bounds.
+
+        Parameters
+        ----------
+        changes : dict of int to float
+            By place in ``free``.
+        reflected : bool
+            Whether poles that cross the imaginary axis are put back as far before it.
+
+        Raises
+        ------
+        InputError
+            If a block does not take its numbers together.
+        """
+        new: dict[int, dict[str, Any]] = {}
         for k, change in changes.items():
             free = self.free[k]
-            block = chain[free.block]
+            block, own = self.chain[free.block], new.setdefault(free.block, {})
             about = block.parameters()[free.parameter]
             low, high = max(about.low, free.low), min(about.high, free.high)
             value = float(np.clip(self.value(free) + change, low, high))
-            new: float | tuple[float, ...] = value
-            if free.element is not None:
-                own = list(getattr(block, free.parameter))
-                own[free.element] = value
-                new = tuple(own)
-            chain[free.block] = replace(block, **{free.parameter: new})
+            if free.element is None:
+                own[free.parameter] = value
+            else:
+                numbers = list(own.get(free.parameter, getattr(block, free.parameter)))
+                numbers[free.element] = value
+                own[free.parameter] = tuple(numbers)
+        chain = list(self.chain)
+        for place, own in new.items():
+            if reflected and "denominator" in own:
+                own["denominator"] = stable(own["denominator"])
+            chain[place] = replace(chain[place], **own)
         return tuple(chain)
 
     def with_chain(self, chain: tuple[Block, ...]) -> ModelState:

@@ -89,7 +89,7 @@ def hosts(
     if identified and not of_many_modes(start):
         begun = one_coordinate(start.records, quantities, start.hold)
         best = best_host(list(begun), score)
-        if best is not None:
+        if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
             yield Host(best.state, best, words)
     if not identified:
@@ -109,6 +109,20 @@ def hosts(
         frequency = np.sqrt(block.stiffness / block.mass) / (2 * np.pi)
         words = f"the base's mode at {frequency:.3g} Hz is a mechanism of its own"
         yield Host(best.state if identified else mode, best, words)
+
+
+def is_seen_moving(state: ModelState) -> bool:
+    """Tell whether a host's motion is slow enough for its records to show it.
+
+    Of a mass whose poles both lie beyond the highest frequency of the samples only the
+    static gain is seen. A force inside is then a static curve, which a chain has.
+    """
+    block = state.chain[0]
+    if not isinstance(block, Mechanism):
+        return True
+    poles = np.roots([block.mass, block.damping, block.stiffness])
+    step = min(record.dt for record in state.records)
+    return bool(np.min(np.abs(poles)) < np.pi / step)
 
 
 def of_many_modes(start: ModelState) -> bool:
