@@ -90,7 +90,7 @@ test: style
 	$(MAKE) --no-print-directory -j 2 types suite
 
 docs: $(READY)
-	$(BIN)/snakemake --cores all all gap inverse export_errors blind
+	$(BIN)/snakemake --cores all all gap export_errors blind
 # The picture is the last that the bench writes.
 	test -f results/benchmarks/growth.png || $(MAKE) bench
 	$(BIN)/hystbench docs
