@@ -30,8 +30,6 @@ MAKERS = (
     ("results/blind/", "snakemake blind"),
     ("results/blind-mechanisms/", "snakemake blind with the set mechanisms"),
     ("results/gap/", "snakemake gap"),
-    ("results/export/gap", "snakemake export_gap"),
-    ("results/export/", "snakemake export_errors"),
     ("", "make reproduce"),
 )
 #: Made of records that the project does not ship: where they are missing, a page stays
