@@ -61,18 +61,17 @@ def signals():
 
 
 def filters(x, d):
-    """Outputs, errors and final weights of every filter, plain and normalized."""
+    """Outputs, errors and final weights of every filter."""
     assert set(MORE) == set(published.FILTERS)
     jobs = [
-        (FILTERS[name](order=order, step_size=1e-3, normalized=n, **options), x, d)
+        (FILTERS[name](order=order, step_size=1e-3, **options), x, d)
         for name, options in MORE.items()
         for order in (3, 30, 70)
-        for n in (False, True)
     ]
     for (adaptive, _, _), result in zip(jobs, run_many(jobs), strict=True):
         assert result.diverged_at is None
         arrays = (result.output, result.error, result.weights)
-        yield f"{adaptive.name} {adaptive.order} {adaptive.normalized}", arrays
+        yield f"{adaptive.name} {adaptive.order}", arrays
     # one call for several step sizes
     together = [
         (FILTERS[name](order=30, step_size=1.1e-4 * k, **MORE[name]), x, d)
