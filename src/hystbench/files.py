@@ -214,11 +214,9 @@ def write_csv(
         writer.writerows(rows)
 
 
-def write_columns(
-    path: str | Path, columns: Mapping[str, Iterable[float]], digits: int = 12
-) -> None:
-    """Write columns of numbers as CSV, each with so many digits."""
-    cells = [[f"{x:.{digits}g}" for x in column] for column in columns.values()]
+def write_columns(path: str | Path, columns: Mapping[str, Iterable[float]]) -> None:
+    """Write columns of numbers as CSV, each with twelve digits."""
+    cells = [[f"{x:.12g}" for x in column] for column in columns.values()]
     write_csv(path, list(columns), zip(*cells, strict=True))
 
 
