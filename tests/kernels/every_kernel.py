@@ -107,7 +107,9 @@ def models(x):
     o = operators
     bent = Envelope(1.0, 2.0, 0.1, 0.2, 0.9, 1.5, -0.1, -0.2)
     yield "envelope functions", (bent.left(x), bent.right(x))
-    yield "gpo, Eq. 12", o.generalized_play(left, right, r, form="eq12", v=x)
+    sides = left.copy(), right.copy()
+    o.follow_direction(x, *sides)
+    yield "gpo, Eq. 12", o.generalized_play(*sides, r)
     yield "gpi", o.generalized_prandtl_ishlinskii(left, right, r, w)
     rates = (0.03 * growth, 0.9 * growth)
     yield "rdgpi", o.rate_dependent_prandtl_ishlinskii(left, right, *rates, 31)
