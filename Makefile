@@ -13,17 +13,16 @@ INSTALL := $(BIN)/python $(PIP_INSTALL)
 SOURCES := $(wildcard src/hystbench/kernels/*.c src/hystbench/kernels/*.h \
   src/hystbench/challenge/kernels/*.c src/hystbench/challenge/kernels/*.h)
 
-.PHONY: help reproduce test lint style types suite docs site bench rivals slurm test-slurm clean requirements
+.PHONY: help reproduce test lint style types suite docs site bench slurm test-slurm clean requirements
 help:
 	@echo "make reproduce  set up, run the whole pipeline, write results/report.html"
 	@echo "make test       set up, check style and types, run the tests"
 	@echo "make docs       fill the tables of README.md and docs/ from results/ (after test-slurm)"
 	@echo "make site       set up .venv-site, write docs/ as web pages into build/site"
 	@echo "make bench      measure kernels and pipeline beside their peers, fill docs/speed.md"
-	@echo "make rivals     set up .venv-rivals, so that SINDy and NARX enter the blind contest"
 	@echo "make slurm      set up .venv-slurm, from which the pipeline runs on a cluster"
 	@echo "make test-slurm run the pipeline through a real Slurm on this machine (Debian, root)"
-	@echo "make clean      remove .venv, .venv-rivals, .venv-slurm, .venv-site, build/site and what was written to results"
+	@echo "make clean      remove .venv, .venv-slurm, .venv-site, build/site and what was written to results"
 
 # Each of hundreds of jobs would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -45,8 +44,8 @@ $(VENV)/ready-%: requirements-%.txt $(READY)
 	$(INSTALL) --require-hashes -r $<
 	touch $@
 
-# Environments of their own: the rivals want an older numpy, and Snakemake imports the
-# cluster's plugin wherever it is installed, which makes every start longer.
+# An environment of its own: Snakemake imports the cluster's plugin wherever it is
+# installed, which makes every start longer.
 # After .venv, which looks first and builds the kernels that all use.
 .venv-%/ready: requirements-%.txt $(READY)
 	test -x $(@D)/bin/python || $(PYTHON) -m venv $(@D)
@@ -54,7 +53,7 @@ $(VENV)/ready-%: requirements-%.txt $(READY)
 	CC="$(CC)" $(@D)/bin/python $(PIP_INSTALL) --no-deps --no-build-isolation -e .
 	touch $@
 
-rivals slurm: %: .venv-%/ready
+slurm: .venv-slurm/ready
 
 # The site needs nothing of hystbench, so its environment is made without it.
 .venv-site/ready: requirements-site.txt
@@ -90,7 +89,7 @@ test: style
 	$(MAKE) --no-print-directory -j 2 types suite
 
 docs: $(READY)
-	$(BIN)/snakemake --cores all all gap inverse export_errors blind
+	$(BIN)/snakemake --cores all all gap blind
 # The picture is the last that the bench writes.
 	test -f results/benchmarks/growth.png || $(MAKE) bench
 	$(BIN)/hystbench docs
@@ -113,11 +112,10 @@ requirements:
 	$(COMPILE) --extra dev --output-file requirements.txt pyproject.toml
 	for group in bench slurm; do $(COMPILE) --extra $$group \
 	  --constraint requirements.txt --output-file requirements-$$group.txt pyproject.toml || exit 1; done
-	$(COMPILE) --extra rivals --output-file requirements-rivals.txt pyproject.toml
 	echo 'mkdocs>=1.6,<2' | $(COMPILE) --output-file requirements-site.txt -
 
 # Of results only what is on the lists of what hystbench wrote.
 clean:
 	@test ! -e results || test -x $(BIN)/hystbench || { echo "results: stays, as without $(VENV) nobody tells what hystbench wrote there; run 'make $(READY)' first, or remove it by hand" >&2; exit 1; }
 	test ! -e results || $(BIN)/hystbench clean results
-	rm -rf $(VENV) .venv-rivals .venv-slurm .venv-site build/site .snakemake
+	rm -rf $(VENV) .venv-slurm .venv-site build/site .snakemake

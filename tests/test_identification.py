@@ -73,20 +73,6 @@ def test_every_point_of_the_box_gives_feasible_envelopes(point, low, width):
     assert np.min(left - right) == pytest.approx(point[5], rel=0.05, abs=1e-4)
 
 
-@given(boxes, st.floats(-5, 5), st.floats(0.01, 10))
-def test_a_point_comes_back_from_its_envelopes(point, low, width):
-    envelope = shape.envelope_of(point, low, low + width)
-    scaled = shape.rescaled(envelope, 3.0)
-    again = shape.point_of(scaled, low, low + width)
-    assert again == pytest.approx(point, rel=1e-3, abs=1e-3)
-
-
-def test_an_envelope_that_falls_is_no_starting_point(record):
-    falling = Envelope(1.0, -1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
-    with pytest.raises(InputError, match="a0\\*a1 must be positive"):
-        identify(*record, ORDER, initial=[falling])
-
-
 @given(st.lists(st.integers(-4, 4), min_size=20, max_size=200), st.integers(2, 12))
 def test_a_thinned_record_leaves_the_operators_as_they_were(steps, count):
     u = np.cumsum(np.array(steps, dtype=float))

@@ -188,14 +188,6 @@ def test_a_signal_of_the_tables_that_is_not_defined_is_refused():
         read(config)
 
 
-def test_the_calibration_sees_no_held_out_signal():
-    seen = set(read(CONFIG).calibration_job["signals"])
-    assert len(seen) == 8
-    # by the split of docs/calibration.md
-    assert not seen & {"sine-060hz", "sine-120hz", "sine-200hz", "chirp-1-100hz"}
-    assert "multisine-random-0-100hz" not in seen
-
-
 def test_a_misspelt_target_gets_the_nearest_name():
     settings = read(CONFIG)
     for target in [

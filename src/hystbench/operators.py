@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hystbench import kernels
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 Form = Literal["eq4", "eq12"]
@@ -49,15 +49,10 @@ def generalized_play(
     right: ArrayLike,
     thresholds: ArrayLike,
     state: ArrayLike | None = None,
-    form: Form = "eq4",
-    v: ArrayLike | None = None,
-    v_before: float | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Generalized play operators, Eq. 4 or Eq. 12.
+    """Generalized play operators, Eq. 4: ``max(right - r, min(left + r, w))``.
 
-    Eq. 4 is ``max(right - r, min(left + r, w))``. Eq. 12 lets only a rising input
-    reach the right envelope and only a falling one the left. The two agree once
-    ``w`` lies in ``[right - r, left + r]``, as long as the envelopes do not cross.
+    Eq. 12 is the same on envelopes that :func:`follow_direction` rewrote.
 
     Parameters
     ----------
@@ -67,13 +62,6 @@ def generalized_play(
         Thresholds in the unit of the envelopes, none negative.
     state : array_like, shape (m,), optional
         Outputs before the first sample; zero by default.
-    form : {"eq4", "eq12"}
-        Which equation.
-    v : array_like, shape (n,), optional
-        Input; Eq. 12 needs it.
-    v_before : float, optional
-        Input before the first sample, for Eq. 12; the first sample by default,
-        which then changes nothing.
 
     Returns
     -------
@@ -85,9 +73,9 @@ def generalized_play(
     Raises
     ------
     InputError
-        If shapes differ, a threshold is negative or Eq. 12 has no input.
+        If shapes differ or a threshold is negative.
     """
-    left, right = _envelopes(left, right, form, v, v_before)
+    left, right = _envelopes(left, right)
     r = _thresholds(thresholds)
     end = _state(state, len(r))
     outputs = np.empty((len(left), len(r)))
@@ -101,9 +89,6 @@ def generalized_prandtl_ishlinskii(
     thresholds: ArrayLike,
     weights: ArrayLike,
     state: ArrayLike | None = None,
-    form: Form = "eq4",
-    v: ArrayLike | None = None,
-    v_before: float | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Generalized Prandtl-Ishlinskii model, Eq. 9: weighted generalized plays.
 
@@ -111,7 +96,7 @@ def generalized_prandtl_ishlinskii(
 
     Parameters
     ----------
-    left, right, thresholds, state, form, v, v_before
+    left, right, thresholds, state
         As for :func:`generalized_play`.
     weights : array_like, shape (m,)
         Weight of each operator.
@@ -128,7 +113,7 @@ def generalized_prandtl_ishlinskii(
     InputError
         As for :func:`generalized_play`, or if weights and thresholds differ in number.
     """
-    left, right = _envelopes(left, right, form, v, v_before)
+    left, right = _envelopes(left, right)
     r = _thresholds(thresholds)
     w = _array(weights)
     if w.shape != r.shape:
@@ -204,7 +189,7 @@ def growing_prandtl_ishlinskii(
     """
     if growth is None:
         return generalized_prandtl_ishlinskii(left, right, thresholds, weights)[0]
-    left, right = _envelopes(left, right, "eq4", None, None)
+    left, right = _envelopes(left, right)
     r, w = _thresholds(thresholds), _array(weights)
     if w.shape != r.shape:
         raise InputError(f"weights: {w.shape} given, {len(r)} expected")
@@ -222,12 +207,11 @@ def rate_dependent_prandtl_ishlinskii(
     spacing: ArrayLike,
     ratio: ArrayLike,
     count: int,
-    first: Literal[0, 1] = 0,
     state: ArrayLike | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Prandtl-Ishlinskii model whose thresholds and weights follow the rate.
 
-    ``y(k) = sum_i ratio(k)^i F_i(k)`` over ``count`` values of i from ``first`` on,
+    ``y(k) = sum_i ratio(k)^i F_i(k)`` over ``count`` values of i from zero on,
     where operator ``F_i`` has the threshold ``i * spacing(k)`` at sample k and moves
     by Eq. 4. The weights are a geometric series: any scale stands outside.
 
@@ -241,8 +225,6 @@ def rate_dependent_prandtl_ishlinskii(
         Ratio of neighbouring weights at each sample.
     count : int
         Number of operators.
-    first : {0, 1}
-        The i of the first operator.
     state : array_like, shape (count,), optional
         Outputs before the first sample; zero by default.
 
@@ -258,7 +240,7 @@ def rate_dependent_prandtl_ishlinskii(
     InputError
         If shapes differ, ``count`` is below 1 or a spacing is negative.
     """
-    left, right = _envelopes(left, right, "eq4", None, None)
+    left, right = _envelopes(left, right)
     spacing, ratio = _array(spacing), _array(ratio)
     for name, array in (("spacing", spacing), ("ratio", ratio)):
         if array.shape != left.shape:
@@ -267,11 +249,9 @@ def rate_dependent_prandtl_ishlinskii(
         raise InputError("spacing: a negative or missing value")
     if count < 1:
         raise InputError(f"count: {count} operators, at least 1 expected")
-    if first not in (0, 1):
-        raise InputError(f"first: {first} given, 0 or 1 expected")
     end = kernels.pad(_state(state, count))
     y = np.empty(len(left))
-    number = np.arange(first, first + len(end), dtype=np.float64)
+    number = np.arange(len(end), dtype=np.float64)
     operators = number, kernels.pad(np.ones(count))
     sizes = (len(left), len(end) // kernels.WIDTH)
     rates = (spacing, ratio, end, y)
@@ -367,9 +347,13 @@ def modes(
 def follow_direction(v: FloatArray, left: FloatArray, right: FloatArray) -> None:
     """Rewrite envelopes in place so that Eq. 4 on them is Eq. 12.
 
-    Where the input rises the left envelope goes to infinity, where it falls the
-    right one to minus infinity, where it rests both: Eq. 4 then moves the output
-    just as Eq. 12 does. The first sample has no direction and stays as it is.
+    Eq. 12 lets only a rising input reach the right envelope and only a falling one the
+    left. The two agree once ``w`` lies in ``[right - r, left + r]``, as long as the
+    envelopes do not cross.
+
+    Where the input rises the left envelope goes to infinity, where it falls the right
+    one to minus infinity, where it rests both: Eq. 4 then moves the output just as
+    Eq. 12 does. The first sample has no direction and stays as it is.
     """
     kernels.call("hb_follow_direction", len(v), v, left, right)
 
@@ -410,29 +394,8 @@ def _state(values: ArrayLike | None, count: int) -> FloatArray:
     return state
 
 
-def _envelopes(
-    left: ArrayLike,
-    right: ArrayLike,
-    form: str,
-    v: ArrayLike | None,
-    v_before: float | None,
-) -> tuple[FloatArray, FloatArray]:
+def _envelopes(left: ArrayLike, right: ArrayLike) -> tuple[FloatArray, FloatArray]:
     left, right = _signal("left", left), _signal("right", right)
     if left.shape != right.shape:
         raise InputError(f"right: {right.shape} given, {left.shape} expected")
-    if form == "eq4":
-        return left, right
-    if form != "eq12":
-        raise InputError(f"form: {form!r} unknown; {nearest(form, FORMS)}")
-    if v is None:
-        raise InputError("v: Eq. 12 needs the input for its direction")
-    v = _signal("v", v)
-    if v.shape != left.shape:
-        raise InputError(f"v: {v.shape} given, {left.shape} expected")
-    first = v[:1] if v_before is None else [v_before]
-    # one sample more in front, so that the first one has a direction
-    long_v = np.concatenate((first, v))
-    long_left = np.concatenate((left[:1], left))
-    long_right = np.concatenate((right[:1], right))
-    follow_direction(long_v, long_left, long_right)
-    return long_left[1:], long_right[1:]
+    return left, right

@@ -19,7 +19,6 @@ from hystbench.plants import model_files
 from hystbench.published import FILTERS, load, signals
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.settings_checks import checked
-from hystbench.signals import highest_hz
 
 
 @dataclass(frozen=True)
@@ -177,19 +176,6 @@ class Settings:
         return self._of("twin", "seed", "input_zero_error", "input_noise")
 
     @property
-    def tracking_job(self) -> dict[str, Any]:
-        """Settings of open-loop tracking on the twin."""
-        common = self.config["excitation"]
-        definitions = {name: self.config["excitations"][name] for name in self.signals}
-        return {
-            "input_zero_error": self.config["twin"]["input_zero_error"],
-            "highest_hz": {
-                name: highest_hz(name, definition, common)
-                for name, definition in definitions.items()
-            },
-        }
-
-    @property
     def identification_job(self) -> dict[str, Any]:
         """Settings of Algorithm 1, for as many operators as the filter has."""
         job = {**self.config["identification"], **self._of("filters", "order")}
@@ -274,35 +260,9 @@ class Settings:
         }
 
     @property
-    def hypotheses_job(self) -> dict[str, Any]:
-        """Settings of what could explain the errors that stay far off."""
-        keys = ("signals", "measure", "filters")
-        return {key: self.constants_job[key] for key in keys}
-
-    @property
     def compare_job(self) -> dict[str, Any]:
         """Settings of the comparison: which signals the calibration saw."""
         return {"calibrated": list(CALIBRATION_SIGNALS)}
-
-    @property
-    def calibration_job(self) -> dict[str, Any]:
-        """Settings of the twin's calibration.
-
-        The step sizes are what it finds, and the published envelope functions made
-        the published tables: neither is taken from the filters' settings.
-        """
-        unused = {"convergence_factor", *self.error_job}
-        filters = {
-            name: {k: v for k, v in self.filter_job(name).items() if k not in unused}
-            for name in FILTERS
-        }
-        filters["gpo"]["envelopes"] = "published"
-        return {
-            "signals": {name: self.signal_job(name) for name in CALIBRATION_SIGNALS},
-            "filters": filters,
-            "seed": self.config["twin"]["seed"],
-            **self._of("calibration", "starts", "search_seed", "twins"),
-        }
 
     @property
     def error_job(self) -> dict[str, Any]:
@@ -330,27 +290,6 @@ class Settings:
                 "signal": self.order_sweep_signal,
                 "convergence_factor": factor,
             },
-        }
-
-    @property
-    def devices_job(self) -> dict[str, Any]:
-        """Settings of the paper's models on measured devices."""
-        measured = self.config["measured"]
-        filters = {}
-        for model in self.paper_filters:
-            job = self.filter_job(model)
-            job.pop("convergence_factor", None)
-            job.pop("amplitude", None)
-            job["fraction_of_bound"] = measured["fraction_of_bound"]
-            if "envelopes" in job:
-                job["envelopes"] = measured["envelopes"]
-            filters[model] = job
-        return {
-            "filters": filters,
-            "fractions": measured["fractions"],
-            "constant_tap": max(self.config["constants"]["constant_taps"]),
-            "identification": self.identification_job,
-            "rdgpi": self.rdgpi_job,
         }
 
     def filter_job(self, model: str) -> dict[str, Any]:

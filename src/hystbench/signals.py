@@ -116,20 +116,6 @@ def check_definition(
     return kind, values
 
 
-def highest_hz(
-    name: str, definition: Mapping[str, Mapping[str, Any]], common: Mapping[str, Any]
-) -> float:
-    """Give the highest frequency in a signal's definition in config.yaml.
-
-    Parameters
-    ----------
-    name, definition, common
-        As for :func:`check_definition`.
-    """
-    kind, values = check_definition(name, definition, common)
-    return waveforms(kind)[kind].highest_hz(**values)
-
-
 def _check_value(
     place: str, key: str, value: object, annotation: str, waveform: type[Waveform]
 ) -> None:

@@ -59,7 +59,6 @@ def test_what_is_missing_is_told_and_the_page_kept(folder, line, expected):
 @pytest.mark.parametrize(
     ("source", "maker"),
     [
-        ("results/devices/tracking.csv", "snakemake devices"),
         ("results/blind/elsewhere.csv", "hystbench job blind-elsewhere"),
     ],
 )

@@ -11,10 +11,11 @@ from hystbench.compare.evidence import (
     read_envelope_errors,
     read_evidence,
     read_identification,
-    read_order_sweep,
     read_run,
 )
+from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
+from hystbench.order_errors import OrderError
 from hystbench.written import ENTRIES
 
 from .made import sum_records
@@ -139,7 +140,7 @@ def test_order_sweep_is_read(tmp_path):
         "gpo,2,,diverged at sample 4,constant\n",
         encoding="utf-8",
     )
-    first, second = read_order_sweep(path)
+    first, second = read_items(path, OrderError)
     assert (first.model, first.order, first.mse) == ("gpo", 1, 0.5)
     assert math.isinf(second.mse)
 
@@ -150,10 +151,10 @@ def test_bad_number_and_missing_column_are_named(tmp_path):
         "model,order,mse,status,rule\ngpo,1,x,finite,constant\n", encoding="utf-8"
     )
     with pytest.raises(InputError, match="row 1: 'x' is not a number"):
-        read_order_sweep(path)
+        read_items(path, OrderError)
     path.write_text("model,ordr,mse,status,rule\n", encoding="utf-8")
     with pytest.raises(InputError, match="no column 'order'; did you mean 'ordr'"):
-        read_order_sweep(path)
+        read_items(path, OrderError)
 
 
 def test_envelope_errors_are_read(tmp_path):

@@ -5,13 +5,12 @@ import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
-from hystbench.export.compared import WAYS, off, row
+from hystbench.export.compared import off
 from hystbench.export.described import describe
 from hystbench.record import Channel, Record
-from tests.blocks.examples import EXAMPLES
-from tests.conftest import csv_text, run_hystbench
+from tests.conftest import run_hystbench
 
-from .test_steps import DT, INPUT, TIME, chain_of, model_of
+from .test_steps import DT, INPUT, chain_of, model_of
 
 GAIN = ("gain", {"value": 2.0})
 SMOOTH = ("drive-lag", {"time_constant_s": 1e-3, "hold": "band-limited"})
@@ -56,14 +55,6 @@ def test_a_record_that_says_nothing_is_refused(u, words):
         off(describe(model, Sampling(DT, delay=4)), model, 0 * u if u.all() else u)
 
 
-def test_each_sample_of_delay_comes_nearer_until_it_is_the_simulation():
-    model = model_of("mixed", chain_of(("gpi", EXAMPLES["gpi"]), SMOOTH))
-    cells = row("rig", model, [record_of(model, INPUT)])
-    largest = [float(cells[way].split()[0]) for way in WAYS]
-    assert largest[-1] <= 1e-9 < largest[3] <= largest[2] <= largest[0] <= largest[1]
-    assert cells["blocks"] == "gpi, drive-lag"
-
-
 def test_the_command_says_how_far_its_code_is(tmp_path):
     file, record = tmp_path / "model.yaml", written(tmp_path / "u.csv", INPUT)
     model = model_of("lag", chain_of(SMOOTH))
@@ -95,21 +86,3 @@ def test_what_cannot_be_compared_is_one_line_and_nothing_is_written(
     assert said in done.stderr
     assert done.stderr.count("\n") == 1
     assert not (tmp_path / "c").exists()
-
-
-def test_the_job_makes_a_row_of_each_model(tmp_path, write_dataset):
-    model = model_of("lag", chain_of(GAIN))
-    file = tmp_path / "model.yaml"
-    model.save(file)
-    table = csv_text(TIME, INPUT, 2 * INPUT)
-    dataset = write_dataset({"a.csv": table, "b.csv": table})
-    text = dataset.read_text().replace("b.csv}", "b.csv, use: hold-out}")
-    dataset.write_text(text.replace("input: {", "input: {hold: linear, "))
-    done = run_hystbench(
-        "job", "export-gap", "--case", dataset, file, "--out", tmp_path / "gap.csv"
-    )
-    assert done.returncode == 0, done.stderr
-    header, only = (tmp_path / "gap.csv").read_text().splitlines()
-    assert header.startswith("dataset,blocks,records,no option,--points 2")
-    assert only.startswith("bench,gain,1,")
-    assert only.count("0 (rms 0)") == len(WAYS)

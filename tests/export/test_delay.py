@@ -1,14 +1,12 @@
 """Code that may be late: it knows samples to come, and is nearer to the simulation."""
 
 import shutil
-import types
 
 import numpy as np
 import pytest
 
 from hystbench.blocks.step import Sampling
 from hystbench.errors import InputError
-from hystbench.export import python
 from hystbench.export.described import describe, exact_delay
 from tests.blocks.examples import EXAMPLES
 from tests.conftest import run_hystbench
@@ -125,16 +123,6 @@ def test_a_measured_input_is_nearer_with_samples_on_both_sides(tmp_path):
         rest = (run[delay:] - wanted[: len(wanted) - delay])[100:]
         off[delay] = np.sqrt(np.mean(rest**2))
     assert off[1] < 0.02 * off[0]
-
-
-def test_python_is_the_c(gaining, tmp_path):
-    few = [model for (name, d), model in gaining.items() if d == 2 and " 0" in name]
-    for model in few:
-        module = types.ModuleType("exported")
-        exec(python.module(model), module.__dict__)  # noqa: S102
-        y = module.Model().simulate(INPUT[:120])
-        c = Compiled([model], tmp_path).outputs(INPUT[:120])[model.name]
-        np.testing.assert_allclose(y, c, rtol=0, atol=1e-11 * (1 + np.ptp(c)))
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,6 @@
 
 import shutil
 import subprocess
-import types
 
 import numpy as np
 import pytest
@@ -13,7 +12,6 @@ from hystbench.blocks.held import HOLDS
 from hystbench.blocks.step import Sampling
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.errors import InputError
-from hystbench.export import python
 from hystbench.export.c import header, source
 from hystbench.export.described import describe
 from hystbench.model import Model
@@ -242,18 +240,6 @@ def test_every_block_is_exported_or_refused():
 def test_c_is_the_simulation(name, models, described, compiled):
     wanted = models[name].simulate(INPUT, DT)
     judge(compiled[described[name].name], wanted, described[name].differences)
-
-
-@pytest.mark.parametrize("name", [name for name in CHAINS if " 1" not in name])
-def test_python_is_the_c(name, described, compiled):
-    module = types.ModuleType("exported")
-    exec(python.module(described[name]), module.__dict__)  # noqa: S102
-    model = module.Model()
-    y = model.simulate(INPUT[:200])
-    c = compiled[described[name].name][:200]
-    np.testing.assert_allclose(y, c, rtol=0, atol=1e-11 * (1 + np.ptp(c)))
-    model.reset()
-    np.testing.assert_array_equal(model.simulate(INPUT[:50]), y[:50])
 
 
 @pytest.mark.parametrize("name", sorted(REFUSED))

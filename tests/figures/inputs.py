@@ -13,9 +13,8 @@ from hystbench.compare.cells import ComparedCell
 from hystbench.compare.edges import COLUMNS, Edge
 from hystbench.compare.rows import four_digits, names_of, or_empty, write_fields
 from hystbench.envelope import PUBLISHED_ENVELOPE
-from hystbench.files import write_columns, write_json
+from hystbench.files import write_json
 from hystbench.identification import identify
-from hystbench.inverse.tracking import DRIVES
 from hystbench.order_errors import OrderError
 from hystbench.record import Channel, FloatArray, Record
 from hystbench.results import run_result, save_run
@@ -183,22 +182,6 @@ def _write(path: Path, header: list[str], rows: list[list[object]]) -> None:
         writer.writerows(rows)
 
 
-def write_tracking(folder: Path) -> None:
-    """Tracking errors of two references, and a raster scan beside them."""
-    rows = [
-        (name, drive, 10.0 / 3**n, UNIT)
-        for name in ("sine-010hz", "raster-20-lines-a-second")
-        for n, drive in enumerate(DRIVES)
-    ]
-    columns = ["reference", "drive", "rms_percent", "unit"]
-    _write(folder / "tracking.csv", columns, rows)
-    time = np.arange(300) * 1e-3
-    wanted = np.abs((time * 20) % 1 - 0.5)
-    drives = {drive: wanted * (1 + 0.1 / 3**n) for n, drive in enumerate(DRIVES)}
-    scan = {"time_s": time, "reference": wanted, **drives}
-    write_columns(folder / "raster.csv", scan)
-
-
 class Inputs:
     """All files that figures take, below a folder."""
 
@@ -218,7 +201,6 @@ class Inputs:
         write_step_edges(folder / "edges.csv")
         write_blind(folder / "blind")
         write_gap(folder / "gap", self.records[SIGNALS[0]])
-        write_tracking(folder)
         write_identified(folder / "identified.json", self.records[SIGNALS[0]])
 
     def record(self, *names: str) -> list[Path]:
@@ -259,7 +241,6 @@ class Inputs:
             "blind-power": {"table": self.folder / "blind" / "power.csv"},
             "blind-reliability": {"table": self.folder / "blind" / "reliability.csv"},
             "blind-where": {"table": self.folder / "blind" / "effects.csv"},
-            "tracking-errors": {"table": self.folder / "tracking.csv"},
             "loops": everything | {"records": self.record(*SIGNALS)},
             "errors-by-record": everything,
         }[figure]

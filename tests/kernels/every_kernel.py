@@ -61,18 +61,17 @@ def signals():
 
 
 def filters(x, d):
-    """Outputs, errors and final weights of every filter, plain and normalized."""
+    """Outputs, errors and final weights of every filter."""
     assert set(MORE) == set(published.FILTERS)
     jobs = [
-        (FILTERS[name](order=order, step_size=1e-3, normalized=n, **options), x, d)
+        (FILTERS[name](order=order, step_size=1e-3, **options), x, d)
         for name, options in MORE.items()
         for order in (3, 30, 70)
-        for n in (False, True)
     ]
     for (adaptive, _, _), result in zip(jobs, run_many(jobs), strict=True):
         assert result.diverged_at is None
         arrays = (result.output, result.error, result.weights)
-        yield f"{adaptive.name} {adaptive.order} {adaptive.normalized}", arrays
+        yield f"{adaptive.name} {adaptive.order}", arrays
     # one call for several step sizes
     together = [
         (FILTERS[name](order=30, step_size=1.1e-4 * k, **MORE[name]), x, d)
@@ -108,7 +107,9 @@ def models(x):
     o = operators
     bent = Envelope(1.0, 2.0, 0.1, 0.2, 0.9, 1.5, -0.1, -0.2)
     yield "envelope functions", (bent.left(x), bent.right(x))
-    yield "gpo, Eq. 12", o.generalized_play(left, right, r, form="eq12", v=x)
+    sides = left.copy(), right.copy()
+    o.follow_direction(x, *sides)
+    yield "gpo, Eq. 12", o.generalized_play(*sides, r)
     yield "gpi", o.generalized_prandtl_ishlinskii(left, right, r, w)
     rates = (0.03 * growth, 0.9 * growth)
     yield "rdgpi", o.rate_dependent_prandtl_ishlinskii(left, right, *rates, 31)

@@ -19,7 +19,7 @@ def lms(x, d, step, limit):
     steps = kernels.pad(np.array([step]))
     taken = kernels.call(
         "hb_lms_rows", len(x), 1, rows, kernels.WIDTH, np.asarray(d), steps,
-        -1.0, limit, weights, y, e,
+        limit, weights, y, e,
     )  # fmt: skip
     return taken, weights
 
@@ -71,7 +71,7 @@ def test_same_bytes_at_any_alignment():
         weights = np.zeros(40)[shift : shift + 32]
         y, e = np.empty((2, n))
         kernels.call(
-            "hb_lms_rows", n, 4, rows[1:], 1, d, np.full(32, 0.01), -1.0, 1e9,
+            "hb_lms_rows", n, 4, rows[1:], 1, d, np.full(32, 0.01), 1e9,
             weights, y, e,
         )  # fmt: skip
         seen.add(y.tobytes() + weights.tobytes())

@@ -155,7 +155,8 @@ def begin(
 def find_first(packages: Path) -> None:
     """Find packages of a folder before others, here and in the jobs of this process."""
     sys.path.insert(0, str(packages))
-    os.environ["PYTHONPATH"] = str(packages)
+    before = os.environ.get("PYTHONPATH")
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(packages), before)))
     shadowed = {place.name for place in packages.iterdir()}
     for name in list(sys.modules):
         if name.partition(".")[0] in shadowed:

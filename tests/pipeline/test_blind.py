@@ -66,43 +66,22 @@ reason = json.dumps([len(files), found, sys.argv[1:], str(Path.cwd())])
 """
 
 
-#: What a job in an environment of its own is begun with: says so, then does it.
-ELSEWHERE = """#!/bin/sh
-echo begun >> {folder}/begun
-exec {python} -m hystbench "$@"
-"""
-
-
-def elsewhere(folder):
-    """An environment beside config.yaml that holds a package which ours does not."""
-    package = folder / "lib" / "python3.11" / "site-packages" / "only_there"
-    package.mkdir(parents=True)
-    (package / "__init__.py").touch()
-    begun = folder / "bin" / "hystbench"
-    begun.parent.mkdir()
-    begun.write_text(ELSEWHERE.format(folder=folder, python=sys.executable))
-    begun.chmod(0o755)
-    return {"needs": ["only_there"], "environment": folder.name}
-
-
 def entered(folder, name, text):
     (folder / f"{name}.py").write_text(text)
     return {
         "command": [sys.executable, "-S", str(folder / f"{name}.py"), *PLACES],
         "time_limit_s": 1.0 if name == "bad" else 30.0,
-        "needs": [],
     }
 
 
 def contest(folder, solvers, solver):
     config = small_config()
-    absent = {"command": ["none", *PLACES], "time_limit_s": 1.0, "needs": ["no_such"]}
     config["blind"] |= {
         "set": "small",
         "transfer_scale": 0,
         "chunk": 12,
         "solver": solver,
-        "solvers": {**solvers, "absent": absent},
+        "solvers": solvers,
     }
     return config
 
@@ -117,7 +96,7 @@ def held(tmp_path_factory):
     results = str(workflow.folder / "results")
     spy = SOLVER + SPY.format(names=names, results=results) + ANSWER
     solvers = {
-        "spy": entered(folder, "spy", spy) | elsewhere(workflow.folder / "other"),
+        "spy": entered(folder, "spy", spy),
         "bad": entered(folder, "bad", SOLVER + BAD),
     }
     workflow.configure(contest(folder, solvers, "spy"))
@@ -159,13 +138,6 @@ def test_the_contest_goes_on_when_a_solver_fails(held):
     assert not any(row["lost"] for row in rows if row["solver"] == "spy")
     rivals = {row["solver"]: row for row in rows_of(workflow, "rivals")}
     assert rivals["bad"]["lost"] == "12"
-    assert "needs no_such" in rivals["absent"]["note"]
-
-
-def test_a_solver_runs_in_its_own_environment(held):
-    workflow, _ = held
-    # one chunk of the one solver that has it
-    assert (workflow.folder / "other" / "begun").read_text() == "begun\n"
 
 
 def test_the_truth_is_what_was_planned(held):

@@ -14,6 +14,7 @@ from hystbench.published.equations import (
     play,
     thresholds,
 )
+from tests.test_operators import sides
 
 ENVELOPE = load_text().envelope
 
@@ -73,8 +74,6 @@ def test_plain_equations_and_compiled_operators_agree(values, radii):
     np.testing.assert_allclose(play(v, r), compiled, atol=1e-14)
     compiled, _ = operators.generalized_play(left, right, r)
     np.testing.assert_allclose(generalized_play(v, r, ENVELOPE), compiled, atol=1e-14)
-    compiled, _ = operators.generalized_play(
-        left, right, r, form="eq12", v=v, v_before=0.0
-    )
+    compiled, _ = operators.generalized_play(*sides("eq12", v, 0.0, left, right), r)
     plain = generalized_play_eq12(v, r, ENVELOPE)
     np.testing.assert_allclose(plain, compiled, atol=1e-14)

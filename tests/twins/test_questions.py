@@ -8,9 +8,10 @@ import pytest
 from hystbench.commands.jobs.constants import constants
 from hystbench.commands.jobs.random_sum import random_sum
 from hystbench.commands.jobs.step_sweep import step_sweep
-from hystbench.compare.constants import read_constants
+from hystbench.compare.constants import Row
 from hystbench.compare.draws import read_draws
-from hystbench.compare.evidence import read_edges
+from hystbench.compare.edges import Edge
+from hystbench.compare.rows import read_items
 from hystbench.compare.summary import pairs_in_order
 from hystbench.twins.read import read_twins
 from hystbench.twins.runs import draw_signals, measure_twin
@@ -55,7 +56,7 @@ def test_draws_edges_and_constants_are_what_the_comparison_reads(
         "--edges", edges, "--points", tmp_path / "points.csv",
     )  # fmt: skip
     points = table(tmp_path / "points.csv")
-    read = read_edges(edges)
+    read = read_items(edges, Edge)
     assert any(edge.edge for edge in read)
     for edge in read:
         mine = [
@@ -74,7 +75,7 @@ def test_draws_edges_and_constants_are_what_the_comparison_reads(
         constants, two[0], "--identified", identified,
         "--settings", json.dumps(job), "--out", out,
     )  # fmt: skip
-    ranked = read_constants(out)
+    ranked = read_items(out, Row)
     usual = [row for row in ranked if row.configured]
     assert len(usual) == 1
     assert {row.constant_tap for row in ranked} == {0.0, 1.0}

@@ -36,11 +36,10 @@ rule blind_solve:
         runtime=blind_solver_minutes,
     params:
         settings=blind_solver_settings,
-        begun=blind_solver_begun,
     message:
         "blind: {wildcards.solver} on {wildcards.set} {wildcards.chunk}"
     shell:
-        "{params.begun:q} job blind-solve {input.data:q} --settings {params.settings:q}"
+        "hystbench job blind-solve {input.data:q} --settings {params.settings:q}"
         " --out {output:q} 2> {log:q}"
 
 
@@ -112,7 +111,6 @@ rule blind_summary:
                 "plan": blind_cases(CONTEST["set"]),
                 "transfer_scale": CONTEST["transfer_scale"],
                 "solver": CONTEST["solver"],
-                "skipped": SKIPPED,
             }
         ),
         transfer=lambda wildcards, input: options("--transfer", input.transfer),

@@ -5,7 +5,6 @@ import math
 
 from hystbench.challenge.contest.plan import numbers, plan
 from hystbench.commands.rival import RIVALS
-from hystbench.entrants.environment import begun_by, not_entered
 from hystbench.errors import nearest
 
 CONTEST = config["blind"]
@@ -13,15 +12,8 @@ CONTEST = config["blind"]
 OF_MACHINES = CONTEST["set"].startswith("mechanisms")
 BLIND = "results/blind-mechanisms" if OF_MACHINES else "results/blind"
 PLANT_KERNELS = sorted(map(str, PACKAGE.glob("challenge/kernels/*.so")))
-# Solvers that need a package that is not there, and those that enter.
-SKIPPED = {
-    name: why
-    for name, about in CONTEST["solvers"].items()
-    if (why := not_entered(about["needs"], about.get("environment")))
-}
-ENTERED = [name for name in CONTEST["solvers"] if name not in SKIPPED]
 # The set that is judged, with all solvers, and the transfer set, with one.
-BLIND_SOLVERS = {CONTEST["set"]: ENTERED}
+BLIND_SOLVERS = {CONTEST["set"]: list(CONTEST["solvers"])}
 if CONTEST["transfer_scale"]:
     BLIND_SOLVERS["transfer"] = list(
         dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
@@ -87,11 +79,6 @@ def blind_solver_settings(wildcards):
             "keep": CONTEST["keep"],
         }
     )
-
-
-def blind_solver_begun(wildcards):
-    """The hystbench that runs a solver: the workflow's own, or its environment's."""
-    return begun_by(CONTEST["solvers"][wildcards.solver].get("environment"))
 
 
 def blind_solver_minutes(wildcards):

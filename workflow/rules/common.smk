@@ -58,14 +58,6 @@ for line in SETTINGS.warnings:
     print(f"hystbench: warning: {line}", file=sys.stderr)
 
 
-# Before files of the package are replaced: what is committed can be had again.
-COMMITTED = (
-    'if ! told=$(git -C {params.folder:q} status --porcelain .) || [ -n "$told" ];'
-    " then echo {params.folder:q}': not committed; expected git to have what is there'"
-    " >&2; exit 1; fi; "
-)
-
-
 def keep_out(key, files):
     """Refuse inputs in results/: all in there can be made again, and may be removed."""
     results = Path("results")

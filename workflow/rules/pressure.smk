@@ -146,31 +146,3 @@ if TWIN:
             "hystbench job twins {input.twins:q} --fits {input.fits:q} {params.runs}"
             " --settings {params.settings:q}"
             " --errors {output.errors:q} --claims {output.claims:q} 2> {log:q}"
-
-    # What could explain the errors that stay far off; for docs/.
-    HYPOTHESES = []
-    if {"chirp-1-100hz", "sine-100hz", "sine-150hz", "sine-200hz"} <= {
-        *SETTINGS.signals
-    } and len(SETTINGS.paper_filters) == 4:
-
-        rule hypotheses:
-            input:
-                twin=SETTINGS.model_file,
-                published=PUBLISHED,
-                code=code_with(PAPER_FILTERS, "hystbench.commands.jobs.hypotheses"),
-            output:
-                chirp=f"{RESULTS}/hypotheses/chirp.csv",
-                volterra=f"{RESULTS}/hypotheses/volterra.csv",
-            log:
-                f"{RESULTS}/logs/hypotheses.log",
-            benchmark:
-                f"{RESULTS}/logs/benchmarks/hypotheses.tsv"
-            params:
-                settings=settings_text(SETTINGS.hypotheses_job),
-            message:
-                "what could explain the errors that stay far off"
-            shell:
-                "hystbench job hypotheses {input.twin:q} --settings {params.settings:q}"
-                " --chirp {output.chirp:q} --volterra {output.volterra:q} 2> {log:q}"
-
-        HYPOTHESES = rules.hypotheses.output

@@ -18,8 +18,7 @@ KINDS = (
     *("stiffness", "sinh", "stop", "friction"),
     *("drag", "hysteretic", "gravity", "slider", "smooth"),
 )
-"""Laws of the kernel, by the number that they have in kernels/forces.c and, exported,
-in export/forces.py."""
+"""Laws of the kernel, by the number that they have in kernels/forces.c."""
 ROW = 6
 """Numbers of a row of the kernel."""
 

@@ -2,8 +2,8 @@
 
 A block of the vocabulary says its step as the name of a function and what that
 function takes: constants, and states that are all zero at the start, unless
-:mod:`hystbench.export.past` gives others. The functions are written twice, in C and in
-Python, in :mod:`hystbench.export`.
+:mod:`hystbench.export.past` gives others. The functions are in C, in
+:mod:`hystbench.export`.
 """
 
 from __future__ import annotations

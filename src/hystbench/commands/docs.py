@@ -30,15 +30,11 @@ MAKERS = (
     ("results/blind/", "snakemake blind"),
     ("results/blind-mechanisms/", "snakemake blind with the set mechanisms"),
     ("results/gap/", "snakemake gap"),
-    ("results/devices/", "snakemake devices"),
-    ("results/export/gap", "snakemake export_gap"),
-    ("results/export/", "snakemake export_errors"),
-    ("results/inverse/", "snakemake inverse"),
     ("", "make reproduce"),
 )
 #: Made of records that the project does not ship: where they are missing, a page stays
 #: as it is, and that is no failure.
-NOT_SHIPPED = ("results/devices/", "results/blind/elsewhere")
+NOT_SHIPPED = ("results/blind/elsewhere",)
 
 
 @click.command()

@@ -52,7 +52,8 @@ EXACT = "exact"
     "--to",
     type=click.Choice(["c", "python", "fmu"]),
     required=True,
-    help="C99 source and header, a Python module, or a source FMU.",
+    help="C99 source and header, the same with a Python module that compiles and calls "
+    "it, or a source FMU.",
 )
 @click.option(
     "--fmi",
@@ -170,21 +171,16 @@ def export(
     told = [described.memory, *described.differences]
     if compare is not None:
         told.append(_compared(described, system, compare))
-    name = described.name
-    names = {
-        "c": [f"{name}.h", f"{name}.c"],
-        "python": [f"{name}.py"],
-        "fmu": [f"{name}.fmu"],
-    }[to]
+    unit = f"{described.name}.fmu"
+    files = {"c": c.files, "python": python.files}.get(to)
+    texts = files(described) if files else {}
+    names = list(texts) or [unit]
     with whole_folder(out, names) as fresh:
-        if to == "c":
-            write_text(fresh / names[0], c.header(described))
-            write_text(fresh / names[1], c.source(described))
-        elif to == "python":
-            write_text(fresh / names[0], python.module(described))
-        else:
-            with atomic_path(fresh / names[0]) as unit:
-                fmu.write_fmu(described, unit, fmu.VERSIONS[fmi or "3"])
+        for name, text in texts.items():
+            write_text(fresh / name, text)
+        if to == "fmu":
+            with atomic_path(fresh / unit) as archive:
+                fmu.write_fmu(described, archive, fmu.VERSIONS[fmi or "3"])
     made = ", ".join(f"{out / file}" for file in names)
     click.echo(f"{made}: {described.about}")
     for line in told:

@@ -16,9 +16,6 @@ from hystbench.written import writes
 RIVALS = {
     "naive": "naive",
     "random": "random_namer",
-    "gaussian-process": "gaussian_process",
-    "sindy": "sindy",
-    "narx": "narx",
 }
 
 
@@ -30,8 +27,7 @@ RIVALS = {
 def rival(name: str, dataset: Path, model: Path, out: Path) -> None:
     """Let the rival NAME write a gap.json for DATASET.
 
-    naive and random name effects; gaussian-process, sindy and narx name nothing and
-    shrink the gap by a black box.
+    naive fits every effect by itself; random draws a name.
     """
     if name not in RIVALS:
         raise InputError(f"rival: no {name!r}; {nearest(name, RIVALS)}")

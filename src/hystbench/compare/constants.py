@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-
-from hystbench.compare.rows import read_items
 
 
 @dataclass(frozen=True)
@@ -48,8 +45,3 @@ class Row:
     mean_mse_backlash_um2: float
     mean_mse_volterra_um2: float
     mean_mse_delayed_um2: float
-
-
-def read_constants(path: str | Path) -> tuple[Row, ...]:
-    """Read the ranking with other constants."""
-    return tuple(read_items(path, Row))

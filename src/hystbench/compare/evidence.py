@@ -6,15 +6,16 @@ import json
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hystbench.compare.constants import Row, read_constants
+from hystbench.compare.constants import Row
 from hystbench.compare.draws import Drawn, read_draws
 from hystbench.compare.edges import Edge
-from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
+from hystbench.compare.rows import Item, finite_or_infinite, read_items, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
@@ -238,16 +239,6 @@ _KEPT = (
 )
 
 
-def read_order_sweep(path: str | Path) -> tuple[OrderError, ...]:
-    """Read the errors by order of each filter."""
-    return tuple(read_items(path, OrderError))
-
-
-def read_edges(path: str | Path) -> tuple[Edge, ...]:
-    """Read the edges of the step sizes."""
-    return tuple(read_items(path, Edge))
-
-
 def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
     """Read the GPO filter's MSE by signal and envelopes (identified, published)."""
     columns = ("signal", "envelopes", "mse", "re", "status")
@@ -281,16 +272,21 @@ def identification_of(content: Mapping[str, Any], path: str | Path) -> Identific
     )
 
 
+def read_all(kind: type[Item], path: str | Path) -> tuple[Item, ...]:
+    """Read a CSV file of which each row is an item of a dataclass."""
+    return tuple(read_items(path, kind))
+
+
 FILES: dict[str, tuple[str, Callable[[str | Path], Any]]] = {
-    "order_sweep": ("order_sweep", read_order_sweep),
-    "order_sweep_other": ("order_sweep_other", read_order_sweep),
+    "order_sweep": ("order_sweep", partial(read_all, OrderError)),
+    "order_sweep_other": ("order_sweep_other", partial(read_all, OrderError)),
     "identified": ("identification", read_identification),
     "envelopes": ("envelope_errors", read_envelope_errors),
     "twin_errors": ("spreads", read_spreads),
     "twin_claims": ("holdings", read_holdings),
     "draws": ("drawn", read_draws),
-    "edges": ("edges", read_edges),
-    "constants": ("constants", read_constants),
+    "edges": ("edges", partial(read_all, Edge)),
+    "constants": ("constants", partial(read_all, Row)),
 }
 """What evidence is read from beside runs and records: its field, and the reader."""
 

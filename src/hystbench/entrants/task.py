@@ -70,7 +70,7 @@ class Answer:
 
     predict: Predict
     verdict: str = "unnamed"
-    reason: str = "A black box names nothing."
+    reason: str = "Nothing is named."
     named: Sequence[Named] = ()
 
 

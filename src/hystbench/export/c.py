@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from hystbench import kernels
-from hystbench.export.described import Described, Language, Piece, needed
+from hystbench.export.described import Described, Piece
 from hystbench.export.names import filled
 
 #: The laws of forces are those of the compiled kernel.
@@ -24,12 +24,18 @@ LIBRARY = (
     Path(__file__).with_name("inverse_steps.c"),
 )
 WIDTH = 88
+NO_STATE = ("none", 1)
+"""State of a model that remembers nothing: no struct of C is empty."""
+
+
+def files(model: Described) -> dict[str, str]:
+    """Give the text of the header and of the source, by their names."""
+    return {f"{model.name}.h": header(model), f"{model.name}.c": source(model)}
 
 
 def header(model: Described) -> str:
     """Write the header: the state, and the two functions that use it."""
-    states = [f"    double {state}[{size}];" for state, size in model.all_states()]
-    none = "    double none; /* the model remembers nothing */"
+    states = [*model.all_states()] or [NO_STATE]
     sides = f"{model.output.label} of {model.input.label}"
     return filled(
         "model.h",
@@ -37,7 +43,7 @@ def header(model: Described) -> str:
         name=model.name,
         NAME=model.name.upper(),
         dt=repr(model.sampling.dt),
-        states="\n".join(states) or none,
+        states="\n".join(f"    double {state}[{size}];" for state, size in states),
         begins=_comment([model.begins]),
         next=_comment([f"The next sample: {sides}."]),
     )
@@ -58,7 +64,19 @@ def library(models: Iterable[Described]) -> str:
     """Give what some models need of the functions of the library."""
     opening, chunks = _library()
     wanted = set().union(*(model.functions for model in models))
-    return f"{opening}\n\n{needed(chunks, wanted, 'hb_')}"
+    return f"{opening}\n\n{_needed(chunks, wanted)}"
+
+
+def _needed(chunks: dict[str, str], wanted: set[str]) -> str:
+    """Give the functions that are wanted and those that they call, in their order."""
+    found: set[str] = set()
+    left = {f"hb_{name}" for name in wanted}
+    while left:
+        name = left.pop()
+        found.add(name)
+        words = set(re.findall(r"\w+", chunks[name]))
+        left |= (words & set(chunks)) - found
+    return "\n\n".join(text for name, text in chunks.items() if name in found)
 
 
 def body(model: Described) -> str:
@@ -73,7 +91,6 @@ def body(model: Described) -> str:
         _array(f"{model.name}_{state}_start", value)
         for state, value in model.starts.items()
     ]
-    language = _language(model)
     for piece in model.pieces:
         parts += [_wrapped(model, part) for part in piece.all_inside() if piece.inner]
     lines = [
@@ -86,7 +103,9 @@ def body(model: Described) -> str:
             f"    if (call < {model.sampling.delay}) *s->calls += 1;",
         ]
     for piece in model.pieces:
-        lines.append(f"    y = {language.in_chain(piece, '1')};")
+        call = _call if piece.inner is None else _own
+        given = ["y"] + ["1"] * piece.step.grows
+        lines.append(f"    y = {call(model, piece, given)};")
         if piece.wait:
             lines.append(f"    if (call < {piece.wait}) return 0; /* none yet */")
     used = [] if any(model.all_states()) else ["    (void)s;"]
@@ -122,16 +141,19 @@ def body(model: Described) -> str:
 
 def _wrapped(model: Described, piece: Piece) -> str:
     """Write the function of hysteresis that is wrapped, or of what wraps it."""
-    inner, language = piece.inner, _language(model)
+    inner = piece.inner
     if inner is not None and piece.step.undoes:
         return _searched(model, piece, inner)
     declared = ", ".join(f"double {name}" for name in piece.takes)
     name = f"{model.name}_{piece.label}"
     opening = f"static double {name}({model.name}_state *s, {declared})"
-    lines = [f"    return {language.inside(piece)};"]
+    step = _call(model, piece, piece.takes)
+    if inner is not None:  # what is inside is called once
+        step = f"{_own(model, inner, inner.takes)} + {step}"
+    lines = [f"    return {step};"]
     if inner is not None and piece.step.drives:
-        each = language.own(inner, [f"{name}s[i]" for name in inner.takes])
-        call = language.step(piece, [*piece.takes, "vs", "growths"])
+        each = _own(model, inner, [f"{name}s[i]" for name in inner.takes])
+        call = _call(model, piece, [*piece.takes, "vs", "growths"])
         lines = [
             f"    double vs[{piece.step.drives}], growths[{piece.step.drives}], y = 0;",
             f"    const int count = {call};",
@@ -139,15 +161,6 @@ def _wrapped(model: Described, piece: Piece) -> str:
             "    return y;",
         ]
     return "\n".join([opening, "{", *lines, "}"])
-
-
-def _language(model: Described) -> Language:
-    """Give how C calls: a piece's own function takes the state first."""
-
-    def own(piece: Piece, given: Sequence[str]) -> str:
-        return f"{model.name}_{piece.label}({', '.join(['s', *given])})"
-
-    return Language(partial(_call, model), own)
 
 
 def _searched(model: Described, piece: Piece, inner: Piece) -> str:
@@ -186,7 +199,13 @@ def _searched(model: Described, piece: Piece, inner: Piece) -> str:
     )
 
 
+def _own(model: Described, piece: Piece, given: Sequence[str]) -> str:
+    """Call the function that the model has for a piece: it takes the state first."""
+    return f"{model.name}_{piece.label}({', '.join(['s', *given])})"
+
+
 def _call(model: Described, piece: Piece, given: Sequence[str]) -> str:
+    """Call the library's function of a piece's step."""
     arguments = [
         f"{model.name}_{piece.label}_{key}"
         if isinstance(value, np.ndarray)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -61,31 +60,6 @@ class Piece:
         if self.inner is not None:
             yield from self.inner.all_inside()
         yield self
-
-
-@dataclass(frozen=True)
-class Language:
-    """How a language calls a piece's step, and a function of the model's own for it.
-
-    Parameters
-    ----------
-    step, own : callable
-        Give the text of the call, from the piece and the signals that it takes.
-    """
-
-    step: Callable[[Piece, Sequence[str]], str]
-    own: Callable[[Piece, Sequence[str]], str]
-
-    def in_chain(self, piece: Piece, one: str) -> str:
-        """Call a piece that the model's signal ``y`` passes."""
-        call = self.step if piece.inner is None else self.own
-        return call(piece, ["y"] + [one] * piece.step.grows)
-
-    def inside(self, piece: Piece) -> str:
-        """Call a piece inside another, of which what is inside it is called once."""
-        own = self.step(piece, piece.takes)
-        inner = piece.inner
-        return own if inner is None else f"{self.own(inner, inner.takes)} + {own}"
 
 
 @dataclass(frozen=True)
@@ -356,24 +330,3 @@ def _check_sampling(sampling: Sampling) -> None:
         )
     if sampling.delay < 0:
         raise InputError(f"--delay: {sampling.delay}; expected 0 or more samples")
-
-
-def needed(chunks: dict[str, str], wanted: set[str], prefix: str = "") -> str:
-    """Give the functions that are wanted and those that they call, in their order.
-
-    Parameters
-    ----------
-    chunks : dict of str to str
-        Text of each function by its name.
-    wanted : set of str
-    prefix : str
-        What stands before the names of ``wanted`` in ``chunks``.
-    """
-    found: set[str] = set()
-    left = {prefix + name for name in wanted}
-    while left:
-        name = left.pop()
-        found.add(name)
-        words = set(re.findall(r"\w+", chunks[name]))
-        left |= (words & set(chunks)) - found
-    return "\n\n".join(text for name, text in chunks.items() if name in found)

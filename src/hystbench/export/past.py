@@ -92,4 +92,4 @@ def _states(alone: Described, part: Piece, z: FloatArray) -> dict[str, FloatArra
         before, kept = np.concatenate([z, 2 * z[-1] - z[-2 : -2 - ahead : -1]]), ["w"]
     machine.simulate(before)
     names = [f"{part.label}_{state}" for state in kept]
-    return {name: np.array(getattr(machine, name)) for name in names}
+    return {name: np.array(getattr(machine.state, name)) for name in names}

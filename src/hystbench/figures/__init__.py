@@ -49,7 +49,6 @@ FIGURES: dict[str, tuple[Any, ...]] = {
         "draw_shares",
         {"where_hit": "first view is the right one"},
     ),
-    "tracking-errors": ("tracking_errors", "draw"),
 }
 NAMES = tuple(FIGURES)
 

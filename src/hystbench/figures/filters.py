@@ -12,11 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from hystbench.compare.evidence import Run, read_order_sweep, read_run
+from hystbench.compare.evidence import Run, read_run
+from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
 from hystbench.figures import style
 from hystbench.figures.data import read_one
 from hystbench.files import read_json
+from hystbench.order_errors import OrderError
 from hystbench.record import FloatArray
 
 _COLUMNS = 3
@@ -32,7 +34,7 @@ def draw_order(*, table: Path, records: Sequence[Path]) -> Figure:
     records : sequence of Path
         The record of the sweep, for its unit.
     """
-    points = read_order_sweep(table)
+    points = read_items(table, OrderError)
     record = read_one(records, "the one of the sweep")
     figure = Figure(figsize=(style.COLUMN, 2.9))
     axes = figure.subplots()

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hystbench.compare.edges import Edge
-from hystbench.compare.evidence import read_edges
+from hystbench.compare.rows import read_items
 from hystbench.errors import InputError
 from hystbench.figures import style
 
@@ -27,7 +27,7 @@ def draw(*, table: Path) -> Figure:
     table : Path
         Edges of the step sizes.
     """
-    edges = read_edges(table)
+    edges = read_items(table, Edge)
     if not edges:
         raise InputError(f"{table}: no edge")
     signals = list(dict.fromkeys(edge.signal for edge in edges))

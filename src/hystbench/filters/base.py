@@ -47,10 +47,6 @@ class AdaptiveFilter(ABC):
         Order N: the delay line has N + 1 taps, x(k) to x(k - N).
     step_size : float
         Convergence factor mu of Eq. 18.
-    normalized : bool
-        Divide each correction by ``regularization + H'H`` (normalized LMS).
-    regularization : float
-        Keeps that division from zero; in the unit of ``H'H``.
     x_before : float
         Input before the first sample.
     constant_tap : float
@@ -74,8 +70,6 @@ class AdaptiveFilter(ABC):
 
     order: int
     step_size: float
-    normalized: bool = False
-    regularization: float = 1e-6
     x_before: float = 0.0
     constant_tap: float = 0.0
 
@@ -84,7 +78,6 @@ class AdaptiveFilter(ABC):
         if not 0 <= self.order <= MAX_ORDER:
             raise InputError(f"order: {self.order} given, 0 to {MAX_ORDER} expected")
         positive("step_size", self.step_size)
-        positive("regularization", self.regularization)
         if not np.isfinite(self.x_before):
             raise InputError(f"x_before: {self.x_before} is not a finite number")
         if not 0 <= self.constant_tap < np.inf:
@@ -290,8 +283,7 @@ class AdaptiveFilter(ABC):
         After the update by Eq. 18 the error on the same regressor is one minus this
         share of what it was: it is gone at 1 and grows without end beyond 2. So a
         step size whose correction is above 2 at the largest power of a record is
-        unstable while the regressor moves little from sample to sample. This holds
-        for the plain LMS, not for the normalized one.
+        unstable while the regressor moves little from sample to sample.
 
         Parameters
         ----------
@@ -389,12 +381,7 @@ class AdaptiveFilter(ABC):
         error: FloatArray,
     ) -> int:
         vectors = len(weights) // kernels.WIDTH
-        numbers = (self._kernel_regularization(), limit)
         arrays = (weights, output, error)
         sizes = (len(d), vectors)
         signals = (rows, stride, d, steps)
-        return kernels.call("hb_lms_rows", *sizes, *signals, *numbers, *arrays)
-
-    def _kernel_regularization(self) -> float:
-        # the kernels take a negative one for the plain LMS
-        return self.regularization if self.normalized else -1.0
+        return kernels.call("hb_lms_rows", *sizes, *signals, limit, *arrays)

@@ -136,7 +136,7 @@ class PlayFilter(AdaptiveFilter):
             "hb_lms_play",
             *(count, len(chunk.d), len(r) // kernels.WIDTH),
             *(left, right, int(self.along_line), chunk.d, r),
-            *(steps, self._kernel_regularization(), chunk.limit),
+            *(steps, chunk.limit),
             *(states, lanes),
             *(output.reshape(-1)[start:], error.reshape(-1)[start:]),
             *(output.shape[1], taken),

@@ -178,7 +178,7 @@ class VolterraFilter(AdaptiveFilter):
         rows = line[1 + self.history - len(first) :]
         sizes = (len(d), len(first) // TILE, self.taps)
         steps = (2 * self.step_size, 2 * self.second_order_step)
-        numbers = (*steps, self.constant_tap, self._kernel_regularization(), limit)
+        numbers = (*steps, self.constant_tap, limit)
         arrays = (first, packed, own, output, error)
         taken = kernels.call("hb_lms_volterra", *sizes, rows, d, *numbers, *arrays)
         second = (_unpack(packed, len(first)) + unmoved)[spare:, spare:]

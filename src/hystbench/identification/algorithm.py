@@ -7,7 +7,6 @@ doi:10.3390/s16020205.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -45,7 +44,6 @@ def identify(
     max_iterations: int = 1000,
     starts: int = 10,
     seed: int = 0,
-    initial: Sequence[Envelope] = (),
     scale: float | None = None,
     offset: bool | None = None,
     nonnegative: bool | None = None,
@@ -73,11 +71,9 @@ def identify(
     max_iterations : int
         Iterations in all, over all starting points.
     starts : int
-        Starting points: first those in ``initial``, then a plain one, then random.
+        Starting points: a plain one, then random ones.
     seed : int
         Seed of the random starting points.
-    initial : sequence of Envelope
-        Increasing envelopes to start from.
     scale : float, optional
         Largest magnitude of the envelopes on the range of the input. Envelopes and
         thresholds times s with weights over s are the same model, so data cannot
@@ -129,9 +125,8 @@ def identify(
         epsilon = float(TOLERABLE_RELATIVE_ERROR**2 * np.sum(y**2))
     low, high = float(u.min()), float(u.max())
     random = np.random.default_rng(seed)
-    points = [shape.point_of(envelope, low, high) for envelope in initial]
-    points = [*points, shape.plain_point()][:starts]
-    points += [shape.random_point(random) for _ in range(starts - len(points))]
+    points = [shape.plain_point()]
+    points += [shape.random_point(random) for _ in range(starts - 1)]
 
     record = Samples(u, y, u[:0], offset, nonnegative)
     search = Search(record, order, epsilon, max_iterations, progress)

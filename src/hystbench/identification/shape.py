@@ -24,7 +24,6 @@ from typing import cast
 import numpy as np
 
 from hystbench.envelope import Envelope
-from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 _LOG = np.array([True, False, True, False, True, False, True])
@@ -85,44 +84,6 @@ def envelope_of(point: FloatArray, low: float, high: float) -> Envelope:
         a6=float(phase_right - slope_right * middle / half),
         a7=float(base_right + shift),
     )
-
-
-def point_of(envelope: Envelope, low: float, high: float) -> FloatArray:
-    """Find the feasible point nearest to given envelopes, coordinate by coordinate.
-
-    Raises
-    ------
-    InputError
-        If an envelope does not increase: no feasible point is near it.
-    """
-    middle, half = (low + high) / 2, (high - low) / 2
-    values = []
-    for name, slope, place in (
-        (
-            "a4*a5",
-            np.sign(envelope.a4) * envelope.a5,
-            np.sign(envelope.a4) * envelope.a6,
-        ),
-        (
-            "a0*a1",
-            np.sign(envelope.a0) * envelope.a1,
-            np.sign(envelope.a0) * envelope.a2,
-        ),
-    ):
-        if not slope > 0:
-            raise InputError(f"envelope: {name} must be positive to start from it")
-        values += [np.log(slope * half), place + slope * middle]
-    u = middle + half * _GRID
-    right, left = envelope.right(u), envelope.left(u)
-    scale = right[-1] - right[0]
-    amplitude = np.array([max(abs(low), abs(high))])
-    top = max(envelope.right(amplitude)[0], envelope.left(amplitude)[0]) / scale
-    values += [
-        np.log((left[-1] - left[0]) / scale),
-        np.min(left - right) / scale,
-        np.log(top) if top > 0 else LOWER[6],
-    ]
-    return np.clip(np.array(values, dtype=np.float64), LOWER, UPPER)
 
 
 def random_point(random: np.random.Generator) -> FloatArray:

@@ -4,10 +4,7 @@ References
 ----------
 .. [1] P. Krejci, K. Kuhnen, "Inverse control of systems with hysteresis and creep", IEE
    Proceedings - Control Theory and Applications 148 (2001) 185-192.
-.. [2] K. Kuhnen, "Modeling, identification and compensation of complex hysteretic
-   nonlinearities: a modified Prandtl-Ishlinskii approach", European Journal of
-   Control 9 (2003) 407-418.
-.. [3] M. Al Janaideh, S. Rakheja, C.-Y. Su, "An analytical generalized
+.. [2] M. Al Janaideh, S. Rakheja, C.-Y. Su, "An analytical generalized
    Prandtl-Ishlinskii model inversion for hysteresis compensation in micropositioning
    control", IEEE/ASME Transactions on Mechatronics 16 (2011) 734-744.
 """
@@ -17,13 +14,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hystbench import kernels
 from hystbench.blocks.base import Block
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.blocks.prandtl_ishlinskii import PrandtlIshlinskii
-from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
 FAR = 1e12
@@ -67,7 +62,7 @@ class Plays(NamedTuple):
         """Find the input of an output, sample by sample and to rounding.
 
         At each sample the output rises with the input, the operators' states being
-        what they are, so that one input gives the wanted output [1]_ [3]_. That holds
+        what they are, so that one input gives the wanted output [1]_ [2]_. That holds
         for weights that are nowhere negative in sum and envelopes that rise.
 
         Parameters
@@ -94,48 +89,3 @@ class Plays(NamedTuple):
         for _ in range(2 if self.settled else 1):
             lost = kernels.call("hb_invert_plays", *sizes, *given, state, v)
         return v, lost
-
-
-def inverse_prandtl_ishlinskii(
-    thresholds: ArrayLike, weights: ArrayLike
-) -> tuple[FloatArray, FloatArray]:
-    """Give the inverse of a Prandtl-Ishlinskii model, which is one itself [1]_ [2]_.
-
-    Of ``y = sum_i w_i P_{r_i}[v]`` with ``r_0 = 0`` it is
-    ``v = sum_i w'_i P_{r'_i}[y]`` with ``r'_i = sum_{j<i} w_j (r_i - r_j)``,
-    ``w'_0 = 1 / w_0`` and ``w'_i = -w_i / (W_i W_{i-1})``, where
-    ``W_i = sum_{j<=i} w_j``.
-
-    Parameters
-    ----------
-    thresholds : array_like, shape (m,)
-        From zero on, each larger than the one before.
-    weights : array_like, shape (m,)
-
-    Returns
-    -------
-    thresholds, weights : ndarray, shape (m,)
-        Those of the inverse.
-
-    Raises
-    ------
-    InputError
-        If the thresholds are not in this order, or a sum of the first weights is not
-        above zero: the model then has no inverse.
-    """
-    r = np.asarray(thresholds, dtype=np.float64)
-    w = np.asarray(weights, dtype=np.float64)
-    if r.shape != w.shape or len(r) == 0 or r[0] != 0 or not (np.diff(r) > 0).all():
-        raise InputError(
-            "thresholds: expected one a weight, from zero on and each larger"
-        )
-    slopes = np.cumsum(w)
-    if not (slopes > 0).all():
-        raise InputError(
-            f"weights: the first {int(np.argmin(slopes > 0)) + 1} sum up to "
-            f"{slopes[np.argmin(slopes > 0)]:g}; expected sums above 0, else the model "
-            "has no inverse"
-        )
-    own = np.concatenate([[1 / w[0]], -w[1:] / (slopes[1:] * slopes[:-1])])
-    apart = np.concatenate([[0.0], np.cumsum(slopes[:-1] * np.diff(r))])
-    return apart, own

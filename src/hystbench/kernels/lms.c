@@ -9,11 +9,8 @@
  */
 #include "lanes.h"
 
-/* 1 where a number is above zero, else 0. */
-INLINE lanes positive(lanes v) { return -__builtin_convertvector(v > 0, lanes); }
-
 INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const double *d,
-                        const double *step, double regularization, double limit,
+                        const double *step, double limit,
                         double *weights, double *y, double *e, index_t vectors)
 {
     lanes w[vectors], last[vectors];
@@ -26,7 +23,7 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
     }
     for (k = 0; k < n; k++) {
         const double *row = rows + k * stride;
-        lanes before = {0}, overlap = {0}, power = {0};
+        lanes before = {0}, overlap = {0};
         UNROLL
         for (index_t j = 0; j < vectors; j++) {
             lanes h = load(row + j * LANES);
@@ -42,14 +39,6 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
         y[k] = output;
         e[k] = error;
         correction = error;
-        if (regularization >= 0) {
-            UNROLL
-            for (index_t j = 0; j < vectors; j++) {
-                lanes h = load(row + j * LANES);
-                power += positive(load(step + j * LANES)) * h * h;
-            }
-            correction *= 1 / (regularization + sum(power));
-        }
     }
     UNROLL
     for (index_t j = 0; j < vectors; j++)
@@ -58,22 +47,21 @@ INLINE index_t lms_rows(index_t n, const double *rows, index_t stride, const dou
 }
 
 /* Regressor k is rows[k * stride], padded to WIDTH; with stride 1 a delay line.
- * step is 2 mu for each weight and zero in the padding.  A regularization of zero or
- * more makes it the normalized LMS. */
+ * step is 2 mu for each weight and zero in the padding. */
 EXPORT index_t hb_lms_rows(index_t n, index_t wide, const double *rows,
                            index_t stride, const double *d, const double *step,
-                           double regularization, double limit, double *weights,
+                           double limit, double *weights,
                            double *y, double *e)
 {
 #define CALL(size)                                                                     \
-    lms_rows(n, rows, stride, d, step, regularization, limit, weights, y, e, size)
+    lms_rows(n, rows, stride, d, step, limit, weights, y, e, size)
     FOR_SIZES(wide, CALL)
 #undef CALL
 }
 
 INLINE index_t lms_play(index_t n, const double *left, const double *right,
                         index_t pace, const double *d, const double *r, double step,
-                        double regularization, double limit, double *state,
+                        double limit, double *state,
                         double *weights, double *y, double *e, index_t vectors)
 {
     const index_t size = vectors * LANES;
@@ -89,7 +77,7 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
         last[j] = (lanes){0};
     }
     for (k = 0; k < n; k++) {
-        lanes before = {0}, overlap = {0}, power = {0};
+        lanes before = {0}, overlap = {0};
         play_step(size, left + k, right + k, pace, own_r, h);
         UNROLL
         for (index_t j = 0; j < vectors; j++) {
@@ -106,11 +94,6 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
         y[k] = output;
         e[k] = error;
         correction = step * error;
-        if (regularization >= 0) {
-            UNROLL
-            for (index_t j = 0; j < vectors; j++) power += last[j] * last[j];
-            correction *= 1 / (regularization + sum(power));
-        }
     }
     copy(size, h, state);
     UNROLL
@@ -121,15 +104,15 @@ INLINE index_t lms_play(index_t n, const double *left, const double *right,
 
 static index_t lms_one_play(index_t n, index_t wide, const double *left,
                             const double *right, index_t pace, const double *d,
-                            const double *r, double step, double regularization,
+                            const double *r, double step,
                             double limit, double *state, double *weights, double *y,
                             double *e)
 {
 #define ALONG(size)                                                                \
-    lms_play(n, left, right, 1, d, r, step, regularization, limit, state, weights, \
+    lms_play(n, left, right, 1, d, r, step, limit, state, weights, \
              y, e, size)
 #define TOGETHER(size)                                                             \
-    lms_play(n, left, right, 0, d, r, step, regularization, limit, state, weights, \
+    lms_play(n, left, right, 0, d, r, step, limit, state, weights, \
              y, e, size)
     if (pace) FOR_SIZES(wide, ALONG)
     FOR_SIZES(wide, TOGETHER)
@@ -146,14 +129,14 @@ static index_t lms_one_play(index_t n, index_t wide, const double *left,
  * samples that each took. */
 EXPORT void hb_lms_play(index_t count, index_t n, index_t wide, const double *left,
                         const double *right, index_t pace, const double *d,
-                        const double *r, const double *step, double regularization,
+                        const double *r, const double *step,
                         double limit, double *state, double *weights, double *y,
                         double *e, index_t stride, double *taken)
 {
     const index_t size = wide * WIDTH;
     for (index_t i = 0; i < count; i++)
         taken[i] = lms_one_play(n, wide, left, right, pace, d, r, step[i],
-                                regularization, limit, state + i * size,
+                                limit, state + i * size,
                                 weights + i * size, y + i * stride, e + i * stride);
 }
 

@@ -80,7 +80,7 @@ INLINE double product(const double *a, const double *b, index_t parts)
 
 INLINE index_t lms_volterra(index_t n, index_t taps, const double *line,
                             const double *d, double step1, double step2,
-                            double constant, double regularization, double limit,
+                            double constant, double limit,
                             double *first, double *second, double *own, double *y,
                             double *e, index_t parts)
 {
@@ -116,11 +116,6 @@ INLINE index_t lms_volterra(index_t n, index_t taps, const double *line,
         y[k] = output;
         e[k] = error;
         correction = error;
-        if (regularization >= 0) {
-            double power = product(last, last, parts); /* products': its square */
-            power += power * power + constant * constant;
-            correction *= 1 / (regularization + power);
-        }
     }
     /* the two corrections still owed; the outputs go nowhere */
     sweep(x, oldest, step1 * older, step2 * older, first, second, parts);
@@ -132,12 +127,12 @@ INLINE index_t lms_volterra(index_t n, index_t taps, const double *line,
 /* line holds x(k - size + 1) .. x(k) from [k] on, size = TILE * tiles. */
 EXPORT index_t hb_lms_volterra(index_t n, index_t tiles, index_t taps,
                                const double *line, const double *d, double step1,
-                               double step2, double constant, double regularization,
+                               double step2, double constant,
                                double limit, double *first, double *second,
                                double *own, double *y, double *e)
 {
 #define CALL(size)                                                                 \
-    lms_volterra(n, taps, line, d, step1, step2, constant, regularization, limit, \
+    lms_volterra(n, taps, line, d, step1, step2, constant, limit, \
                  first, second, own, y, e, (size) * PIECES)
     switch (tiles) {
     case 1: return CALL(1);

@@ -46,17 +46,6 @@ class Waveform(ABC):
             In the unit of the actuator's input.
         """
 
-    @staticmethod
-    @abstractmethod
-    def highest_hz(*_: Any, **values: Any) -> float:
-        """Give the highest frequency in the signal, in Hz.
-
-        Parameters
-        ----------
-        **values
-            A value for each key of :meth:`samples`.
-        """
-
 
 def times(duration_s: float, sampling_frequency_hz: float) -> FloatArray:
     """Give the times of the samples of a record, in seconds."""

@@ -41,8 +41,3 @@ class Chirp(Waveform):
         return np.asarray(
             amplitude * np.sin(2 * np.pi * (from_hz * time + slope * time**2 / 2))
         )
-
-    @staticmethod
-    def highest_hz(*, from_hz: float, to_hz: float, **_: Any) -> float:
-        """Highest frequency in the signal."""
-        return float(max(from_hz, to_hz))

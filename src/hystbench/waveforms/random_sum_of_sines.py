@@ -90,10 +90,3 @@ class RandomSumOfSines(Waveform):
         best = draws[np.argmin(np.ptp(draws, axis=1))]
         middle = (best.max() + best.min()) / 2
         return np.asarray(gain * level * (best - middle) / (np.ptp(best) / 2))
-
-    @staticmethod
-    def highest_hz(
-        *, band: Sequence[float], sampling_frequency_hz: float, **_: Any
-    ) -> float:
-        """Highest frequency in the signal."""
-        return float(band[1] * sampling_frequency_hz / 2)

@@ -35,8 +35,3 @@ class Sine(Waveform):
         """
         time = times(duration_s, sampling_frequency_hz)
         return np.asarray(amplitude * np.sin(2 * np.pi * frequency_hz * time))
-
-    @staticmethod
-    def highest_hz(*, frequency_hz: float, **_: Any) -> float:
-        """Highest frequency in the signal."""
-        return float(frequency_hz)

@@ -56,8 +56,3 @@ class SumOfSines(Waveform):
         for frequency, amplitude in zip(frequencies_hz, amplitudes, strict=True):
             total += amplitude * np.sin(2 * np.pi * frequency * time)
         return np.asarray(gain * total)
-
-    @staticmethod
-    def highest_hz(*, frequencies_hz: Sequence[float], **_: Any) -> float:
-        """Highest frequency in the signal."""
-        return float(max(frequencies_hz))

@@ -185,7 +185,7 @@ def test_shares_that_do_not_carry_over_are_counted(tmp_path):
     good, bad = (row(truth(effect()), answered) for answered in (RESONANCE, CREEP))
 
     def off(away):
-        write_score(frame([good] * 20), frame(away), "s", ABOUT, {}, tmp_path)
+        write_score(frame([good] * 20), frame(away), "s", ABOUT, tmp_path)
         lines = {line["figure"]: line for line in table(tmp_path / "reach.csv")}
         line = lines["transfer: shares more than 5 points off"]
         return float(line["reached"]), line["met"]
@@ -239,15 +239,14 @@ def test_power_by_ratio():
 
 def test_the_score_as_files(tmp_path):
     rows = [*a_contest(), dataclasses.replace(a_contest()[0], solver="other")]
-    write_score(frame(rows), frame([]), "s", ABOUT, {"absent": "needs x"}, tmp_path)
+    write_score(frame(rows), frame([]), "s", ABOUT, tmp_path)
     told = json.loads((tmp_path / "summary.json").read_text())
     asked = "cases where_hit top1 in_set exact_set false_alarm pairs_both triples_all"
     asked += " unlisted_unnamed shrink_median brier coverage seconds_per_case transfer"
     assert set(asked.split()) <= set(told)
     assert told["cases"] == 8
     lines = (tmp_path / "rivals.csv").read_text().splitlines()
-    assert [line.split(",")[0] for line in lines] == ["solver", "s", "other", "absent"]
-    assert lines[-1].endswith("needs x")
+    assert [line.split(",")[0] for line in lines] == ["solver", "s", "other"]
     # `hystbench docs` parts the columns that a page asks for by commas
     assert '"' not in lines[0]
     reached = (tmp_path / "reach.csv").read_text()
@@ -265,7 +264,7 @@ def test_rivals_are_held_against_the_solver_on_their_own_cases(tmp_path):
         row(truth(effect()), CREEP, case="b"),
     ]
     rival = row(truth(effect()), RESONANCE, case="a", solver="rival")
-    write_score(frame([*own, rival]), frame([]), "s", ABOUT, {}, tmp_path)
+    write_score(frame([*own, rival]), frame([]), "s", ABOUT, tmp_path)
     told = {
         line["solver"]: (line["cases"], line["top1 GPI 20 dB"])
         for line in table(tmp_path / "rivals.csv")
@@ -277,7 +276,7 @@ def test_rivals_are_held_against_the_solver_on_their_own_cases(tmp_path):
 def test_which_cases_the_score_is_of(tmp_path):
     own = [row(truth(effect(), seed=seed), RESONANCE) for seed in (30, 10, 20)]
     away = [row(truth(effect(), seed=40), RESONANCE)]
-    write_score(frame(own), frame(away), "s", ABOUT, {}, tmp_path)
+    write_score(frame(own), frame(away), "s", ABOUT, tmp_path)
     assert [tuple(line.values()) for line in table(tmp_path / "contest.csv")] == [
         ("small", "0.5", "3", "10", "30"),
         ("transfer", "0.25", "1", "40", "40"),
@@ -290,14 +289,14 @@ def test_what_carries_to_the_transfer_set(tmp_path):
     single = truth(effect())
     home = [row(single, RESONANCE)] * 19 + [row(single, CREEP)]
     away = [row(single, RESONANCE, cpu_seconds=9.0)] * 9 + [row(single, CREEP)]
-    write_score(frame(home), frame(away), "s", ABOUT, {}, tmp_path)
+    write_score(frame(home), frame(away), "s", ABOUT, tmp_path)
     told = {line["figure"]: line for line in table(tmp_path / "transfer.csv")}
     # 19 of 20 here, 9 of 10 there: five points
     assert list(told["top1 GPI 20 dB"].values())[1:] == ["0.95", "0.9", "-0.05", "yes"]
     assert told["seconds_per_case"]["within 5 points"] == ""
     assert "top1 foreign 20 dB" not in told
     away = [row(single, RESONANCE)] * 8 + [row(single, CREEP)] * 2
-    write_score(frame(home), frame(away), "s", ABOUT, {}, tmp_path)
+    write_score(frame(home), frame(away), "s", ABOUT, tmp_path)
     told = {line["figure"]: line for line in table(tmp_path / "transfer.csv")}
     assert told["top1 GPI 20 dB"]["within 5 points"] == "no"
 

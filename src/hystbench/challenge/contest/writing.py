@@ -30,7 +30,6 @@ def write_score(
     transfer: pd.DataFrame,
     solver: str,
     about: Mapping[str, Any],
-    skipped: Mapping[str, str],
     out: Path,
 ) -> None:
     """Write the score of a solver, and its rivals' beside it.
@@ -47,8 +46,6 @@ def write_score(
         What summary.json says of the contest: ``set``, ``scale``, ``transfer_scale``,
         its seeds and ``seeds_used_while_mending`` (first and last, by what they
         were used for).
-    skipped : mapping of str to str
-        Solvers that did not enter, and why.
     out : Path
         Folder for :data:`WRITTEN`.
     """
@@ -66,7 +63,7 @@ def write_score(
         "retuned.csv": tables.retuned(own),
         "power.csv": tables.power(own),
         "reliability.csv": tables.reliability(own),
-        "rivals.csv": _rivals(cases, own, solver, skipped),
+        "rivals.csv": _rivals(cases, own, solver),
     }
     for name, columns in TABLES.items():
         write_csv(out / name, columns, map(_told, found[name]))
@@ -128,9 +125,9 @@ def _off(carried: Sequence[tuple[Any, ...]]) -> Iterator[Asked]:
 
 
 def _rivals(
-    cases: pd.DataFrame, own: pd.DataFrame, solver: str, skipped: Mapping[str, str]
+    cases: pd.DataFrame, own: pd.DataFrame, solver: str
 ) -> Iterator[tuple[Any, ...]]:
-    """Hold all solvers against each other; who did not enter stands last."""
+    """Hold all solvers against each other."""
     # Some are asked a share of the cases: the same of the solver's own stand beside.
     asked_of = own["case"].map(cases.groupby("case")["solver"].nunique())
     same = own[asked_of == cases["solver"].nunique()]
@@ -138,8 +135,6 @@ def _rivals(
         yield _rival(str(name), mine)
         if name == solver and len(same) < len(own):
             yield _rival(f"{solver}, the rivals' cases", same)
-    for name, why in skipped.items():
-        yield (name, 0, *[None] * (len(_RIVALS) - 3), why)
 
 
 def _rival(name: str, mine: pd.DataFrame) -> tuple[Any, ...]:

@@ -33,8 +33,7 @@ def blind_summary(
             )
         },
     }
-    solver, skipped = settings["solver"], settings["skipped"]
     with whole_folder(out, WRITTEN) as fresh:
         write_score(
-            read_rows(judged), read_rows(transfer), solver, about, skipped, fresh
+            read_rows(judged), read_rows(transfer), settings["solver"], about, fresh
         )

@@ -1,1 +1,0 @@
-"""The paper's models on measured devices that it never saw."""
