@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import optimize
 
+from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import with_effect
@@ -280,3 +281,41 @@ def test_a_number_that_is_zero_has_the_size_that_moves_the_output_a_tenth():
     )
     wanted = 0.1 * np.sqrt(np.mean(plain**2) / np.mean(plain**4))
     assert size == pytest.approx(wanted, rel=1e-3)
+
+
+def test_plays_do_not_run_against_free_numbers_of_a_filter():
+    """A play without a threshold does what the gain does: the two could grow apart."""
+    law = {"thresholds": [0.0, 0.2, 0.4], "weights": [0.0, 0.2, 0.1]}
+    (there,) = chains()["mode inside"]
+    given_records = measured((block("prandtl-ishlinskii", **law), there), NOISE)
+    chain = (replace(there, numerator=(12.5,)), block("gain", value=1.0))
+    of_filter = (Free(0, "denominator", k) for k in range(4))
+    free = (Free(0, "numerator", 0), *of_filter, Free(1, "value"))
+    state = state_of(chain, given_records, free=free)
+    score = plain_score(state, NOISE**2)
+    effect = effects()["hysteresis"]
+    plays = next(x for x in effect.variants(state.simulation) if x.form == "plays")
+    found = coarse(Attempt(state, plays, score))
+    assert abs(found.values["weight 0"]) < 1e-3
+    assert added(state, found, score)[1] < found.score + 10
+
+
+FILTER = {"numerator": [12.0], "denominator": [1e-4, 1e-4, 1.0]}
+
+
+def test_a_pole_that_a_refit_moves_over_the_axis_is_put_back_as_far_before_it():
+    chain = (block("transfer-function", **FILTER),)
+    free = tuple(Free(0, "denominator", k) for k in range(3))
+    state = state_of(chain, free=free)
+    (moved,) = state.moved({1: -3e-4}, reflected=True)
+    assert moved.denominator == pytest.approx((1e-4, 2e-4, 1.0))
+    with pytest.raises(InputError, match="unstable"):
+        state.moved({1: -3e-4})
+
+
+def test_numbers_of_a_block_are_moved_together():
+    """One after the other the filter would be unstable between."""
+    chain = (block("transfer-function", **FILTER),)
+    free = tuple(Free(0, "denominator", k) for k in range(3))
+    (moved,) = state_of(chain, free=free).moved({0: -2e-4, 1: -2e-4, 2: -2.0})
+    assert moved.denominator == pytest.approx((-1e-4, -1e-4, -1.0))

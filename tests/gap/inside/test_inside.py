@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.hosts import best_host, one_coordinate
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.hosts import best_host, is_seen_moving, one_coordinate
 from hystbench.gap.records.evidence import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.sample import Sample
@@ -218,3 +220,22 @@ def test_friction_that_gives_way_along_a_curve_is_no_hysteretic_force():
     law = best.fitted.state.chain[1]
     assert law.largest == pytest.approx(0.8, rel=0.05)
     assert law.yield_distance == pytest.approx(4e-4, rel=0.25)
+
+
+@pytest.mark.parametrize(
+    ("mass", "damping", "stiffness", "seen"),
+    [
+        (1.0, 1.0, 40.0, True),  # 1 Hz
+        (1.0, 1.0, 4e6, False),  # 318 Hz, of samples at 200 Hz
+        (1.0, 4e3, 4e3, True),  # a slow lag of one second
+        (1.0, 4e3, 4e6, False),  # both poles at 2000 / s
+        (1.0, 4e3, 0.0, True),  # free: it adds up
+    ],
+)
+def test_a_mass_that_is_faster_than_the_samples_is_not_seen_moving(
+    mass, damping, stiffness, seen
+):
+    block = Mechanism(mass=mass, damping=damping, stiffness=stiffness)
+    records = (record("run", np.zeros(len(TIME)), np.zeros(len(TIME)), ("N", "m")),)
+    state = ModelState((block,), records, Sample.of(records))
+    assert is_seen_moving(state) is seen
