@@ -70,6 +70,7 @@ def alike():
         name: with_named(start, name, time_constant_s=0.004)
         for name in ("drive-lag", "sensor-lag")
     }
+    found["input-delay"] = with_named(start, "input-delay", delay_s=0.004)
     found["mains-pickup"] = with_named(start, "mains-pickup", frequency_hz=50.0)
     return base, start, floor, found
 
@@ -100,7 +101,7 @@ def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
     limits = Limits.of(start.records, asked)
     own = Limits.of(start.records)
     assert (limits.dt, limits.bandwidth_hz) == (own.dt, own.bandwidth_hz)
-    names = ("drive-lag", "sensor-lag")
+    names = ("drive-lag", "input-delay")
     inputs = []
     for given in (None, limits):
         decision = decided(alike, *names, limits=given)
