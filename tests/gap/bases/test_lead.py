@@ -9,6 +9,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.lead import without_lead
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
+from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record
 
 DT = 0.01
@@ -30,10 +31,10 @@ def linear(free=FREE):
     return Model("linear", *CHANNELS, (LAG,), free)
 
 
-def leads(base, *records):
+def leads(base, *records, quantities=NONE_KNOWN):
     fit = tuple(item for item in records if item.use == "fit")
     held = tuple(item for item in records if item.use == "hold-out")
-    found = without_lead(Evidence("device", fit, held), base)
+    found = without_lead(Evidence("device", fit, held, quantities=quantities), base)
     return [item.lead for item in (*found.fit, *found.hold_out)]
 
 
@@ -59,6 +60,11 @@ def test_a_base_that_does_not_settle_within_a_tenth_is_scored_from_the_start():
 
 def test_a_base_that_was_given_starts_as_it_says():
     assert leads(linear(free=()), record(537)) == [0]
+
+
+def test_a_store_has_a_level_to_start_from():
+    kinds = Quantities("power", "temperature")
+    assert leads(linear(), record(537), quantities=kinds) == [0]
 
 
 def test_a_window_of_a_free_mass_knows_its_start_otherwise():

@@ -37,11 +37,12 @@ def without_lead(evidence: Evidence, base: Model, say: Say = silent) -> Evidence
     ----------
     evidence : Evidence
     base : Model
-        Where it was given and not identified, nothing is left out.
+        Where it was given and not identified, nothing is left out; nor of stores,
+        whose level at the start is a number of the model.
     say : callable
         Told of how many records the lead is left out.
     """
-    if not is_identified(base):
+    if not is_identified(base) or evidence.quantities.causality == "storage":
         return evidence
     held = base.with_hold(evidence.hold)
     fit, hold_out = (
