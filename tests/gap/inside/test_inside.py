@@ -81,6 +81,14 @@ def mass(spring):
 MOVES = Quantities("force", "position")
 
 
+def hosted(records, noise):
+    """A mass that fits the records best, and the score of such noise."""
+    begun = one_coordinate(tuple(records), MOVES, "zero-order")
+    sample = Sample.of(tuple(records))
+    score = Score(sample, np.zeros((len(sample), 0)), noise**2)
+    return best_host(list(begun), score), score
+
+
 def test_a_mass_without_a_spring_is_known_by_its_records():
     decay = decay_of_free_mass([mass(0.0)], MOVES)
     assert decay == pytest.approx(1 / 0.8, rel=0.2)  # mass over damping
@@ -145,11 +153,8 @@ def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring(
         y = swing(u) + 1e-3 * random.standard_normal(1600)
         records.append(record(f"swing-{size:g}", u, y, units))
     assert max(float(np.abs(one.y).max()) for one in records) > 1.2
-    quantities = Quantities("force", "position")
-    begun = one_coordinate(tuple(records), quantities, "zero-order")
-    sample = Sample.of(tuple(records))
-    score = Score(sample, np.zeros((len(sample), 0)), 1e-6)
-    tried = search(best_host(list(begun), score), score, turns=True)
+    host, score = hosted(records, 1e-3)
+    tried = search(host, score, turns=True)
     best = min(tried[1:], key=lambda item: item.score)
     assert best.effects == ("gravity",)
     assert best.fitted.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)
@@ -167,10 +172,8 @@ def test_a_limit_of_the_amplifier_before_a_mass_on_a_spring_is_found_there():
             q += DT / 20 * v
         noise = 1e-4 * random.standard_normal(1600)
         records.append(record(f"{size:g}", u, np.array(out[::20]) + noise, ("N", "m")))
-    begun = one_coordinate(tuple(records), MOVES, "zero-order")
-    sample = Sample.of(tuple(records))
-    score = Score(sample, np.zeros((len(sample), 0)), 1e-8)
-    best = min(search(best_host(list(begun), score), score), key=lambda x: x.score)
+    host, score = hosted(records, 1e-4)
+    best = min(search(host, score), key=lambda x: x.score)
     assert best.effects == ("drive-saturation",)
     limit, *_ = best.fitted.state.chain
     assert limit.limit == pytest.approx(3.0, rel=0.02)
@@ -210,11 +213,8 @@ def test_friction_that_gives_way_along_a_curve_is_no_hysteretic_force():
             q += DT / 40 * v
         noise = 1e-5 * random.standard_normal(1600)
         records.append(record(f"{size:g}", u, np.array(out[::40]) + noise, ("N", "m")))
-    begun = one_coordinate(tuple(records), MOVES, "zero-order")
-    sample = Sample.of(tuple(records))
-    score = Score(sample, np.zeros((len(sample), 0)), 1e-10)
+    host, score = hosted(records, 1e-5)
     offered = ["friction", "hysteretic-force"]
-    host = best_host(list(begun), score)
     best = min(search(host, score, offered), key=lambda x: x.score)
     assert (best.effects, best.forms) == (("friction",), ("Dahl",))
     law = best.fitted.state.chain[1]

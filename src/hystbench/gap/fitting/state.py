@@ -249,9 +249,19 @@ class ModelState:
     ) -> tuple[Block, ...]:
         """Give the chain with some free numbers changed by so much, inside bounds.
 
+        Otherwise as :meth:`chain_at`.
+        """
+        values = {k: self.value(self.free[k]) + x for k, x in changes.items()}
+        return self.chain_at(values, reflected)
+
+    def chain_at(
+        self, values: dict[int, float], reflected: bool = False
+    ) -> tuple[Block, ...]:
+        """Give the chain with other values of some free numbers, inside bounds.
+
         Parameters
         ----------
-        changes : dict of int to float
+        values : dict of int to float
             By place in ``free``.
         reflected : bool
             Whether poles that cross the imaginary axis are put back as far before it.
@@ -262,12 +272,12 @@ class ModelState:
             If a block does not take its numbers together.
         """
         new: dict[int, dict[str, Any]] = {}
-        for k, change in changes.items():
+        for k, wanted in values.items():
             free = self.free[k]
             block, own = self.chain[free.block], new.setdefault(free.block, {})
             about = block.parameters()[free.parameter]
             low, high = max(about.low, free.low), min(about.high, free.high)
-            value = float(np.clip(self.value(free) + change, low, high))
+            value = float(np.clip(wanted, low, high))
             if free.element is None:
                 own[free.parameter] = value
             else:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -127,21 +126,7 @@ def at_values(state: ModelState, values: FloatArray) -> ModelState:
     InputError
         If a block does not take them together.
     """
-    chain = list(state.chain)
-    changes: dict[int, dict[str, Any]] = {}
-    for free, value in zip(state.free, values.tolist(), strict=True):
-        block, own = chain[free.block], changes.setdefault(free.block, {})
-        about = block.parameters()[free.parameter]
-        low, high = max(about.low, free.low), min(about.high, free.high)
-        new: Any = min(max(value, low), high)
-        if free.element is not None:
-            numbers = list(own.get(free.parameter, getattr(block, free.parameter)))
-            numbers[free.element] = new
-            new = tuple(numbers)
-        own[free.parameter] = new
-    for place, change in changes.items():
-        chain[place] = replace(chain[place], **change)
-    return state.with_chain(tuple(chain))
+    return state.with_chain(state.chain_at(dict(enumerate(values.tolist()))))
 
 
 def _positive(state: ModelState, free: Free) -> bool:
