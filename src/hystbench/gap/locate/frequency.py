@@ -239,23 +239,23 @@ def _lines(item: Compared) -> tuple[FloatArray, ComplexArray]:
     frequency : ndarray, shape (m,)
     matrix : ndarray of complex, shape (9, m)
     """
+    from scipy.signal import csd  # late: it takes long to load
+
     record = item.record
     signals = np.stack([record.u, item.residual, item.simulated])
     n, period = len(record), record.period_samples
-    size = n // SEGMENTS
-    step = size - size // 2
-    # That of Hann, one period long, or none over whole periods.
-    window = 0.5 - 0.5 * np.cos(2 * np.pi / size * np.arange(size))
+    size, window, overlap = n // SEGMENTS, "hann", n // SEGMENTS // 2
     if period and n >= SEGMENTS * period:
         signals = whole_periods(signals, period).reshape(3, -1)
-        size = step = period
-        window = np.ones(size)
+        size, window, overlap = period, "boxcar", 0
     centred = signals - signals.mean(axis=1, keepdims=True)
-    pieces = np.lib.stride_tricks.sliding_window_view(centred, size, axis=1)[:, ::step]
-    lines = fft.rfft(pieces * window)[:, :, 1:]
-    # Power of both signs of frequency; half the sampling rate has one.
-    both = np.full(lines.shape[2], 2.0)
-    both[-1] -= size % 2 == 0
-    scale = both / (pieces.shape[1] * size * np.sum(window**2))
-    matrix = np.einsum("ask,bsk->abk", lines, lines.conj()) * scale
-    return fft.rfftfreq(size, record.dt)[1:], matrix.reshape(9, -1)
+    frequency, matrix = csd(
+        centred[None],
+        centred[:, None],
+        1 / record.dt,
+        window=window,
+        nperseg=size,
+        noverlap=overlap,
+        detrend=False,
+    )
+    return frequency[1:], matrix.reshape(9, -1)[:, 1:] * frequency[1]
