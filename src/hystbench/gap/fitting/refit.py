@@ -8,7 +8,7 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.score import Products, Score
 from hystbench.gap.fitting.search import Trial
 from hystbench.gap.fitting.state import ModelState, beside_count, beside_slope
 from hystbench.record import FloatArray
@@ -28,7 +28,20 @@ ENOUGH = 0.05
 
 def score_of(state: ModelState, score: Score) -> float:
     """Score a model as it is; amplitudes of what lies beside are solved for."""
-    return score.amplitudes(state.residual, state.beside_columns, state.freedom).score
+    return _score_beside(state, score, beside_of(state, score))
+
+
+def beside_of(state: ModelState, score: Score) -> Products | None:
+    """Give the products of what lies beside a model; None without."""
+    if not state.beside:
+        return None
+    columns = state.beside_columns
+    return score.shared(columns, np.zeros(columns.shape[1]))
+
+
+def _score_beside(state: ModelState, score: Score, beside: Products | None) -> float:
+    nothing = np.zeros((len(state.sample), 0))
+    return score.amplitudes(state.residual, nothing, state.freedom, beside=beside).score
 
 
 def refit(
@@ -42,22 +55,23 @@ def refit(
         Never worse than the one given.
     score : float
     """
-    best = score_of(state, score)
+    beside = beside_of(state, score)
+    best = _score_beside(state, score, beside)
     for _ in range(rounds if state.free else 0):
-        columns = np.hstack([state.tangents, state.beside_columns])
-        count = len(state.free)
         size = sizes(state)
         before = best
         for damping in DAMPING:
-            stiffness = np.zeros(columns.shape[1])
-            stiffness[:count] = state.stiffness + damping / size**2
             found = score.amplitudes(
-                state.residual, columns, state.freedom, stiffness
-            ).values
-            change = dict(enumerate(found[:count].tolist()))
+                state.residual,
+                state.tangents,
+                state.freedom,
+                state.stiffness + damping / size**2,
+                beside=beside,
+            )
+            change = dict(enumerate(found.values.tolist()))
             try:
                 moved = state.with_chain(state.moved(change, reflected=True))
-                value = score_of(moved, score)
+                value = _score_beside(moved, score, beside)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
             if value <= best:  # at the floor the score is flat, the step still right

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hystbench.errors import InputError
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.record import FloatArray
@@ -31,9 +32,12 @@ ROUNDS = 4
 STILL = 1e-3
 """A round that changes the score by less is the last."""
 KNOWN = 1e-5
-"""Least over largest pivot of products that tell all columns apart."""
-FEW = 12
-"""Columns of which none is looked for that is zero in a record."""
+"""Least pivot of products of columns of size one that tell all of them apart."""
+APART = 1e-12
+"""Least over largest power of combinations of columns that are solved for."""
+
+Rows = FloatArray | tuple[FloatArray, ...]
+"""Of a table, by record."""
 
 
 class Amplitudes(NamedTuple):
@@ -41,6 +45,33 @@ class Amplitudes(NamedTuple):
 
     values: FloatArray  # shape (k,)
     score: float
+
+
+class Products(NamedTuple):
+    """Products of columns, with each other and with the directions.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (parts, n, k), or tuple of ndarray
+        The columns by record.
+    across : ndarray, shape (parts, d, k)
+        With the directions, by record.
+    inside : ndarray, shape (d, k)
+        Amplitudes of the directions.
+    charge : ndarray, shape (k, k)
+        Charge for amplitudes, as a quadratic form.
+    grams : ndarray, shape (parts, k, k)
+        With each other, of what is left beyond the directions, by record.
+    within : ndarray, shape (k, k)
+        Of the amplitudes of the directions.
+    """
+
+    rows: Rows
+    across: FloatArray
+    inside: FloatArray
+    charge: FloatArray
+    grams: FloatArray
+    within: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +148,7 @@ class Score:
         freedom: float = 0.0,
         stiffness: FloatArray | None = None,
         positive: Sequence[int] = (),
+        beside: Products | None = None,
     ) -> Amplitudes:
         """Find amplitudes of columns whose sum, taken off the residual, scores least.
 
@@ -133,17 +165,24 @@ class Score:
             Charge for the square of each amplitude (a tolerance's inverse square).
         positive : sequence of int
             Columns whose amplitude may not be negative.
+        beside : Products, optional
+            Of further columns, which many calls share: see :meth:`shared`. Their
+            amplitudes are not given.
         """
-        k = columns.shape[1]
-        if not (np.isfinite(columns).all() and np.isfinite(residual).all()):
-            return Amplitudes(np.zeros(k), np.inf)  # a model that runs away
+        own = columns.shape[1]
+        whole = np.column_stack([residual, columns])
+        if not np.isfinite(whole).all():
+            return Amplitudes(np.zeros(own), np.inf)  # a model that runs away
+        scale = _sizes(columns)
+        whole[:, 1:] /= scale
+        charge = np.zeros(own) if stiffness is None else stiffness / scale**2
+        found = self._products(whole, np.diag(np.concatenate([[0.0], charge])))
+        if beside is not None:
+            found = self._joined(found, beside)
+        k = len(found.charge) - 1
         if k == 0:
             return Amplitudes(np.zeros(0), self.of(residual, freedom))
-        scale = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
-        scale[scale == 0] = 1.0
-        grams, within = self._products(np.column_stack([residual, columns / scale]))
-        flat, inner = grams.reshape(len(grams), -1), within.ravel()
-        charge = np.zeros(k) if stiffness is None else stiffness / scale**2
+        flat, inner = found.grams.reshape(len(self.parts), -1), found.within.ravel()
         d = max(self.directions.shape[1], 1)
         full, last = np.eye(1, k + 1)[0], np.inf
         best = (np.inf, full)
@@ -151,7 +190,8 @@ class Score:
             both = np.outer(full, full).ravel()
             squares = np.maximum(flat @ both, 0.0) / self._counts
             power = max(float(inner @ both), 0.0)
-            value = self._value(squares, power, freedom) + float(charge @ full[1:] ** 2)
+            value = self._value(squares, power, freedom)
+            value += float(full @ found.charge @ full)
             if value < best[0]:
                 best = (value, full)
             if abs(last - value) < STILL:
@@ -160,11 +200,67 @@ class Score:
             weights = self.weight / (self._counts * np.maximum(squares, self.floor))
             normal = weights @ flat + d / max(power, d * self.floor) * inner
             normal = normal.reshape(k + 1, k + 1)
-            matrix = normal[1:, 1:].copy()
-            np.fill_diagonal(matrix, matrix.diagonal() * (1 + 1e-12) + charge)
+            matrix = normal[1:, 1:] + found.charge[1:, 1:]
+            np.fill_diagonal(matrix, matrix.diagonal() * (1 + 1e-12))
             beta = _solve(matrix, normal[1:, 0], positive)
             full = np.concatenate([[1.0], -beta])
-        return Amplitudes(-best[1][1:] / scale, best[0])
+        return Amplitudes(-best[1][1 : own + 1] / scale, best[0])
+
+    def shared(self, columns: FloatArray, stiffness: FloatArray) -> Products:
+        """Give products of columns that many calls solve for beside their own.
+
+        They are replaced by combinations that are at right angles, those that the
+        samples and the charge tell apart.
+
+        Parameters
+        ----------
+        columns : ndarray, shape (scored samples, k)
+        stiffness : ndarray, shape (k,)
+            Charge for the square of each amplitude.
+        """
+        scale = _sizes(columns)
+        columns, charge = columns / scale, np.diag(stiffness / scale**2)
+        power = columns.T @ columns / len(columns)
+        if not np.isfinite(power).all():
+            raise InputError("a number that may be re-tuned lets the model run away")
+        values, vectors = np.linalg.eigh(power + charge)
+        kept = values > APART * values.max(initial=0.0)
+        turned = vectors[:, kept] / np.sqrt(values[kept])
+        return self._products(columns @ turned, turned.T @ charge @ turned)
+
+    def _products(self, columns: FloatArray, charge: FloatArray) -> Products:
+        """Give products of columns with each other, by record.
+
+        Notes
+        -----
+        What is left of them beyond the directions is never computed: with ``Q`` a
+        record's rows of the directions, ``C`` of the columns and ``A`` the amplitudes,
+        its products are ``C'C - A'Q'C - C'Q A + A'Q'Q A``.
+        """
+        rows = self._by_record(columns)
+        across = _each(self._directions, rows)
+        whole = self.used is None
+        inside = across.sum(axis=0) if whole else self.directions.T @ columns
+        found = Products(rows, across, inside, charge, charge, inside.T @ inside)
+        return found._replace(grams=self._beyond(found, found))
+
+    def _beyond(self, left: Products, right: Products) -> FloatArray:
+        """Give products of what is left of columns beyond the directions, by record."""
+        grams = _each(left.rows, right.rows)
+        grams -= left.inside.T @ right.across
+        grams -= left.across.mT @ right.inside
+        grams += left.inside.T @ self._spread @ right.inside
+        return grams
+
+    def _joined(self, left: Products, right: Products) -> Products:
+        """Give the products of two tables in one; of its rows nothing more is asked."""
+        mixed, within = self._beyond(left, right), left.inside.T @ right.inside
+        apart = np.zeros((len(left.charge), len(right.charge)))
+        return left._replace(
+            charge=np.block([[left.charge, apart], [apart.T, right.charge]]),
+            grams=np.block([[left.grams, mixed], [mixed.mT, right.grams]]),
+            within=np.block([[left.within, within], [within.T, right.within]]),
+        )
 
     @cached_property
     def _counts(self) -> NDArray[np.intp]:
@@ -172,78 +268,20 @@ class Score:
         return np.array([len(part) for part in self.parts])
 
     @cached_property
-    def _stacked(self) -> FloatArray | None:
-        """Directions by record, where as many samples count in each, in one piece."""
-        alike = len({len(part) for part in self.parts}) == 1
-        whole = all(isinstance(_place(part), slice) for part in self.parts)
-        return _stack(self.directions, self.parts) if alike and whole else None
+    def _directions(self) -> Rows:
+        return self._by_record(self.directions)
 
     @cached_property
-    def _spreads(self) -> FloatArray:
-        return np.stack(self._spread)
-
-    @cached_property
-    def _rows(self) -> tuple[FloatArray, ...]:
-        """Rows of the directions that count, by record."""
-        return tuple(self.directions[_place(part)] for part in self.parts)
-
-    @cached_property
-    def _spread(self) -> tuple[FloatArray, ...]:
+    def _spread(self) -> FloatArray:
         """Products of the directions with each other, by record."""
-        return tuple(rows.T @ rows for rows in self._rows)
+        return _each(self._directions, self._directions)
 
-    def _products(self, table: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Give products of columns with each other, of the rest and inside.
-
-        Returns
-        -------
-        grams : ndarray, shape (parts, k, k)
-            Of what is left of the columns beyond the directions, by record.
-        within : ndarray, shape (k, k)
-            Of the amplitudes of the directions.
-
-        Notes
-        -----
-        What is left is never computed: with ``Q`` a record's rows of the directions,
-        ``C`` of the columns and ``A`` the amplitudes, its products are
-        ``C'C - A'Q'C - C'Q A + A'Q'Q A``. Columns that are zero in a record, as those
-        of a signal that each record has of its own, cost nothing there.
-        """
-        k, d = table.shape[1], self.directions.shape[1]
-        if self._stacked is not None and k <= FEW:
-            rows = _stack(table, self.parts)
-            turned = rows.transpose(0, 2, 1)
-            across = turned @ self._stacked
-            whole = self.used is None
-            inside = across.sum(axis=0) if whole else table.T @ self.directions
-            mixed = across @ inside.T
-            grams = turned @ rows + inside @ self._spreads @ inside.T
-            grams -= mixed
-            grams -= mixed.transpose(0, 2, 1)
-            return grams, inside @ inside.T
-        pieces = []
-        for part, directions in zip(self.parts, self._rows, strict=True):
-            rows = table[_place(part)]
-            there = np.flatnonzero(rows.any(axis=0)) if rows.shape[1] > FEW else None
-            own = rows if there is None else rows[:, there]
-            pieces.append((there, own.T @ own, directions.T @ own))
-        if self.used is None:
-            inside = np.zeros((d, k))
-            for there, _, across in pieces:
-                inside[:, slice(None) if there is None else there] += across
-        else:
-            inside = self.directions.T @ table
-        grams = np.empty((len(pieces), k, k))
-        for gram, spread, (there, own, across) in zip(
-            grams, self._spread, pieces, strict=True
-        ):
-            np.matmul(inside.T, spread @ inside, out=gram)
-            place = slice(None) if there is None else there
-            mixed = inside.T @ across
-            gram[:, place] -= mixed
-            gram[place] -= mixed.T
-            gram[place if there is None else np.ix_(there, there)] += own
-        return grams, inside.T @ inside
+    def _by_record(self, table: FloatArray) -> Rows:
+        """Give the rows that count, by record: in one piece where all have as many."""
+        n = len(self.parts[0])
+        if n * len(self.parts) == len(table) and len(set(self._counts)) == 1:
+            return table.reshape(len(self.parts), n, -1)
+        return tuple(table[_place(part)] for part in self.parts)
 
     def _value(self, squares: FloatArray, power: float, freedom: float) -> float:
         d = self.directions.shape[1]
@@ -252,12 +290,17 @@ class Score:
         return outside + float(inside) + PARAMETER * freedom
 
 
-def _stack(table: FloatArray, parts: Sequence[NDArray[np.intp]]) -> FloatArray:
-    """Give a table's rows by record, which have as many each: shape (parts, n, k)."""
-    n, k = len(parts[0]), table.shape[1]
-    if n * len(parts) == len(table):
-        return table.reshape(len(parts), n, k)
-    return np.stack([table[_place(part)] for part in parts])
+def _sizes(columns: FloatArray) -> FloatArray:
+    """Give the root mean square of columns; one for those that are zero."""
+    sizes = np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns))
+    return np.where(sizes > 0, sizes, 1.0)
+
+
+def _each(left: Rows, right: Rows) -> FloatArray:
+    """Give products of columns with each other, by record: shape (parts, k, l)."""
+    if isinstance(left, np.ndarray) and isinstance(right, np.ndarray):
+        return np.asarray(left.mT @ right)
+    return np.stack([one.T @ other for one, other in zip(left, right, strict=True)])
 
 
 def _place(part: NDArray[np.intp]) -> slice | NDArray[np.intp]:
@@ -289,10 +332,13 @@ def _solution(matrix: FloatArray, vector: FloatArray) -> FloatArray:
     """Solve a symmetric system; directions that it hardly knows stay at zero."""
     if len(vector) == 1 and matrix[0, 0] > 0:  # as most are
         return np.asarray(vector / matrix[0])
+    size = np.sqrt(np.maximum(matrix.diagonal(), 0.0))
+    size[size == 0] = 1.0
+    matrix, vector = matrix / np.outer(size, size), vector / size
     try:
         pivots = np.linalg.cholesky(matrix).diagonal()
     except np.linalg.LinAlgError:
         pivots = np.zeros(len(vector))
-    if (pivots > KNOWN * pivots.max(initial=0.0)).all():  # elimination is quicker
-        return np.asarray(np.linalg.solve(matrix, vector), dtype=np.float64)
-    return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0])
+    if (pivots > KNOWN).all():  # elimination is quicker
+        return np.asarray(np.linalg.solve(matrix, vector) / size, dtype=np.float64)
+    return np.asarray(np.linalg.lstsq(matrix, vector, rcond=1e-13)[0] / size)

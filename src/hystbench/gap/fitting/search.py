@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from hystbench.blocks.calls import CallsUsedUp
 from hystbench.blocks.parameter import HUGE
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined, Values, Variant
-from hystbench.gap.fitting.score import Amplitudes, Score
+from hystbench.gap.fitting.score import Amplitudes, Products, Score
 from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.record import FloatArray
 
@@ -78,16 +78,6 @@ class Attempt:
         self.known: dict[Point, Trial] = {}
         self.zero: FloatArray | None = None
         self.least: Signals | None = None
-
-    @cached_property
-    def more(self) -> FloatArray:
-        """Columns of what the model may re-tune beside the variant."""
-        return np.hstack([self.state.tangents, self.state.beside_columns])
-
-    @cached_property
-    def stiffness(self) -> FloatArray:
-        """Charge for the square of a change of each of them."""
-        return self.state.stiffness_of(self.more.shape[1])
 
     @cached_property
     def power(self) -> float:
@@ -157,10 +147,11 @@ class Attempt:
         ]
         return self.score.amplitudes(
             residual,
-            np.hstack([columns, self.more]),
+            columns,
             self.freedom,
-            np.concatenate([charge, self.stiffness]),
+            charge,
             positive,
+            _retuned(self.state, self.score),
         )
 
     def _signals(self, point: Point) -> tuple[FloatArray, FloatArray]:
@@ -214,6 +205,13 @@ class Attempt:
         own = np.column_stack(columns)
         anchored = variant.zero is not None
         return own, state.residual if anchored else state.reference - now
+
+
+@lru_cache(maxsize=3)
+def _retuned(state: ModelState, score: Score) -> Products:
+    """Give the products of what a model may re-tune, which all its attempts share."""
+    columns = np.hstack([state.tangents, state.beside_columns])
+    return score.shared(columns, state.stiffness_of(columns.shape[1]))
 
 
 def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:

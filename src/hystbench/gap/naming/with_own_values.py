@@ -74,6 +74,8 @@ def named_apart(
         return found  # noise alone, and what is their own charged, scores no less
     models = dict.fromkeys((named.state, without_shared(named.state), start))
     likely = _likely(start, tuple(models), score)
+    # Beside more than that they cannot be told from what the simulator does wrong.
+    most = max(ABOVE_NOISE * square, unnamed_share * start.power(square))
     for _ in range(ROUNDS):
         value, own = next((item for item in likely if item[0] < least), (least, NONE))
         if not own.records:
@@ -85,18 +87,15 @@ def named_apart(
         if value >= least:
             say("that scores no better: they have none of their own")
             break
+        if again.state.power(square) > most:
+            say("too much is left beside that: it is not told")
+            return start, named, NONE
         share = apart.share(start, square, start.power(square))
         same = _names(again) == _names(found[1])
         found, least = (apart, again, replace(own, share=share)), value
         if same:
             break  # naming has told all that it can
         likely = _likely(start, (on_records(again.state, start.records),), score)
-    # Beside more than that they cannot be told from what the simulator does wrong.
-    most = max(ABOVE_NOISE * square, unnamed_share * start.power(square))
-    if found[1].state.power(square) > most:
-        if found[2].records:
-            say("too much is left beside that: it is not told")
-        return start, named, NONE
     return found
 
 
