@@ -1,6 +1,7 @@
 """The blind contest through the real workflow: a dozen cases, solvers good and bad."""
 
 import json
+import re
 import sys
 
 import pytest
@@ -79,6 +80,7 @@ def contest(folder, solvers, solver):
     config["blind"] |= {
         "set": "small",
         "transfer_scale": 0,
+        "left_out_scale": 0,
         "chunk": 12,
         "solver": solver,
         "solvers": solvers,
@@ -203,3 +205,30 @@ def test_the_gaps_own_solver_enters_the_contest(tmp_path):
     workflow.configure(config)
     planned = workflow.would_run("blind")
     assert planned["blind_solve"] == 4  # three chunks, and the first one twice
+
+
+def test_a_solver_may_not_name_what_is_left_out(tmp_path):
+    workflow = Workflow(tmp_path / "contest")
+    workflow.folder.mkdir()
+    plain = entered(tmp_path, "plain", SOLVER + "reason = 'none is tried'\n" + ANSWER)
+    words = {"left_out": ["--without", "{effect}"]}
+    config = contest(tmp_path, {"plain": plain | words}, "plain")
+    config["blind"]["left_out_scale"] = 0.02
+    workflow.configure(config)
+    printed = workflow.snakemake("blind", "--dry-run", "--printshellcmds").stdout
+    kept = re.findall(r"data/left-out-([a-z-]+)/0000 .*--without\W+([a-z-]+)", printed)
+    hidden = {entry.spec.effects[0] for entry in plan("left-out", 0.02)}
+    assert {effect for effect, _ in kept} == hidden
+    assert all(effect == word for effect, word in kept)
+    assert "left-out.csv" in printed
+
+
+def test_a_solver_that_names_what_it_likes_has_no_score_of_what_is_left_out(tmp_path):
+    workflow = Workflow(tmp_path / "contest")
+    workflow.folder.mkdir()
+    plain = entered(tmp_path, "plain", SOLVER + "reason = 'none is tried'\n" + ANSWER)
+    config = contest(tmp_path, {"plain": plain}, "plain")
+    config["blind"]["left_out_scale"] = 1.0
+    workflow.configure(config)
+    told = workflow.refused("blind")
+    assert "blind: solvers: plain: left_out: missing" in told

@@ -122,6 +122,24 @@ rule blind_summary:
         " --settings {params.settings:q} --out {params.folder:q} 2> {log:q}"
 
 
+rule blind_left_out:
+    input:
+        judged=[
+            f"{BLIND}/judged/{name}/{chunk}.csv"
+            for name in LEFT_OUT
+            for chunk in blind_chunks(name)
+        ],
+        code=code("hystbench.commands.jobs.blind_left_out"),
+    output:
+        f"{BLIND}/left-out.csv",
+    log:
+        f"{BLIND}/logs/left-out.log",
+    message:
+        "blind: what could not be named"
+    shell:
+        "hystbench job blind-left-out {input.judged:q} --out {output:q} 2> {log:q}"
+
+
 BLIND_FIGURES = {
     "blind-confusion": "confusion",
     "blind-effects": "effects",
@@ -161,6 +179,7 @@ for NAME, TABLE in BLIND_FIGURES.items():
 rule blind:
     input:
         rules.blind_summary.output,
+        rules.blind_left_out.output if LEFT_OUT else [],
         [
             f"{BLIND}/figures/{name}.{suffix}"
             for name in BLIND_FIGURES

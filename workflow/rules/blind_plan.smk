@@ -18,20 +18,46 @@ if CONTEST["transfer_scale"]:
     BLIND_SOLVERS["transfer"] = list(
         dict.fromkeys(BLIND_SOLVERS.get("transfer", []) + [CONTEST["solver"]])
     )
-if OF_MACHINES and CONTEST["transfer_scale"]:
-    refuse(
-        f"{PLACE}: blind: transfer_scale: {CONTEST['transfer_scale']:g} with the set "
-        f"{CONTEST['set']!r}; expected 0, as machines have no transfer set"
-    )
+for SCALE in ("transfer_scale", "left_out_scale"):
+    if OF_MACHINES and CONTEST[SCALE]:
+        refuse(
+            f"{PLACE}: blind: {SCALE}: {CONTEST[SCALE]:g} with the set "
+            f"{CONTEST['set']!r}; expected 0, as it belongs to the set of actuators"
+        )
 if CONTEST["solver"] not in CONTEST["solvers"]:
     refuse(
         f"{PLACE}: blind: solver: {CONTEST['solver']!r}; "
         + nearest(CONTEST["solver"], CONTEST["solvers"])
     )
+# Each effect of the set in turn is left out of what a solver may name.
+LEFT_OUT = {}
+if CONTEST["left_out_scale"]:
+    if "left_out" not in CONTEST["solvers"][CONTEST["solver"]]:
+        refuse(
+            f"{PLACE}: blind: solvers: {CONTEST['solver']}: left_out: missing; expected "
+            "the words that keep it from naming {effect}, or left_out_scale: 0"
+        )
+    LEFT_OUT = {
+        f"left-out-{effect}": effect
+        for effect in sorted(
+            {
+                entry.spec.effects[0]
+                for entry in plan("left-out", CONTEST["left_out_scale"])
+            }
+        )
+    }
+    BLIND_SOLVERS |= {name: [CONTEST["solver"]] for name in LEFT_OUT}
 
 
 def blind_cases(name):
     """Which cases of a set are held: how many, and of which kinds."""
+    if name in LEFT_OUT:
+        return {
+            "name": "left-out",
+            "scale": CONTEST["left_out_scale"],
+            "without": [],
+            "only": [LEFT_OUT[name]],
+        }
     return {
         "name": name,
         "scale": CONTEST["transfer_scale" if name == "transfer" else "scale"],
@@ -71,10 +97,13 @@ def blind_case_settings(wildcards):
 def blind_solver_settings(wildcards):
     """How a solver is run."""
     about = CONTEST["solvers"][wildcards.solver]
+    effect = LEFT_OUT.get(wildcards.set)
+    without = about["left_out"] if effect else []
     return settings_text(
         {
             "name": wildcards.solver,
-            "command": about["command"],
+            "command": about["command"]
+            + [word.replace("{effect}", effect) for word in without],
             "time_limit_s": about["time_limit_s"],
             "keep": CONTEST["keep"],
         }

@@ -15,6 +15,12 @@ config["order_sweep"]["orders"] = [1, 5, 10]
 config["pressure"]["twins"] = ["gma-preisach"]
 blind = config["blind"]
 # Twice the dozen of the small set; four jobs of six cases for the one solver.
-blind |= {"set": "small", "scale": 2.0, "transfer_scale": 0, "chunk": 6}
+blind |= {
+    "set": "small",
+    "scale": 2.0,
+    "transfer_scale": 0,
+    "left_out_scale": 0,
+    "chunk": 6,
+}
 blind["solvers"] = {blind["solver"]: blind["solvers"][blind["solver"]]}
 Path(sys.argv[2]).write_text(yaml.safe_dump(config), encoding="utf-8")

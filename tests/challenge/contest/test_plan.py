@@ -20,7 +20,7 @@ from hystbench.errors import InputError
 from tests.conftest import ROOT
 
 #: Sets whose seeds serve a score alone.
-PUBLISHED = ("published", "transfer", "mechanisms")
+PUBLISHED = ("published", "transfer", "mechanisms", "left-out")
 
 
 def seeds(name, scale=1.0):

@@ -25,6 +25,7 @@ from hystbench.gap.thresholds import (
     CERTAIN,
     LOOSE,
     PAYS,
+    SCALE,
     SHAPE,
     UNNAMED_SHARE,
 )
@@ -145,7 +146,7 @@ def rank(
     )
     candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
     if not folds:
-        return (*beyond_simpler_laws(candidates, state, score), *declined)
+        return (*_beyond_others(candidates, state, score), *declined)
     judged = [
         _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
     ]
@@ -160,7 +161,34 @@ def rank(
         candidates = in_order(
             first_on_folds(in_order([again, *candidates]), state, score)
         )
-    return (*beyond_simpler_laws(candidates, state, score), *declined)
+    return (*_beyond_others(candidates, state, score), *declined)
+
+
+def _beyond_others(
+    candidates: Sequence[Candidate], state: ModelState, score: Score
+) -> list[Candidate]:
+    """Charge effects for their freedom to choose a law."""
+    return beyond_simpler_laws(by_all_their_laws(candidates), state, score)
+
+
+def by_all_their_laws(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Sum the evidence of all laws of each effect.
+
+    Each law is as likely as the others before anything was measured. So an effect of
+    which one law alone fits pays for the others, and one of which all fit alike pays
+    nothing: with ``s`` the scores of ``n`` laws and their places, the effect's score is
+    raised by ``-SCALE log(sum(exp((min(s) - s) / SCALE)) / n)``.
+    """
+
+    def summed(item: Candidate) -> Candidate:
+        if item.state is None or not item.variants:
+            return item
+        scores = np.array([x.score for x in item.variants])
+        likely = np.exp((scores.min() - scores) / SCALE)
+        dearer = -SCALE * float(np.log(np.mean(likely)))
+        return replace(item, score=item.score + dearer, gain=item.gain - dearer)
+
+    return in_order(summed(item) for item in candidates)
 
 
 def beyond_simpler_laws(
