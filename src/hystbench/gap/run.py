@@ -125,7 +125,7 @@ def closed_gap(
     check_units(evidence, base, place)
     vocabulary = vocabulary.in_device(evidence.device_kind)
     say = say_in_words(say)
-    evidence = without_lead(evidence, base, say)
+    evidence = without_lead(evidence, base, "fit", say)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
@@ -134,6 +134,7 @@ def closed_gap(
     )
     # From here on models are compared with hold-out records: these choose nothing, and
     # may take back what was named.
+    evidence = without_lead(evidence, base, "hold_out", say)
     shown = outcome(decision, decision.content, evidence)
     shown = as_asked(shown, decision, evidence, vocabulary, built_in)
     decision = replace(decision, model=shown.model, content=shown.content)
@@ -255,7 +256,7 @@ def decide_in(
     """
     writes(*(folder / name for name in DECIDED))
     say = say_in_words(say)
-    evidence = without_lead(evidence, base, say)
+    evidence = without_lead(evidence, base, "fit", say)
     vocabulary = vocabulary.in_device(evidence.device_kind)
     decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
@@ -295,7 +296,8 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """
     tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
     writes(*(folder / name for name in (*DECISIVE, *tables)))
-    evidence = without_lead(evidence, base)
+    for use in ("fit", "hold_out"):
+        evidence = without_lead(evidence, base, use)
     kept = read_json(folder / NAMED)
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)

@@ -34,7 +34,8 @@ def linear(free=FREE):
 def leads(base, *records, quantities=NONE_KNOWN):
     fit = tuple(item for item in records if item.use == "fit")
     held = tuple(item for item in records if item.use == "hold-out")
-    found = without_lead(Evidence("device", fit, held, quantities=quantities), base)
+    evidence = Evidence("device", fit, held, quantities=quantities)
+    found = without_lead(without_lead(evidence, base, "fit"), base, "hold_out")
     return [item.lead for item in (*found.fit, *found.hold_out)]
 
 
@@ -72,5 +73,12 @@ def test_a_window_of_a_free_mass_knows_its_start_otherwise():
 
 
 def test_scores_leave_a_lead_out():
-    found = without_lead(Evidence("device", (record(537),), ()), linear())
+    found = without_lead(Evidence("device", (record(537),), ()), linear(), "fit")
     assert found.fit[0].counted.sum() == pytest.approx(1800)
+
+
+def test_records_of_one_use_are_left_as_they_are_where_the_other_is_asked():
+    """The search begins before the outputs of hold-out records are looked at."""
+    evidence = Evidence("device", (record(537),), (record(537, "hold-out"),))
+    found = without_lead(evidence, linear(), "fit")
+    assert found.hold_out is evidence.hold_out

@@ -7,8 +7,8 @@ it remembers of the time before is no effect.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -25,7 +25,12 @@ SETTLES = 5.0
 """Time constants in which a state is forgotten: less than a hundredth is left of it."""
 
 
-def without_lead(evidence: Evidence, base: Model, say: Say = silent) -> Evidence:
+def without_lead(
+    evidence: Evidence,
+    base: Model,
+    use: Literal["fit", "hold_out"],
+    say: Say = silent,
+) -> Evidence:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
     The lead is the first tenth, which an identified base was not fitted to either. It
@@ -39,27 +44,23 @@ def without_lead(evidence: Evidence, base: Model, say: Say = silent) -> Evidence
     base : Model
         Where it was given and not identified, nothing is left out; nor of stores,
         whose level at the start is a number of the model.
+    use : {"fit", "hold_out"}
+        Of which records. Hold-out records are looked at when the search is over.
     say : callable
         Told of how many records the lead is left out.
     """
     if not is_identified(base) or evidence.quantities.causality == "storage":
         return evidence
     held = base.with_hold(evidence.hold)
-    fit, hold_out = (
-        _shortened(records, held) for records in (evidence.fit, evidence.hold_out)
-    )
-    every = (*fit, *hold_out)
-    cut = sum(item.lead > 0 for item in every)
+    records = tuple(_without(record, held) for record in getattr(evidence, use))
+    cut = sum(item.lead > 0 for item in records)
     if cut:
         say(
-            f"the first tenth of {cut} of {len(every)} records is not scored: what the "
-            "base leaves there is what another state at the first sample would do"
+            f"the first tenth of {cut} of {len(records)} {use.replace('_', '-')} "
+            "records is not scored: what the base leaves there is what another state "
+            "at the first sample would do"
         )
-    return replace(evidence, fit=fit, hold_out=hold_out)
-
-
-def _shortened(records: Sequence[Record], base: Model) -> tuple[Record, ...]:
-    return tuple(_without(record, base) for record in records)
+    return replace(evidence, **{use: records})
 
 
 def _without(record: Record, base: Model) -> Record:
