@@ -16,7 +16,7 @@ from hystbench.errors import InputError, nearest
 from hystbench.filters import filter_class, registry
 from hystbench.filters.keys import keys_of
 from hystbench.plants import model_files
-from hystbench.published import FILTERS, load, signals
+from hystbench.published import FILTERS, load_errors, signals
 from hystbench.published.split import CALIBRATION_SIGNALS
 from hystbench.settings_checks import checked
 
@@ -79,7 +79,7 @@ class Settings:
     @property
     def added(self) -> list[str]:
         """Filters and signals to run that the paper's tables do not have."""
-        known = {*FILTERS, *signals(load())}
+        known = {*FILTERS, *signals(load_errors())}
         return [name for name in (*self.filters, *self.signals) if name not in known]
 
     @property

@@ -12,7 +12,7 @@ from hystbench.doubts import doubts
 from hystbench.envelope import fewest_samples
 from hystbench.errors import InputError, nearest
 from hystbench.plants import model_files, packaged_models
-from hystbench.published import load
+from hystbench.published import load_errors
 from hystbench.schema import check_against_schema
 from hystbench.signals import Signal, make_signal
 from hystbench.units import plain
@@ -57,7 +57,7 @@ def checked(
     if config["source"] == "twin":
         _check_names(place, named, excitations)
         # The calibration and the comparison take all signals of the tables.
-        for pair in load():
+        for pair in load_errors():
             _check_names(place, [("excitations", pair.signal)], excitations)
         _check_names(place, _gap_signals(place, config), excitations)
         _check_lengths(place, config, excitations)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from hystbench import files
-from hystbench.challenge.plant.effects import KINDS
-from hystbench.challenge.plant.inside import EFFECTS
+from hystbench.challenge.plant.effects import IN_ACTUATOR
+from hystbench.challenge.plant.inside import IN_MACHINE
 from hystbench.challenge.plant.kind import Range
 
 COLUMNS = (
@@ -27,7 +27,7 @@ def markdown_table() -> str:
     multiplied by ``spread``.
     """
     rows = []
-    for kind in KINDS.values():
+    for kind in IN_ACTUATOR.values():
         use = "" if kind.use == "vocabulary" else f" ({kind.use})"
         first = [f"`{kind.name}`{use}", kind.place]
         views = ", ".join(kind.views)
@@ -52,7 +52,7 @@ def markdown_table() -> str:
 def markdown_table_of_machines() -> str:
     """Write every effect of machines, its families, forms and shares as a table."""
     rows = []
-    for kind in EFFECTS.values():
+    for kind in IN_MACHINE.values():
         first = [f"`{kind.name}`", kind.place, ", ".join(kind.families)]
         for form, law in kind.forms.items():
             second = form

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hystbench.challenge.case import make_case
 from hystbench.challenge.excitation import CAMPAIGNS, PERIOD
 from hystbench.challenge.plant.actuator import Actuator, Mode
-from hystbench.challenge.plant.effects import APART, KINDS, UNLISTED, VOCABULARY
+from hystbench.challenge.plant.effects import APART, IN_ACTUATOR, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.hysteresis import draw as draw_loop
 from hystbench.challenge.plant.kind import Range, draw
 from hystbench.challenge.spec import ACTUATORS, CaseSpec, draw_spec
@@ -212,8 +212,8 @@ def excitations():
 FAMILIES = itertools.cycle(ACTUATORS)
 #: Each effect on one family or another, and on one where its size is drawn from more.
 SHOWN = [
-    *((next(FAMILIES), name, 1.0) for name in KINDS),
-    *(("gpi", name, 3.0) for name in KINDS),
+    *((next(FAMILIES), name, 1.0) for name in IN_ACTUATOR),
+    *(("gpi", name, 3.0) for name in IN_ACTUATOR),
 ]
 
 
@@ -222,12 +222,12 @@ def test_every_effect_shows(family, name, spread, excitations):
     random = np.random.default_rng(8)
     loop = draw_loop(family, random)
     mode = Mode(120.0, 0.03, 0.2)
-    for form in KINDS[name].forms:
+    for form in IN_ACTUATOR[name].forms:
         if (form == "growing-thresholds") != (family == "gpi") and (
             name == "rate-dependent-hysteresis"
         ):
             continue
-        effect = draw(KINDS[name], random, spread, (form,))
+        effect = draw(IN_ACTUATOR[name], random, spread, (form,))
         if name == "stiffness-hardening":
             more = {**effect.parameters, **mode.parameters()}
             effect = replace(effect, parameters=more)
@@ -251,7 +251,9 @@ def test_every_effect_shows(family, name, spread, excitations):
 def test_a_biased_loop_is_read_from_its_own_middle(excitations):
     # Over the largest loop a bias then tilts and bends, and shifts nothing.
     item = excitations["slow-loop"]
-    effect = draw(KINDS["asymmetry"], np.random.default_rng(2), 1.0, ("field-bias",))
+    effect = draw(
+        IN_ACTUATOR["asymmetry"], np.random.default_rng(2), 1.0, ("field-bias",)
+    )
     for family in ACTUATORS:
         loop = draw_loop(family, np.random.default_rng(3))
         y, plain = (
@@ -265,7 +267,7 @@ def test_a_biased_loop_is_read_from_its_own_middle(excitations):
 
 def test_a_command_is_delayed_exactly(excitations):
     item = excitations["multisine-wide"]
-    effect = draw(KINDS["input-delay"], np.random.default_rng(2), 1.0, ("pure",))
+    effect = draw(IN_ACTUATOR["input-delay"], np.random.default_rng(2), 1.0, ("pure",))
     y = Actuator(20.0, None, (effect,), 0).read(item, item.dt, item.samples, 0)
     late = np.arange(item.samples) * item.dt - effect.parameters["delay_s"]
     assert y == pytest.approx(20.0 * item(late), abs=1e-9)
@@ -325,7 +327,7 @@ def test_drawn_effects_may_meet(seed, kind):
 def test_half_of_the_unlisted_stays_unseen(seed):
     for use in ("development", "transfer"):
         spec = draw_spec(seed, "unlisted", "gpi", 20.0, unlisted=use)
-        assert KINDS[spec.effects[0]].use == use
+        assert IN_ACTUATOR[spec.effects[0]].use == use
 
 
 @pytest.mark.parametrize(

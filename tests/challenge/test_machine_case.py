@@ -6,7 +6,7 @@ import pytest
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.challenge.machine import draw_machine
 from hystbench.challenge.make import make
-from hystbench.challenge.plant.inside import EFFECTS, MACHINES, hidden_in
+from hystbench.challenge.plant.inside import IN_MACHINE, MACHINES, hidden_in
 from hystbench.challenge.spec import CaseSpec, draw_spec
 from hystbench.challenge.writing import write_case
 from hystbench.dataset import load_dataset
@@ -80,7 +80,7 @@ PAIRS = [(family, name) for family in MACHINES for name in hidden_in(family)]
 def test_every_effect_shows_in_every_family(family, name):
     truth = case_of(family, name, seed=3).truth
     (effect,) = truth["effects"]
-    assert (effect["name"], effect["place"]) == (name, EFFECTS[name].place)
+    assert (effect["name"], effect["place"]) == (name, IN_MACHINE[name].place)
     assert effect["ratio_db"] == pytest.approx(20.0, abs=0.1)
     assert 0.005 < effect["rms"] / truth["output_rms"] < 1.0
 

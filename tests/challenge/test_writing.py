@@ -12,7 +12,7 @@ import pytest
 from click.testing import CliRunner
 
 from hystbench.challenge.case import make_case
-from hystbench.challenge.plant.effects import KINDS
+from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.spec import CaseSpec
 from hystbench.challenge.writing import write_case
 from hystbench.commands.hide import hide
@@ -82,7 +82,7 @@ def test_the_truth_is_never_in_the_folder(written):
     names = {file.name for file in files}
     assert names == {"model.yaml", "dataset.yaml", *(n for n in names if ".csv" in n)}
     telling = [
-        *KINDS,
+        *IN_ACTUATOR,
         *("joule", "jiles", "preisach", "truth", "seed", "ratio_db", "effect", "noise"),
         *(str(value) for value in truth["effects"][0]["parameters"].values()),
     ]

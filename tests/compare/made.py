@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.compare.evidence import Identification, Run
-from hystbench.published import load, load_text, signals, sine_frequency
+from hystbench.published import load_errors, load_text, signals, sine_frequency
 from hystbench.record import Channel, Record
 
 TEXT = load_text()
-PAIRS = load()
+PAIRS = load_errors()
 RATE = 48.74  # Hz/s of the chirp
 
 

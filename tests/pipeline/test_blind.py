@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from hystbench.challenge.contest.plan import RETIRED_SEEDS, plan
-from hystbench.challenge.plant.effects import KINDS
+from hystbench.challenge.plant.effects import IN_ACTUATOR
 from tests.conftest import table
 
 from .conftest import Workflow, small_config
@@ -94,7 +94,7 @@ def held(tmp_path_factory):
     workflow = Workflow(tmp_path_factory.mktemp("blind"))
     folder = tmp_path_factory.mktemp("solvers")
     # a mode may stand in the base model
-    names = sorted(set(KINDS) - {"resonance", "hysteresis"})
+    names = sorted(set(IN_ACTUATOR) - {"resonance", "hysteresis"})
     results = str(workflow.folder / "results")
     spy = SOLVER + SPY.format(names=names, results=results) + ANSWER
     solvers = {

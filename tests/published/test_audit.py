@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hystbench.published import Pair, Printed, load, load_table4_gpo, load_text
+from hystbench.published import Pair, Printed, load_errors, load_table4_gpo, load_text
 from hystbench.published.audit import audit, write_audit
 from hystbench.published.discrepancies import (
     chirp_rate,
@@ -22,23 +22,25 @@ from tests.conftest import table
 
 
 def test_table_4_repeats_the_gpo_column():
-    assert table4_gpo_repeats(load(), load_table4_gpo())
+    assert table4_gpo_repeats(load_errors(), load_table4_gpo())
 
 
 def test_a_changed_digit_of_table_4_is_seen():
     rows = load_table4_gpo()
     changed = (replace(rows[0], mse=Printed("0.0095")), *rows[1:])
-    assert not table4_gpo_repeats(load(), changed)
-    assert next(table4_rows(load(), changed)).kind == "conflict"
+    assert not table4_gpo_repeats(load_errors(), changed)
+    assert next(table4_rows(load_errors(), changed)).kind == "conflict"
 
 
 def test_last_row_of_table_4_is_the_random_sum():
-    (label,) = [r for r in table4_rows(load(), load_table4_gpo()) if r.kind == "label"]
+    (label,) = [
+        r for r in table4_rows(load_errors(), load_table4_gpo()) if r.kind == "label"
+    ]
     assert "multisine-random-0-100hz in Table 3" in label.evidence
 
 
 def test_text_and_table_1_name_different_sines():
-    first, second = frequency_list(load(), load_text())
+    first, second = frequency_list(load_errors(), load_text())
     assert first.evidence == "only in the text: 1 Hz; only in Table 1: 10 Hz"
     assert second.evidence.startswith("50 Hz; Table 1 has 10, 20, 40")
 
@@ -46,17 +48,17 @@ def test_text_and_table_1_name_different_sines():
 def test_equal_lists_of_sines_give_no_row():
     tabled = (10.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0, 150.0, 200.0)
     text = replace(load_text(), sine_frequencies_hz=tabled, order_sweep_hz=40.0)
-    assert list(frequency_list(load(), text)) == []
+    assert list(frequency_list(load_errors(), text)) == []
 
 
 def test_gpo_is_beaten_at_200_hz_alone():
-    (row,) = gpo_not_best(load())
+    (row,) = gpo_not_best(load_errors())
     assert "sine-200hz" in row.where
     assert "volterra 0.0172 < gpo 0.0221" in row.evidence
 
 
 def test_gpo_dips_at_100_hz_in_mse_and_not_in_re():
-    (row,) = gpo_dips(load())
+    (row,) = gpo_dips(load_errors())
     assert "0.0122 at 80 Hz to 0.0119" in row.evidence
     assert "RE rises from 0.0134 to 0.0141" in row.evidence
 
@@ -92,7 +94,7 @@ def test_envelopes_apart_do_not_cross():
 
 
 def test_sums_in_amperes_outrun_the_sines():
-    rows = list(units_of_sums(load(), load_text()))
+    rows = list(units_of_sums(load_errors(), load_text()))
     # RMS input of the 3 sines: sqrt((0.01 + 0.04 + 0.09) / 2) = 0.26458
     assert f"{6.646 / np.sqrt(0.07):.1f} um/A" in rows[0].evidence
     assert len(rows) == 2
@@ -104,7 +106,7 @@ def test_sums_in_volts_do_not():
         signal: {f: 1.264 * a for f, a in lines.items()}
         for signal, lines in text.sums.items()
     }
-    assert list(units_of_sums(load(), replace(text, sums=amperes))) == []
+    assert list(units_of_sums(load_errors(), replace(text, sums=amperes))) == []
 
 
 def test_coarse_digits_are_named():

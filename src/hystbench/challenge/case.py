@@ -11,9 +11,9 @@ import numpy as np
 from hystbench.challenge.base import INPUT, OUTPUT, base_model, quasi_static, slope
 from hystbench.challenge.excitation import CAMPAIGNS, Excitation
 from hystbench.challenge.plant.actuator import Actuator, Mode
-from hystbench.challenge.plant.effects import KINDS
+from hystbench.challenge.plant.effects import IN_ACTUATOR
 from hystbench.challenge.plant.hysteresis import Hysteresis, draw
-from hystbench.challenge.plant.kind import Effect
+from hystbench.challenge.plant.kind import HiddenEffect
 from hystbench.challenge.plant.kind import draw as draw_effect
 from hystbench.challenge.spec import CaseSpec
 from hystbench.challenge.where import where
@@ -64,7 +64,7 @@ class Plant:
     mode: Mode | None
     seed: int
 
-    def actuator(self, effects: tuple[Effect, ...]) -> Actuator:
+    def actuator(self, effects: tuple[HiddenEffect, ...]) -> Actuator:
         """Build it with some of its effects."""
         names = [effect.kind.name for effect in effects]
         loop: Hysteresis | float = self.loop
@@ -177,7 +177,7 @@ class Readings:
 
 def _draw(
     spec: CaseSpec, excitations: tuple[Excitation, ...]
-) -> tuple[Plant, tuple[Effect, ...]]:
+) -> tuple[Plant, tuple[HiddenEffect, ...]]:
     random = spec.random(PLANT)
     loop = draw(spec.family, random)
     # both are drawn in any case, so that the mode does not hang on the effects
@@ -193,11 +193,11 @@ def _draw(
     hidden: Hysteresis = loop
     gain = 0.0
     for name in spec.effects:
-        kind = KINDS[name]
+        kind = IN_ACTUATOR[name]
         effect = draw_effect(kind, random, spec.spread, _forms(name, spec.family))
         if name == "stiffness-hardening":
             values = {**effect.parameters, **mode.parameters()}
-            effect = Effect(kind, effect.form, values)
+            effect = HiddenEffect(kind, effect.form, values)
         if name == "hysteresis-shape":
             hidden = _other_loop(effect.form, loop, excitations, random)
         if name == "hysteresis":
@@ -211,7 +211,7 @@ def _forms(name: str, family: str) -> tuple[str, ...]:
     """Forms of an effect that the plant's family can have."""
     if name == "rate-dependent-hysteresis":
         return ("growing-thresholds",) if family == "gpi" else ("excess-field",)
-    return tuple(KINDS[name].forms)
+    return tuple(IN_ACTUATOR[name].forms)
 
 
 def _other_loop(
@@ -229,14 +229,14 @@ def _other_loop(
 
 def _resized(
     plant: Plant,
-    effect: Effect,
+    effect: HiddenEffect,
     bare: Readings,
     fit: tuple[Excitation, ...],
     size: float,
-) -> Effect:
+) -> HiddenEffect:
     """Change the size of an effect that drowns, or drowns the rest."""
 
-    def share(changed: Effect) -> float:
+    def share(changed: HiddenEffect) -> float:
         readings = Readings(plant.actuator((changed,)), bare.excitations)
         return rms(readings.minus(bare, fit)) / size
 
@@ -275,7 +275,7 @@ def told_of(
     }
 
 
-def effect_told(effect: Effect, **own: Any) -> dict[str, Any]:
+def effect_told(effect: HiddenEffect, **own: Any) -> dict[str, Any]:
     """Give what the truth says of any effect; ``own`` is what it says of this sort."""
     form = effect.law
     return {

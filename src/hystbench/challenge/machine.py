@@ -10,7 +10,7 @@ import numpy as np
 
 from hystbench.challenge.excitation import FAST, Excitation
 from hystbench.challenge.machine_records import filling, machine_records
-from hystbench.challenge.plant.kind import Effect, Reach
+from hystbench.challenge.plant.kind import HiddenEffect, Reach
 from hystbench.challenge.plant.machine import (
     FINE,
     Motion,
@@ -89,7 +89,9 @@ class Machine:
         """Compute a record's command on the fine grid, in its unit."""
         return self.size * _on_fine_grid(item)
 
-    def run(self, item: Excitation, hidden: Sequence[Effect], reach: Reach) -> Motion:
+    def run(
+        self, item: Excitation, hidden: Sequence[HiddenEffect], reach: Reach
+    ) -> Motion:
         """Give force and motion under a record, on the fine grid."""
         command = self.command(item)
         for effect in hidden:
@@ -98,7 +100,7 @@ class Machine:
         part = self.with_forces(hidden, reach)
         return move(part, command, self.dt, gains=self.gains)
 
-    def with_forces(self, hidden: Sequence[Effect], reach: Reach) -> Part:
+    def with_forces(self, hidden: Sequence[HiddenEffect], reach: Reach) -> Part:
         """Give the part with what is hidden inside it."""
         assert self.part is not None  # noqa: S101  (for the type checker)
         part = self.part
@@ -107,12 +109,12 @@ class Machine:
                 part = replace(part, **effect.law.numbers(effect.parameters, reach))
         return part
 
-    def read(self, hidden: Sequence[Effect], reach: Reach) -> Signals:
+    def read(self, hidden: Sequence[HiddenEffect], reach: Reach) -> Signals:
         """Give input and output of every record at its samples, without noise."""
         return [self._read(item, hidden, reach) for item in self.records]
 
     def _read(
-        self, item: Excitation, hidden: Sequence[Effect], reach: Reach
+        self, item: Excitation, hidden: Sequence[HiddenEffect], reach: Reach
     ) -> tuple[FloatArray, FloatArray]:
         if self.part is None:
             u = self.command(item)
@@ -140,7 +142,7 @@ def _on_fine_grid(item: Excitation) -> FloatArray:
 
 
 def with_rims(
-    tanks: tuple[Tank, ...], hidden: Sequence[Effect], reach: Reach
+    tanks: tuple[Tank, ...], hidden: Sequence[HiddenEffect], reach: Reach
 ) -> tuple[Tank, ...]:
     """Give the tanks with what is hidden in them.
 

@@ -14,8 +14,8 @@ from hystbench.challenge.machine import (
     linear_parts,
     reach_of,
 )
-from hystbench.challenge.plant.inside import EFFECTS
-from hystbench.challenge.plant.kind import Effect, Reach, draw
+from hystbench.challenge.plant.inside import IN_MACHINE
+from hystbench.challenge.plant.kind import HiddenEffect, Reach, draw
 from hystbench.challenge.spec import CaseSpec
 from hystbench.model import Model
 from hystbench.record import Record
@@ -34,11 +34,11 @@ PLANT, EFFECT, NOISE, BASE = 1, 2, 4, 5
 
 def make_machine_case(spec: CaseSpec) -> Case:
     """Make a case of a machine; the same spec gives the same numbers."""
-    outer = any(EFFECTS[name].place != "inside" for name in spec.effects)
+    outer = any(IN_MACHINE[name].place != "inside" for name in spec.effects)
     machine = draw_machine(spec.family, spec.random(PLANT), False if outer else None)
     reach = reach_of(machine)
     random = spec.random(EFFECT)
-    hidden = tuple(draw(EFFECTS[name], random, spec.spread) for name in spec.effects)
+    hidden = tuple(draw(IN_MACHINE[name], random, spec.spread) for name in spec.effects)
     hidden = tuple(_resized(machine, item, reach) for item in hidden)
     signals = machine.read(hidden, reach)
     fit = _used(machine, signals, "fit")
@@ -89,10 +89,10 @@ def make_machine_case(spec: CaseSpec) -> Case:
     return Case(tuple(records), periods_of(machine.records), model, truth)
 
 
-def _resized(machine: Machine, effect: Effect, reach: Reach) -> Effect:
+def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffect:
     """Change the size of an effect that a linear machine hides, or that is all."""
 
-    def share(changed: Effect) -> float:
+    def share(changed: HiddenEffect) -> float:
         signals = _used(machine, machine.read((changed,), reach), "fit")
         output = rms([y - y.mean() for _, y in signals])
         return _size(machine, signals, (), reach) / output
@@ -101,7 +101,7 @@ def _resized(machine: Machine, effect: Effect, reach: Reach) -> Effect:
 
 
 def _size(
-    machine: Machine, full: Signals, others: tuple[Effect, ...], reach: Reach
+    machine: Machine, full: Signals, others: tuple[HiddenEffect, ...], reach: Reach
 ) -> float:
     """Measure how much an effect changes the output of the fit records.
 
@@ -160,7 +160,9 @@ def _linear(machine: Machine) -> dict[str, Any]:
     }
 
 
-def _told(effect: Effect, size: float, noise: float, reach: Reach) -> dict[str, Any]:
+def _told(
+    effect: HiddenEffect, size: float, noise: float, reach: Reach
+) -> dict[str, Any]:
     law = effect.law
     ratio = float(20.0 * np.log10(max(size, 1e-12 * noise) / noise))
     physical = law.numbers(effect.parameters, reach) if law.numbers else {}

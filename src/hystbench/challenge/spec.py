@@ -9,7 +9,12 @@ import numpy as np
 
 from hystbench.challenge.excitation import CAMPAIGNS
 from hystbench.challenge.plant import inside
-from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY, may_meet
+from hystbench.challenge.plant.effects import (
+    IN_ACTUATOR,
+    UNLISTED,
+    VOCABULARY,
+    may_meet,
+)
 from hystbench.challenge.plant.hysteresis import DRAWS
 from hystbench.errors import InputError, nearest
 
@@ -125,7 +130,7 @@ def effects_of(
     """
     names = _known(kind, family)
     if kind == "unlisted":
-        names = [name for name in names if unlisted in (None, KINDS[name].use)]
+        names = [name for name in names if unlisted in (None, IN_ACTUATOR[name].use)]
     return names
 
 

@@ -24,7 +24,7 @@ from hystbench.compare.verdict import (
     verdict_rst,
 )
 from hystbench.files import write_json, write_text
-from hystbench.published import load, signals
+from hystbench.published import load_errors, signals
 from hystbench.published.audit import write_audit
 
 __all__ = ["Comparison", "compare", "compare_evidence", "read_evidence"]
@@ -83,7 +83,7 @@ def write_cells(cells: Iterable[ComparedCell], path: str | Path) -> None:
 def held_out_signals(calibrated: Iterable[str]) -> tuple[str, ...]:
     """List the signals of the tables that a calibration did not see."""
     seen = set(calibrated)
-    return tuple(name for name in signals(load()) if name not in seen)
+    return tuple(name for name in signals(load_errors()) if name not in seen)
 
 
 def compare_evidence(

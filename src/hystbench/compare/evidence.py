@@ -26,7 +26,7 @@ from hystbench.published import (
     Pair,
     Text,
     in_order,
-    load,
+    load_errors,
     load_text,
     signals,
 )
@@ -129,7 +129,7 @@ class ClaimEvidence:
     sweep with one step size for all orders.
     """
 
-    published: tuple[Pair, ...] = field(default_factory=load)
+    published: tuple[Pair, ...] = field(default_factory=load_errors)
     text: Text = field(default_factory=load_text)
     runs: Mapping[Cell, Run] = field(default_factory=dict)
     records: Mapping[str, Record] = field(default_factory=dict)

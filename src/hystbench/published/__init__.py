@@ -100,7 +100,7 @@ def read_csv(name: str) -> list[dict[str, str]]:
 
 
 @cache
-def load() -> tuple[Pair, ...]:
+def load_errors() -> tuple[Pair, ...]:
     """Read the 62 pairs: Tables 1-3 (52 of filters) and Table 4 (10 of the RDGPI)."""
     return tuple(
         Pair(

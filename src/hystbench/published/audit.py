@@ -7,7 +7,7 @@ from dataclasses import astuple, fields
 from pathlib import Path
 
 from hystbench.files import write_csv
-from hystbench.published import FILTERS, Pair, load
+from hystbench.published import FILTERS, Pair, load_errors
 from hystbench.published.consistency import SignalCheck, check
 from hystbench.published.discrepancies import AuditRow, discrepancies
 
@@ -55,7 +55,7 @@ def _signal_rows(signal: str, found: SignalCheck) -> Iterator[AuditRow]:
 
 def audit() -> tuple[AuditRow, ...]:
     """List every finding, the inconsistent pairs first."""
-    return (*consistency_rows(load()), *discrepancies())
+    return (*consistency_rows(load_errors()), *discrepancies())
 
 
 def write_audit(path: str | Path) -> None:

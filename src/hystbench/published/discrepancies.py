@@ -16,7 +16,7 @@ from hystbench.published import (
     Pair,
     Table4Row,
     Text,
-    load,
+    load_errors,
     load_table4_gpo,
     load_text,
     read_text,
@@ -270,7 +270,7 @@ def wording(text: Text) -> Iterator[AuditRow]:
 
 def discrepancies() -> tuple[AuditRow, ...]:
     """List every error but the inconsistent pairs of MSE and RE."""
-    pairs, text = load(), load_text()
+    pairs, text = load_errors(), load_text()
     return (
         *table4_rows(pairs, load_table4_gpo()),
         *frequency_list(pairs, text),

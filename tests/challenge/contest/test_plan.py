@@ -14,7 +14,7 @@ from hystbench.challenge.contest.plan import (
     plan,
     sizes,
 )
-from hystbench.challenge.plant.effects import KINDS, UNLISTED, VOCABULARY
+from hystbench.challenge.plant.effects import IN_ACTUATOR, UNLISTED, VOCABULARY
 from hystbench.challenge.plant.inside import MACHINES, hidden_in
 from hystbench.errors import InputError
 from tests.conftest import ROOT
@@ -98,7 +98,7 @@ def test_the_transfer_set_is_shifted_and_shares_no_unlisted_effect():
         entries = plan(name)
         return {e.spec.effects[0] for e in entries if e.spec.kind == "unlisted"}
 
-    half = {name for name in UNLISTED if KINDS[name].use == "transfer"}
+    half = {name for name in UNLISTED if IN_ACTUATOR[name].use == "transfer"}
     assert unlisted("transfer") == half
     others = unlisted("published") | unlisted("development") | unlisted("small")
     assert not others & half

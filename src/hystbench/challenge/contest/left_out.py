@@ -32,7 +32,7 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
         more than :data:`CONFIDENT`, and what was named how often. A free shape of the
         hysteresis beside a plant of another family than the base's is no name.
     """
-    said = cases.assign(said=[_names(row) for _, row in cases.iterrows()])
+    said = cases.assign(said=cases.apply(_names, axis=1))
     groups = [*said.groupby("truth"), (EVERY, said)]
     found = [_row(str(name), list(group["said"])) for name, group in groups]
     return pd.DataFrame(found, columns=list(COLUMNS)).round(4)

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from hystbench.challenge.contest import table
-from hystbench.challenge.plant.effects import KINDS
-from hystbench.challenge.plant.inside import EFFECTS
+from hystbench.challenge.plant.effects import IN_ACTUATOR
+from hystbench.challenge.plant.inside import IN_MACHINE
 from hystbench.challenge.spec import (
     CASE_KINDS,
     FAMILIES,
@@ -62,7 +62,7 @@ STRATA: dict[str, tuple[Stratum, ...]] = {
 }
 SETS = tuple(STRATA)
 #: By which cases are left out: effects, families of plants, kinds of cases.
-WORDS = tuple(dict.fromkeys([*CASE_KINDS, *FAMILIES, *KINDS, *EFFECTS]))
+WORDS = tuple(dict.fromkeys([*CASE_KINDS, *FAMILIES, *IN_ACTUATOR, *IN_MACHINE]))
 
 
 def plan(

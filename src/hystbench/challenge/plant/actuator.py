@@ -13,7 +13,7 @@ import numpy as np
 from hystbench.challenge.plant import mechanics
 from hystbench.challenge.plant.hysteresis import Hysteresis, middle
 from hystbench.challenge.plant.interpolation import cubic
-from hystbench.challenge.plant.kind import Effect, Run, Stage
+from hystbench.challenge.plant.kind import HiddenEffect, Run, Stage
 from hystbench.record import FloatArray
 
 #: Least steps of the fine grid a sample, and least steps a second.
@@ -76,14 +76,14 @@ class Actuator:
         The hysteresis, or the gain of a material without any in um/A.
     mode : Mode, optional
         The known mode.
-    effects : tuple of Effect
+    effects : tuple of HiddenEffect
     seed : int
         Seed of what is new in every record.
     """
 
     loop: Hysteresis | float
     mode: Mode | None
-    effects: tuple[Effect, ...]
+    effects: tuple[HiddenEffect, ...]
     seed: int
 
     def read(

@@ -5,9 +5,15 @@ from __future__ import annotations
 from hystbench.challenge.plant import drive, material, mechanics, sensor, unlisted
 from hystbench.challenge.plant.kind import read_kinds
 
-KINDS, APART = read_kinds("effects.yaml", drive, material, mechanics, sensor, unlisted)
-VOCABULARY = {name: kind for name, kind in KINDS.items() if kind.use == "vocabulary"}
-UNLISTED = {name: kind for name, kind in KINDS.items() if kind.use != "vocabulary"}
+IN_ACTUATOR, APART = read_kinds(
+    "effects.yaml", drive, material, mechanics, sensor, unlisted
+)
+VOCABULARY = {
+    name: kind for name, kind in IN_ACTUATOR.items() if kind.use == "vocabulary"
+}
+UNLISTED = {
+    name: kind for name, kind in IN_ACTUATOR.items() if kind.use != "vocabulary"
+}
 
 
 def may_meet(names: tuple[str, ...]) -> bool:

@@ -31,10 +31,10 @@ def bent(y: FloatArray, p: Parameters, r: Reach) -> FloatArray:
     return np.asarray(y * (1.0 + p["quadratic"] * z + p["cubic"] * z**2))
 
 
-EFFECTS, APART = read_kinds("inside.yaml", sys.modules[__name__])
+IN_MACHINE, APART = read_kinds("inside.yaml", sys.modules[__name__])
 MACHINES = ("mass-spring", "free-mass", "pendulum", "impedance", "tank")
 
 
 def hidden_in(family: str) -> tuple[str, ...]:
     """Give the names of what can be hidden in a family of machines."""
-    return tuple(name for name, kind in EFFECTS.items() if family in kind.families)
+    return tuple(name for name, kind in IN_MACHINE.items() if family in kind.families)

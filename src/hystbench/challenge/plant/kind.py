@@ -209,7 +209,7 @@ class Kind:
 
 
 @dataclass(frozen=True)
-class Effect:
+class HiddenEffect:
     """An effect with its form and parameters drawn."""
 
     kind: Kind
@@ -230,7 +230,7 @@ class Effect:
         """Compute what the effect makes of a signal."""
         return self.law.act(signal, run, self.parameters)
 
-    def scaled(self, factor: float) -> Effect:
+    def scaled(self, factor: float) -> HiddenEffect:
         """Make its difference about so many times as large, as far as it may be."""
         law = self.law
         if not law.size:
@@ -241,11 +241,11 @@ class Effect:
 
     def resized(
         self,
-        share: Callable[[Effect], float],
+        share: Callable[[HiddenEffect], float],
         within: tuple[float, float],
         margin: float,
         most: float,
-    ) -> Effect:
+    ) -> HiddenEffect:
         """Change its size until it neither drowns nor drowns the rest.
 
         Parameters
@@ -278,13 +278,13 @@ def draw(
     random: np.random.Generator,
     spread: float,
     allowed: tuple[str, ...] = (),
-) -> Effect:
+) -> HiddenEffect:
     """Draw an effect's form, of those allowed or of all, and its parameters."""
     allowed = allowed or tuple(kind.forms)
     form = allowed[int(random.integers(len(allowed)))]
     ranges = kind.forms[form].ranges
     values = {name: item.draw(random, spread) for name, item in ranges.items()}
-    return Effect(kind, form, values)
+    return HiddenEffect(kind, form, values)
 
 
 def read_kinds(

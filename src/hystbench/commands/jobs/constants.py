@@ -3,7 +3,7 @@
 from hystbench.compare.constants import Row
 from hystbench.compare.rows import four_digits, names_of, write_fields
 from hystbench.job import In, Json, Out, Settings, job
-from hystbench.published import load
+from hystbench.published import load_errors
 from hystbench.twins.constants import vary_constants
 from hystbench.twins.read import read_twins
 
@@ -17,7 +17,7 @@ def constants(
     out: Out,
 ) -> None:
     """Rank the filters on TWINS with other zero errors and with a constant tap."""
-    published = {(p.signal, p.model): p.mse.value for p in load()}
+    published = {(p.signal, p.model): p.mse.value for p in load_errors()}
     rows = [
         row
         for twin in read_twins(twins)

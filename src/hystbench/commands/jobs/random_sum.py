@@ -4,7 +4,7 @@ from hystbench.compare.draws import Draw
 from hystbench.compare.rows import names_of, or_empty, write_fields
 from hystbench.files import write_csv
 from hystbench.job import In, Json, Out, Settings, job
-from hystbench.published import load
+from hystbench.published import load_errors
 from hystbench.published.consistency import check
 from hystbench.rdgpi import RateDependentGPI
 from hystbench.twins import draws as drawing
@@ -26,7 +26,7 @@ def random_sum(
     found = drawing.run_draws(read_twins([twin])[0], settings, identified, fitted)
     signal = settings["signal"]
     write_fields(draws, names_of(Draw), found, or_empty)
-    published = {p.model: p.mse.value for p in load() if p.signal == signal}
-    rms = check(load())[signal].implied_rms
+    published = {p.model: p.mse.value for p in load_errors() if p.signal == signal}
+    rms = check(load_errors())[signal].implied_rms
     told = drawing.readings(found, published, rms)
     write_csv(readings, drawing.READING_COLUMNS, told)

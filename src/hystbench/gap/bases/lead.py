@@ -52,7 +52,8 @@ def without_lead(
     if not is_identified(base) or evidence.quantities.causality == "storage":
         return evidence
     held = base.with_hold(evidence.hold)
-    records = tuple(_without(record, held) for record in getattr(evidence, use))
+    of_use = evidence.fit if use == "fit" else evidence.hold_out
+    records = tuple(_without(record, held) for record in of_use)
     cut = sum(item.lead > 0 for item in records)
     if cut:
         say(
@@ -60,7 +61,9 @@ def without_lead(
             "records is not scored: what the base leaves there is what another state "
             "at the first sample would do"
         )
-    return replace(evidence, **{use: records})
+    if use == "fit":
+        return replace(evidence, fit=records)
+    return replace(evidence, hold_out=records)
 
 
 def _without(record: Record, base: Model) -> Record:
