@@ -5,7 +5,7 @@ import re
 import pytest
 
 from hystbench.dataset import load_dataset
-from hystbench.device_kinds import CAUSES, KINDS, causes_of, impossible_in
+from hystbench.device_kinds import CAUSES, DEVICE_KINDS, causes_of, impossible_in
 from hystbench.gap.effects import effects
 from hystbench.quantities import QUANTITIES, Quantities, quantity_of
 from tests.messages import message
@@ -115,7 +115,7 @@ def test_a_quantity_without_that_name_is_refused():
     assert "none-known" in QUANTITIES
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", DEVICE_KINDS)
 def test_a_dataset_tells_the_kind_of_device(write_dataset, kind):
     path = dataset_with(write_dataset, "name: b", f"device: {{kind: {kind}}}\nname: b")
     assert load_dataset(path).device_kind == kind
@@ -130,7 +130,7 @@ def test_every_effect_has_its_causes():
     for name, causes in CAUSES.items():
         assert causes_of(name) == tuple(causes)
         for kinds in causes.values():
-            assert set(kinds) <= set(KINDS)
+            assert set(kinds) <= set(DEVICE_KINDS)
 
 
 def test_what_nothing_causes_cannot_be_there():

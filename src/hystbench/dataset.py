@@ -12,11 +12,12 @@ from typing import Any, Literal
 
 import numpy as np
 
-from hystbench.device_kinds import KINDS, DeviceKind
+from hystbench.device_kinds import DEVICE_KINDS, DeviceKind
 from hystbench.errors import InputError, nearest, short
 from hystbench.formats import SUFFIXES, Column, Table, read_table
 from hystbench.quantities import QUANTITIES, Quantities, Quantity, quantity_of
-from hystbench.reading import (
+from hystbench.record import Channel, FloatArray, Record, Use
+from hystbench.samples import (
     UNIFORM_TOLERANCE,
     check_moves,
     check_period,
@@ -26,7 +27,6 @@ from hystbench.reading import (
     sampling_interval,
     whole,
 )
-from hystbench.record import Channel, FloatArray, Record, Use
 from hystbench.schema import check_against_schema
 from hystbench.units import check_known, check_same_unit, plain, seconds
 from hystbench.written import reads, sha256
@@ -221,7 +221,7 @@ def schema() -> dict[str, Any]:
     own = found["properties"]
     for channel in ("input", "output"):
         own[channel]["properties"]["quantity"]["enum"] = list(QUANTITIES)
-    own["device"]["properties"]["kind"]["enum"] = list(KINDS)
+    own["device"]["properties"]["kind"]["enum"] = list(DEVICE_KINDS)
     return found
 
 

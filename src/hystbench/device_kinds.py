@@ -19,7 +19,7 @@ DeviceKind = Literal[
     "mechanical",
 ]
 
-KINDS: tuple[DeviceKind, ...] = get_args(DeviceKind)
+DEVICE_KINDS: tuple[DeviceKind, ...] = get_args(DeviceKind)
 
 _MAGNETIC: Sequence[DeviceKind] = ("magnetostrictive", "electromechanical")
 _ELECTRIC: Sequence[DeviceKind] = (*_MAGNETIC, "piezoelectric", "electronic")
@@ -36,7 +36,7 @@ CAUSES: Mapping[str, Mapping[str, Sequence[DeviceKind]]] = {
         "a safety valve, or a change of phase": ("hydraulic", "thermal"),
     },
     "input-delay": {
-        "sampling and computing of a controller": KINDS,
+        "sampling and computing of a controller": DEVICE_KINDS,
         "transport of the medium": ("hydraulic", "thermal"),
     },
     "drive-lag": {
@@ -147,11 +147,11 @@ CAUSES: Mapping[str, Mapping[str, Sequence[DeviceKind]]] = {
         "self-heating of the parts": ("electronic",),
         "damping that warms the part": ("mechanical",),
     },
-    "sensor-lag": {"the sensor's own filter": KINDS},
-    "sensor-nonlinearity": {"the sensor's curve": KINDS},
-    "mains-pickup": {"cables and grounding beside the mains": KINDS},
-    "drift": {"zero of the sensor that moves, or slow temperature": KINDS},
-    "calibration-error": {"gain and zero of the sensor or its amplifier": KINDS},
+    "sensor-lag": {"the sensor's own filter": DEVICE_KINDS},
+    "sensor-nonlinearity": {"the sensor's curve": DEVICE_KINDS},
+    "mains-pickup": {"cables and grounding beside the mains": DEVICE_KINDS},
+    "drift": {"zero of the sensor that moves, or slow temperature": DEVICE_KINDS},
+    "calibration-error": {"gain and zero of the sensor or its amplifier": DEVICE_KINDS},
 }
 
 #: What an effect is called where its name is that of one of its causes.

@@ -11,7 +11,7 @@ from hystbench.entrants import naive, random_namer
 from hystbench.entrants.task import Answer, read, write
 from hystbench.files import read_json
 from hystbench.gap.schema import SCHEMA
-from hystbench.refit import Task, effects, fit, within_noise
+from hystbench.plain_fits import Task, effects, fit, within_noise
 from hystbench.schema import check_against_schema
 
 SPEC = CaseSpec(150_001, "single", ("thermal-drift",), "gpi", 20.0)

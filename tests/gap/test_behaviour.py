@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from hystbench.device_kinds import KINDS
+from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.gap.effects import effects
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in
@@ -157,7 +157,7 @@ def test_what_a_user_puts_in_stays_whatever_the_device():
     assert "friction" not in chosen.offered
 
 
-@pytest.mark.parametrize("kind", [*KINDS, None])
+@pytest.mark.parametrize("kind", [*DEVICE_KINDS, None])
 def test_what_is_impossible_is_not_offered(kind):
     chosen = Vocabulary.of().in_device(kind)
     assert not {*chosen.impossible} & {*chosen.offered}

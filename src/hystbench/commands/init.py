@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from hystbench import options
-from hystbench.device_kinds import KINDS
+from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.errors import InputError
 from hystbench.files import write_text
 from hystbench.inspection.columns import Given
@@ -41,7 +41,7 @@ PLACE = "dataset.yaml"
     type=click.Choice(["interpolate", "split"]),
     help="What to do where samples are missing.",
 )
-@click.option("--device", type=click.Choice(KINDS), help="Kind of the device.")
+@click.option("--device", type=click.Choice(DEVICE_KINDS), help="Kind of the device.")
 @click.option("--name", help="Name of the dataset; by default that of its folder.")
 @click.option(
     "--out",

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hystbench.entrants.task import Answer, Given, Named, noise_rms
+from hystbench.plain_fits import Fitted, Task, effects, fit
 from hystbench.record import FloatArray, Record
-from hystbench.refit import Fitted, Task, effects, fit
 
 MOST = 4
 """Effects that are named, at most."""

@@ -7,7 +7,7 @@ import hashlib
 import numpy as np
 
 from hystbench.entrants.task import Answer, Given, Named
-from hystbench.refit import effects
+from hystbench.plain_fits import effects
 
 
 def answer(given: Given) -> Answer:

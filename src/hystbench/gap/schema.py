@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, get_args
 
-from hystbench.device_kinds import KINDS
+from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.quantities import QUANTITIES
 
@@ -350,7 +350,7 @@ SCHEMA = _object(
     # What the device is: its kind as dataset.yaml tells it, and what its units tell.
     device=_object(
         {
-            "kind": {"enum": [*KINDS, None]},
+            "kind": {"enum": [*DEVICE_KINDS, None]},
             "input": {"enum": list(QUANTITIES)},
             "output": {"enum": list(QUANTITIES)},
             "causality": WORDS,

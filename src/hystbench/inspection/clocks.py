@@ -10,8 +10,8 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.formats import Table
-from hystbench.reading import UNIFORM_TOLERANCE
 from hystbench.record import FloatArray
+from hystbench.samples import UNIFORM_TOLERANCE
 
 EARLIEST, LATEST = dt.datetime(1990, 1, 1), dt.datetime(2100, 1, 1)
 """Between these a computer has recorded."""

@@ -23,8 +23,8 @@ from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
 from hystbench.inspection.roles import propose
 from hystbench.periods import find_period
-from hystbench.reading import UNIFORM_TOLERANCE
 from hystbench.record import Record
+from hystbench.samples import UNIFORM_TOLERANCE
 from hystbench.units import seconds
 
 ONE_HELD_OUT = 3

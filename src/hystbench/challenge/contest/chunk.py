@@ -20,7 +20,7 @@ from hystbench.challenge.plant.inside import MACHINES
 from hystbench.challenge.writing import write_folder
 from hystbench.errors import InputError
 from hystbench.files import digest
-from hystbench.refit import within_noise
+from hystbench.plain_fits import within_noise
 
 WRITTEN = ("*/model.yaml", "*/dataset/*")
 """Files of a chunk, as patterns."""

@@ -12,9 +12,9 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.model import Model
+from hystbench.plain_fits.table import LINEAR, Searched
+from hystbench.plain_fits.task import Fitted, Task
 from hystbench.record import FloatArray
-from hystbench.refit.table import LINEAR, Searched
-from hystbench.refit.task import Fitted, Task
 
 #: Evaluations of a search from one start, Jacobians not counted.
 EVALUATIONS = 8

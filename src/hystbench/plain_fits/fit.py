@@ -10,10 +10,10 @@ from hystbench.blocks.attached import attached
 from hystbench.blocks.rate_dependent_hysteresis import FORMS
 from hystbench.model import Model
 from hystbench.operators import play
+from hystbench.plain_fits.search import search
+from hystbench.plain_fits.table import PLACES, next_to, place_of, searched_of
+from hystbench.plain_fits.task import Fitted, Task
 from hystbench.record import FloatArray, Record
-from hystbench.refit.search import search
-from hystbench.refit.table import PLACES, next_to, place_of, searched_of
-from hystbench.refit.task import Fitted, Task
 
 #: Plays that stand for hysteresis of any shape.
 PLAYS = 10

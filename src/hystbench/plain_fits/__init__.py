@@ -6,7 +6,7 @@ folds, no joint fits. It is what the naive rival goes by, and the judge's own wa
 see whether an effect fits data within their noise.
 """
 
-from hystbench.refit.fit import effects, fit, within_noise
-from hystbench.refit.task import Fitted, Task
+from hystbench.plain_fits.fit import effects, fit, within_noise
+from hystbench.plain_fits.task import Fitted, Task
 
 __all__ = ["Fitted", "Task", "effects", "fit", "within_noise"]

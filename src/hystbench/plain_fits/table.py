@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hystbench.blocks.attached import AttachedBlock
-from hystbench.refit.task import Task
+from hystbench.plain_fits.task import Task
 
 #: Frequencies that a mode is looked for at, over the records' band.
 MODES = 60
