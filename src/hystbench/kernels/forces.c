@@ -35,7 +35,7 @@ static double hb_mean_held(double z, double way, double reach, double gap)
     return (climbed + hb_dead_zone(gap, to) * rest) / way;
 }
 
-/* (exp(y) - 1 - y) / y^2, near zero by its series: the sum of y^k / (k + 2)!. */
+/* (exp(y) - 1 - y) / y^2 near zero, by its series: the sum of y^k / (k + 2)!. */
 static double hb_phi2(double y)
 {
     static const double share[] = {
@@ -43,7 +43,6 @@ static double hb_phi2(double y)
         1.0 / 720,    1.0 / 5040,    1.0 / 40320,    1.0 / 362880,
         1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800,
     };
-    if (fabs(y) > 0.3) return (expm1(y) - y) / (y * y);
     double sum = 0;
     for (int k = 11; k >= 0; k--) sum = sum * y + share[k];
     return sum;
@@ -54,25 +53,28 @@ static double hb_integral_of(double *x, double a, double way)
 {
     const double slope = 1 + a * *x, from = *x;
     if (!(slope > 0)) return from * way; /* it rests there */
-    const double y = a * way, twice = hb_phi2(y);
-    *x += slope * way * (1 + y * twice);
+    const double y = a * way, big = fabs(y) > 0.3 ? expm1(y) / y : 0;
+    const double twice = big > 0 ? (big - 1) / y : hb_phi2(y);
+    *x += slope * way * (big > 0 ? big : 1 + y * twice);
     return way * (from + slope * way * twice);
 }
 
-/* Bouc-Wen's operator with exponent 1, solved exactly: z of a reach of one after a way
- * in units of the yield distance, and its integral over the way.  Unloading is
- * 2 share |z| less stiff than in Dahl's form, which has a share of zero. */
-static double hb_bouc_wen(double z, double way, double share, double *integral)
+/* Bouc-Wen's operator with exponent 1, solved exactly: x, the force over the stiffness
+ * at rest, after a way, and its integral over the way.  x moves by 1 - softens |x| on
+ * loading and by 1 + stiffens |x| on unloading, a unit of way. */
+static double hb_bouc_wen(double x, double way, double softens, double stiffens,
+                          double *integral)
 {
-    const double sign = way < 0 ? -1 : 1, b = 2 * share - 1, length = fabs(way);
-    double x = sign * z, until = 0;
+    const double sign = way < 0 ? -1 : 1, length = fabs(way), part = stiffens * sign * x;
+    double until = 0;
+    x *= sign;
     *integral = 0;
     if (x < 0) { /* unloading, until x is zero */
-        until = fabs(b) < 1e-9 ? -x : b * x > -1 ? -log1p(b * x) / b : length;
+        until = stiffens == 0 ? -x : part < 1 ? log1p(-part) / stiffens : length;
         until = fmin(until, length);
-        *integral += hb_integral_of(&x, b, until);
+        *integral += hb_integral_of(&x, -stiffens, until);
     }
-    *integral += hb_integral_of(&x, -1, length - until); /* loading */
+    *integral += hb_integral_of(&x, -softens, length - until); /* loading */
     return sign * x;
 }
 
@@ -97,7 +99,7 @@ static double hb_remembered(const double *f, double way, double v, double memory
     case 3: /* friction */
         return hb_clip(hb_friction_reach(f, v), memory + way);
     case 5: /* hysteretic */
-        return hb_bouc_wen(memory, way / f[2], f[3], &integral);
+        return hb_bouc_wen(memory, way, f[2], f[3], &integral);
     case 7: /* slider */
         return hb_clip(f[2], memory + way);
     }
@@ -166,8 +168,8 @@ static double hb_mean_force(const double *f, double q, double way, double v,
     case 5: /* hysteretic */ {
         double integral;
         if (way == 0) return f[1] * memory;
-        hb_bouc_wen(memory, way / f[2], f[3], &integral);
-        return f[1] * integral / (way / f[2]);
+        hb_bouc_wen(memory, way, f[2], f[3], &integral);
+        return f[1] * integral / way;
     }
     case 6: /* gravity */
         return f[1] * (sin(middle + f[2]) * (half == 0 ? 1 : sin(half) / half) -

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hystbench.blocks.bouc_wen_force import BoucWenForce
 from hystbench.blocks.hysteretic_force import HystereticForce as Block
 from hystbench.gap.effects.base import ForceEffect
 from hystbench.gap.effects.law import SLIDES, Law, Moved
@@ -16,11 +17,31 @@ class HystereticForce(ForceEffect):
 
     name = "hysteretic-force"
     shows = "branch"
+    laws = ("bouc-wen-force",)
+    vanishing = "beta"
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer it weak, with short and long ways to yield."""
+        """Offer it weak, with short and long ways to yield, or one that it stiffens."""
         names = ("largest", "yield_distance", "sharing")
         for share, way in ((0.03, 0.03), (0.1, 0.3), (0.3, 1.0)):
             block = Block(largest=share * moved.force, yield_distance=way * moved.reach)
             ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
             yield Law("Bouc-Wen", block, names, ranges=ranges)
+        # Where gamma is negative; beyond this beta it would slide on nearly all its way.
+        stiffness = moved.stiffness or moved.force / moved.reach
+        stiffens = {
+            "beta": (0.0, 1.0 / (SLIDES * moved.reach)),
+            "gamma": (-np.inf, 0.0),
+        }
+        for share, softer, stiffer in ((0.1, 0.3, 0.3), (0.3, 1.0, 1.5)):
+            wen = {
+                "stiffness": share * stiffness,
+                "beta": softer / moved.reach,
+                "gamma": -stiffer / moved.reach,
+            }
+            yield Law(
+                "Bouc-Wen, stiffer on loading",
+                BoucWenForce(**wen),
+                tuple(wen),
+                ranges=stiffens,
+            )
