@@ -27,7 +27,7 @@ class HystereticForce(ForceEffect):
             block = Block(largest=share * moved.force, yield_distance=way * moved.reach)
             ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
             yield Law("Bouc-Wen", block, names, ranges=ranges)
-        # Where gamma is negative; beyond this beta it would slide on nearly all its way.
+        # Beyond such a beta it would slide on nearly all of its way.
         stiffness = moved.stiffness or moved.force / moved.reach
         stiffens = {
             "beta": (0.0, 1.0 / (SLIDES * moved.reach)),
