@@ -35,17 +35,24 @@ static double hb_mean_held(double z, double way, double reach, double gap)
     return (climbed + hb_dead_zone(gap, to) * rest) / way;
 }
 
-/* (exp(y) - 1 - y) / y^2 near zero, by its series: the sum of y^k / (k + 2)!. */
-static double hb_phi2(double y)
+/* (exp(y) - 1) / y, and (exp(y) - 1 - y) / y^2: near zero the latter is its series,
+ * the sum of y^k / (k + 2)!. */
+static double hb_phi(double y, double *twice)
 {
     static const double share[] = {
         1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,
         1.0 / 720,    1.0 / 5040,    1.0 / 40320,    1.0 / 362880,
         1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800,
     };
+    if (fabs(y) > 0.3) {
+        const double once = expm1(y) / y;
+        *twice = (once - 1) / y;
+        return once;
+    }
     double sum = 0;
     for (int k = 11; k >= 0; k--) sum = sum * y + share[k];
-    return sum;
+    *twice = sum;
+    return 1 + y * sum;
 }
 
 /* Moves x, which follows x' = 1 + a x, and gives its integral over the way. */
@@ -53,9 +60,8 @@ static double hb_integral_of(double *x, double a, double way)
 {
     const double slope = 1 + a * *x, from = *x;
     if (!(slope > 0)) return from * way; /* it rests there */
-    const double y = a * way, big = fabs(y) > 0.3 ? expm1(y) / y : 0;
-    const double twice = big > 0 ? (big - 1) / y : hb_phi2(y);
-    *x += slope * way * (big > 0 ? big : 1 + y * twice);
+    double twice;
+    *x += slope * way * hb_phi(a * way, &twice);
     return way * (from + slope * way * twice);
 }
 
@@ -91,8 +97,10 @@ static double hb_friction_reach(const double *f, double v)
     return most > 0 ? f[4] * (hb_sliding(f, v) / most) : 0;
 }
 
-/* What a force remembers after a way, of its memory before it; v is that at its end. */
-static double hb_remembered(const double *f, double way, double v, double memory)
+/* What a force remembers after a way in a time h, of its memory before it; v is that at
+ * its end. */
+static double hb_remembered(const double *f, double way, double v, double h,
+                            double memory)
 {
     double integral;
     switch ((int)f[0]) {
@@ -102,6 +110,8 @@ static double hb_remembered(const double *f, double way, double v, double memory
         return hb_bouc_wen(memory, way, f[2], f[3], &integral);
     case 7: /* slider */
         return hb_clip(f[2], memory + way);
+    case 9: /* relaxation */
+        return memory * exp(-h / f[2]) + way * hb_phi(-h / f[2], &integral);
     }
     return memory;
 }
@@ -130,15 +140,17 @@ static double hb_force(const double *f, double q, double v, double memory)
         return f[1] * (sin(q + f[2]) - sin(f[2]));
     case 7: /* slider */
         return f[1] * hb_dead_zone(f[3], memory);
+    case 9: /* relaxation */
+        return f[1] * memory;
     }
     return NAN;
 }
 
-/* A force's mean over a way from q, which is its work over the way; v is the mean
- * velocity. */
-static double hb_mean_force(const double *f, double q, double way, double v,
+/* A force's mean over a way from q in a time h, which is its work over the way. */
+static double hb_mean_force(const double *f, double q, double way, double h,
                             double memory)
 {
+    const double v = way / h;
     const double to = q + way, middle = q + way / 2, half = way / 2;
     switch ((int)f[0]) {
     case 0: /* stiffness */
@@ -176,18 +188,23 @@ static double hb_mean_force(const double *f, double q, double way, double v,
                        sin(f[2]));
     case 7: /* slider */
         return f[1] * hb_mean_held(memory, way, f[2], f[3]);
+    case 9: /* relaxation */ {
+        double twice;
+        const double once = hb_phi(-h / f[2], &twice);
+        return f[1] * (memory * once + way * twice);
+    }
     }
     return NAN;
 }
 
-/* Moves all memories by a way and gives the sum of the forces at its end. */
+/* Moves all memories by a way in a time h and gives the sum of the forces at its end. */
 static double hb_all_forces(int count, const double *forces, double q, double v,
-                            double way, double *memory)
+                            double way, double h, double *memory)
 {
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
-        memory[i] = hb_remembered(f, way, v, memory[i]);
+        memory[i] = hb_remembered(f, way, v, h, memory[i]);
         sum += hb_force(f, q, v, memory[i]);
     }
     return sum;
@@ -202,7 +219,7 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
-        sum += h > 0 ? hb_mean_force(f, q, way, way / h, memory[i])
+        sum += h > 0 ? hb_mean_force(f, q, way, h, memory[i])
                      : hb_force(f, q + way, 0, memory[i]);
     }
     return way - alone + gives * sum;
@@ -325,7 +342,7 @@ static void hb_moved(int count, const double *forces, double *memory,
                           &after);
         *q += way;
         *v = after;
-        hb_all_forces(count, forces, *q, *v, way, memory);
+        hb_all_forces(count, forces, *q, *v, way, h / fine, memory);
     }
 }
 
