@@ -27,7 +27,7 @@ def moved(u, held, spring, fine=40):
     q, v, force, out = 0.0, 0.0, 0.0, []
     for push in np.repeat(u, fine):
         out.append(q)
-        v += DT / fine * (push - 1.5 * v - spring(q) - force)
+        v += DT / fine * (push - 1.5 * v - spring(q) - np.sum(force))
         force += DT / fine * held(force, v)
         q += DT / fine * v
     return np.array(out[::fine])
@@ -77,3 +77,20 @@ def test_a_spring_that_loses_nothing_is_no_hysteretic_force():
 
     item = best(lambda force, v: 0.0, rubber, ["hysteretic-force"])
     assert item.effects == ()
+
+
+def test_elements_that_slip_one_after_the_other_are_a_hysteretic_force():
+    """Forty of them, of one stiffness: they slip between zero and a way of 0.3."""
+    slips = (np.arange(40) + 0.5) / 40
+
+    def held(force, v):
+        most = slips * 0.3  # a stiffness of one each
+        return np.where((np.abs(force) >= most) & (force * v > 0), 0.0, v)
+
+    item = best(held, offered=["hysteretic-force"])
+    assert (item.effects, item.forms) == (("hysteretic-force",), ("plays",))
+    law = item.fitted.state.chain[1]
+    assert law.stiffness == pytest.approx(40.0, rel=0.05)
+    assert law.slip_distance == pytest.approx(0.3, rel=0.1)
+    assert law.exponent == pytest.approx(0.0, abs=0.15)
+    assert np.sqrt(np.mean(item.fitted.state.residual**2)) < 3 * NOISE
