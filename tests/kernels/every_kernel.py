@@ -26,12 +26,14 @@ from hystbench.blocks.friction_force import FrictionForce  # noqa: E402
 from hystbench.blocks.gravity import Gravity  # noqa: E402
 from hystbench.blocks.hysteretic_force import HystereticForce  # noqa: E402
 from hystbench.blocks.impedance import Impedance  # noqa: E402
+from hystbench.blocks.iwan_force import IwanForce  # noqa: E402
 from hystbench.blocks.jiles_atherton import JilesAtherton  # noqa: E402
 from hystbench.blocks.mechanism import Mechanism  # noqa: E402
 from hystbench.blocks.preisach import Preisach  # noqa: E402
 from hystbench.blocks.rate_dependent_hysteresis import (  # noqa: E402
     RateDependentHysteresis,
 )
+from hystbench.blocks.relaxation_force import RelaxationForce  # noqa: E402
 from hystbench.blocks.resonance import Resonance  # noqa: E402
 from hystbench.blocks.slew_limit import SlewLimit  # noqa: E402
 from hystbench.blocks.stiffness import Stiffness  # noqa: E402
@@ -147,6 +149,8 @@ def blocks(x):
         FrictionForce(coulomb=0.2, presliding_distance=1e-3),
         Gravity(amplitude=3.0),
         HystereticForce(largest=0.3, yield_distance=1e-2),
+        IwanForce(stiffness=5.0, slip_distance=2e-2),
+        RelaxationForce(stiffness=3.0, relaxation_time_s=2e-3),
         Stiffness(quadratic=5.0, cubic=40.0),
     )
     machine = Mechanism(mass=1e-4, damping=5e-3, stiffness=10.0)

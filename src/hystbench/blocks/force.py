@@ -16,7 +16,7 @@ from hystbench.record import FloatArray
 
 KINDS = (
     *("stiffness", "sinh", "stop", "friction"),
-    *("drag", "hysteretic", "gravity", "slider", "smooth"),
+    *("drag", "hysteretic", "gravity", "slider", "smooth", "relaxation"),
 )
 """Laws of the kernel, by the number that they have in kernels/forces.c."""
 ROW = 6
@@ -56,18 +56,26 @@ class Force(AttachedBlock):
     hosts: ClassVar = "mechanism or impedance"
 
     @abstractmethod
-    def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the kernel's law, one of :data:`KINDS`, and its numbers."""
+    def law(self) -> tuple[str, tuple[float, ...] | FloatArray]:
+        """Give the kernel's law, one of :data:`KINDS`, and its numbers.
+
+        Of a force that is the sum of several of one law, the numbers of each, a row for
+        each.
+        """
 
     @property
     def stiffest(self) -> float:
         """Stiffness of a contact, which asks for shorter steps; zero without one."""
         return 0.0
 
-    def numbers(self) -> tuple[float, ...]:
-        """Give the row of the kernel: the law's number, then its own and zeros."""
-        kind, own = self.law()
-        return (float(KINDS.index(kind)), *own, *(0.0,) * (ROW - 1 - len(own)))
+    def rows(self) -> FloatArray:
+        """Give rows of the kernel: the law's number, then its own and zeros."""
+        kind, numbers = self.law()
+        own = np.atleast_2d(np.asarray(numbers, dtype=np.float64))
+        found = np.zeros((len(own), ROW))
+        found[:, 0] = KINDS.index(kind)
+        found[:, 1 : 1 + own.shape[1]] = own
+        return found
 
     def attach(self, before: Any) -> Driven:
         """Let the force act inside the mechanism before."""
@@ -82,22 +90,23 @@ class Force(AttachedBlock):
 
 
 def rows(forces: tuple[Force, ...]) -> FloatArray:
-    """Give the kernel's rows of some forces, shape (forces, 6)."""
-    numbers = np.array([item.numbers() for item in forces], dtype=np.float64)
-    return numbers.reshape(len(forces), ROW)
+    """Give the kernel's rows of some forces, shape (rows, 6); one or more a force."""
+    return np.vstack([np.zeros((0, ROW)), *(item.rows() for item in forces)])
 
 
-def exported(forces: tuple[Force, ...]) -> dict[str, Any]:
-    """Give the constants of a step that stand for forces; it remembers one each.
+def exported(forces: tuple[Force, ...]) -> tuple[dict[str, Any], int]:
+    """Give the constants of a step that stand for forces, and how many it remembers.
 
-    Without a force there is a row of zeros, as C has no empty arrays.
+    Without a force there is a row of zeros and one memory, as C has no empty arrays.
     """
-    numbers = rows(forces).ravel() if forces else np.zeros(ROW)
-    return {"count": len(forces), "forces": numbers}
+    numbers = rows(forces)
+    count = len(numbers)
+    own = numbers.ravel() if count else np.zeros(ROW)
+    return {"count": count, "forces": own}, max(count, 1)
 
 
 def against(
-    forces: tuple[Force, ...], position: FloatArray, velocity: FloatArray
+    forces: tuple[Force, ...], position: FloatArray, velocity: FloatArray, dt: float
 ) -> FloatArray:
     """Compute the sum of forces against a motion; none remembers one before it.
 
@@ -105,19 +114,21 @@ def against(
     ----------
     forces : tuple of Force
     position, velocity : ndarray, shape (n,)
+    dt : float
+        Between two samples, in seconds.
 
     Returns
     -------
     ndarray, shape (n,)
     """
-    found = np.zeros(len(position))
-    memory = np.zeros(len(forces))
+    found, numbers = np.zeros(len(position)), rows(forces)
     kernels.call(
         "hb_forces",
         len(position),
-        len(forces),
-        rows(forces),
-        memory,
+        dt,
+        len(numbers),
+        numbers,
+        np.zeros(len(numbers)),
         position,
         velocity,
         found,

@@ -16,6 +16,7 @@ class HystereticForce(Force):
     ``yield_distance dz/dq = 1 - |z| (sharing + (1 - sharing) sgn(z dq))``, z between -1
     and 1: micro-slip of joints, the fluid of a magnetorheological damper. A sharing of
     zero is Dahl's friction; with one it unloads along the way on which it was loaded.
+    A loop that grows stiffer on loading is a ``bouc-wen-force``.
     Solved exactly over every monotone piece of the way.
 
     References
@@ -39,5 +40,10 @@ class HystereticForce(Force):
     )
 
     def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give force, distance and sharing."""
-        return "hysteretic", (self.largest, self.yield_distance, self.sharing)
+        """Give the stiffness, and how it falls on loading and grows on unloading."""
+        softens = 1.0 / self.yield_distance
+        return "hysteretic", (
+            self.largest * softens,
+            softens,
+            (1.0 - 2.0 * self.sharing) * softens,
+        )

@@ -172,6 +172,7 @@ class Impedance(HeldBlock):
                 if forces:
                     told += "; takes its forces at samples, without a low-pass filter"
         taps = low_pass_taps() if between else np.ones(1)
+        inside, memory = exported(forces)
         constants = {
             **self.constants(*NUMBERS),
             "velocity": int(self.input == "velocity"),
@@ -185,9 +186,8 @@ class Impedance(HeldBlock):
             "dt": dt,
             "width": len(taps),
             "taps": taps,
-            **exported(forces),
+            **inside,
         }
-        memory = max(len(forces), 1)
         states = {
             "place": 2,
             "between": 2,
@@ -209,7 +209,7 @@ class Impedance(HeldBlock):
         z = np.ascontiguousarray(z, dtype=np.float64)
         if self.holding != "band-limited" or len(z) < 3:
             q, v, curved = self._moved(z, dt)
-            return Motion(q, v, curved, against(forces, q, v))
+            return Motion(q, v, curved, against(forces, q, v, dt))
         way, rate, curvature = weighed(z, _of_curve())
         # The curve is turned about its ends: its derivatives have a kink there.
         first, last = slice(AHEAD + 1), slice(-AHEAD, None)
@@ -224,7 +224,7 @@ class Impedance(HeldBlock):
             q, v, curved = np.cumsum(way * dt), z.copy(), rate
         force = np.zeros(len(z))
         if forces:
-            force = coarser(against(forces, *self._between(z, q, dt)))
+            force = coarser(against(forces, *self._between(z, q, dt), dt / SHORT_STEPS))
         return Motion(q, v, curved, force)
 
     def _between(

@@ -131,9 +131,9 @@ class Mechanism(HeldBlock):
             step,
             float(self.holding != "zero-order"),
             self._steps(step / parts),
-            len(forces),
+            len(numbers),
             numbers,
-            np.zeros(len(forces)),
+            np.zeros(len(numbers)),
             p,
             q,
             v,
@@ -153,6 +153,7 @@ class Mechanism(HeldBlock):
         line = sampling.dt / lines.segments
         parts = self._parts(line, forces)
         balanced = 0.0 if self.start == "rest" else self.stiffness
+        inside, memory = exported(forces)
         constants = {
             "gain": self.gain,
             "bias": self.bias,
@@ -162,9 +163,9 @@ class Mechanism(HeldBlock):
             "step": self._steps(line / parts).ravel(),
             "shown": self._shown(),
             "start": np.array([self.start_position, self.start_velocity, balanced]),
-            **exported(forces),
+            **inside,
         }
-        states = {"motion": 2, "memory": max(len(forces), 1), **lines.states}
+        states = {"motion": 2, "memory": memory, **lines.states}
         past = PASTS.get(self.start, "")
         return Step("mechanism", constants, states, past=past, **lines.told)
 

@@ -50,7 +50,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_acting_field": (None, "ifffaa"),
     "hb_hardening": (_SIZE, "iffffaa"),
     "hb_mechanism": (_SIZE, "iiffaiaaaaaa"),
-    "hb_forces": (None, "iiaaaaa"),
+    "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
     "hb_store": (None, "iifffffaaaa"),
     "hb_preisach": (None, "iifaaaaa"),

@@ -35,18 +35,24 @@ static double hb_mean_held(double z, double way, double reach, double gap)
     return (climbed + hb_dead_zone(gap, to) * rest) / way;
 }
 
-/* (exp(y) - 1 - y) / y^2, near zero by its series: the sum of y^k / (k + 2)!. */
-static double hb_phi2(double y)
+/* (exp(y) - 1) / y, and (exp(y) - 1 - y) / y^2: near zero the latter is its series,
+ * the sum of y^k / (k + 2)!. */
+static double hb_phi(double y, double *twice)
 {
     static const double share[] = {
         1.0 / 2,      1.0 / 6,       1.0 / 24,       1.0 / 120,
         1.0 / 720,    1.0 / 5040,    1.0 / 40320,    1.0 / 362880,
         1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800,
     };
-    if (fabs(y) > 0.3) return (expm1(y) - y) / (y * y);
+    if (fabs(y) > 0.3) {
+        const double once = expm1(y) / y;
+        *twice = (once - 1) / y;
+        return once;
+    }
     double sum = 0;
     for (int k = 11; k >= 0; k--) sum = sum * y + share[k];
-    return sum;
+    *twice = sum;
+    return 1 + y * sum;
 }
 
 /* Moves x, which follows x' = 1 + a x, and gives its integral over the way. */
@@ -54,25 +60,27 @@ static double hb_integral_of(double *x, double a, double way)
 {
     const double slope = 1 + a * *x, from = *x;
     if (!(slope > 0)) return from * way; /* it rests there */
-    const double y = a * way, twice = hb_phi2(y);
-    *x += slope * way * (1 + y * twice);
+    double twice;
+    *x += slope * way * hb_phi(a * way, &twice);
     return way * (from + slope * way * twice);
 }
 
-/* Bouc-Wen's operator with exponent 1, solved exactly: z of a reach of one after a way
- * in units of the yield distance, and its integral over the way.  Unloading is
- * 2 share |z| less stiff than in Dahl's form, which has a share of zero. */
-static double hb_bouc_wen(double z, double way, double share, double *integral)
+/* Bouc-Wen's operator with exponent 1, solved exactly: x, the force over the stiffness
+ * at rest, after a way, and its integral over the way.  x moves by 1 - softens |x| on
+ * loading and by 1 + stiffens |x| on unloading, a unit of way. */
+static double hb_bouc_wen(double x, double way, double softens, double stiffens,
+                          double *integral)
 {
-    const double sign = way < 0 ? -1 : 1, b = 2 * share - 1, length = fabs(way);
-    double x = sign * z, until = 0;
+    const double sign = way < 0 ? -1 : 1, length = fabs(way), part = stiffens * sign * x;
+    double until = 0;
+    x *= sign;
     *integral = 0;
     if (x < 0) { /* unloading, until x is zero */
-        until = fabs(b) < 1e-9 ? -x : b * x > -1 ? -log1p(b * x) / b : length;
+        until = stiffens == 0 ? -x : part < 1 ? log1p(-part) / stiffens : length;
         until = fmin(until, length);
-        *integral += hb_integral_of(&x, b, until);
+        *integral += hb_integral_of(&x, -stiffens, until);
     }
-    *integral += hb_integral_of(&x, -1, length - until); /* loading */
+    *integral += hb_integral_of(&x, -softens, length - until); /* loading */
     return sign * x;
 }
 
@@ -89,17 +97,21 @@ static double hb_friction_reach(const double *f, double v)
     return most > 0 ? f[4] * (hb_sliding(f, v) / most) : 0;
 }
 
-/* What a force remembers after a way, of its memory before it; v is that at its end. */
-static double hb_remembered(const double *f, double way, double v, double memory)
+/* What a force remembers after a way in a time h, of its memory before it; v is that at
+ * its end. */
+static double hb_remembered(const double *f, double way, double v, double h,
+                            double memory)
 {
     double integral;
     switch ((int)f[0]) {
     case 3: /* friction */
         return hb_clip(hb_friction_reach(f, v), memory + way);
     case 5: /* hysteretic */
-        return hb_bouc_wen(memory, way / f[2], f[3], &integral);
+        return hb_bouc_wen(memory, way, f[2], f[3], &integral);
     case 7: /* slider */
         return hb_clip(f[2], memory + way);
+    case 9: /* relaxation */
+        return memory * exp(-h / f[2]) + way * hb_phi(-h / f[2], &integral);
     }
     return memory;
 }
@@ -128,15 +140,17 @@ static double hb_force(const double *f, double q, double v, double memory)
         return f[1] * (sin(q + f[2]) - sin(f[2]));
     case 7: /* slider */
         return f[1] * hb_dead_zone(f[3], memory);
+    case 9: /* relaxation */
+        return f[1] * memory;
     }
     return NAN;
 }
 
-/* A force's mean over a way from q, which is its work over the way; v is the mean
- * velocity. */
-static double hb_mean_force(const double *f, double q, double way, double v,
+/* A force's mean over a way from q in a time h, which is its work over the way. */
+static double hb_mean_force(const double *f, double q, double way, double h,
                             double memory)
 {
+    const double v = way / h;
     const double to = q + way, middle = q + way / 2, half = way / 2;
     switch ((int)f[0]) {
     case 0: /* stiffness */
@@ -166,26 +180,31 @@ static double hb_mean_force(const double *f, double q, double way, double v,
     case 5: /* hysteretic */ {
         double integral;
         if (way == 0) return f[1] * memory;
-        hb_bouc_wen(memory, way / f[2], f[3], &integral);
-        return f[1] * integral / (way / f[2]);
+        hb_bouc_wen(memory, way, f[2], f[3], &integral);
+        return f[1] * integral / way;
     }
     case 6: /* gravity */
         return f[1] * (sin(middle + f[2]) * (half == 0 ? 1 : sin(half) / half) -
                        sin(f[2]));
     case 7: /* slider */
         return f[1] * hb_mean_held(memory, way, f[2], f[3]);
+    case 9: /* relaxation */ {
+        double twice;
+        const double once = hb_phi(-h / f[2], &twice);
+        return f[1] * (memory * once + way * twice);
+    }
     }
     return NAN;
 }
 
-/* Moves all memories by a way and gives the sum of the forces at its end. */
+/* Moves all memories by a way in a time h and gives the sum of the forces at its end. */
 static double hb_all_forces(int count, const double *forces, double q, double v,
-                            double way, double *memory)
+                            double way, double h, double *memory)
 {
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
-        memory[i] = hb_remembered(f, way, v, memory[i]);
+        memory[i] = hb_remembered(f, way, v, h, memory[i]);
         sum += hb_force(f, q, v, memory[i]);
     }
     return sum;
@@ -200,7 +219,7 @@ static double hb_miss(int count, const double *forces, const double *memory, dou
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double *f = forces + 6 * i;
-        sum += h > 0 ? hb_mean_force(f, q, way, way / h, memory[i])
+        sum += h > 0 ? hb_mean_force(f, q, way, h, memory[i])
                      : hb_force(f, q + way, 0, memory[i]);
     }
     return way - alone + gives * sum;
@@ -323,7 +342,7 @@ static void hb_moved(int count, const double *forces, double *memory,
                           &after);
         *q += way;
         *v = after;
-        hb_all_forces(count, forces, *q, *v, way, memory);
+        hb_all_forces(count, forces, *q, *v, way, h / fine, memory);
     }
 }
 

@@ -16,7 +16,7 @@ EXPORT index_t hb_mechanism(index_t n, index_t parts, double dt, double ramp,
 {
     const int all = (int)count;
     index_t k = 0;
-    out[0] = hb_all_forces(all, forces, q[0], v[0], 0, memory);
+    out[0] = hb_all_forces(all, forces, q[0], v[0], 0, 0, memory);
     for (; k + 1 < n; k++) {
         const double slope = ramp * (p[k + 1] - p[k]) / parts;
         double x = q[k], w = v[k];
@@ -27,20 +27,20 @@ EXPORT index_t hb_mechanism(index_t n, index_t parts, double dt, double ramp,
         }
         if (!(fabs(x) < 1e100 && fabs(w) < 1e100)) break;
         q[k + 1] = x, v[k + 1] = w;
-        out[k + 1] = hb_all_forces(all, forces, x, w, 0, memory);
+        out[k + 1] = hb_all_forces(all, forces, x, w, 0, 0, memory);
     }
     for (index_t rest = k + 1; rest < n; rest++) q[rest] = v[rest] = out[rest] = NAN;
     return k + 1;
 }
 
 /* Forces against a given motion, sample by sample. */
-EXPORT void hb_forces(index_t n, index_t count, const double *forces, double *memory,
-                      const double *q, const double *v, double *out)
+EXPORT void hb_forces(index_t n, double dt, index_t count, const double *forces,
+                      double *memory, const double *q, const double *v, double *out)
 {
     const int all = (int)count;
     for (index_t k = 0; k < n; k++) {
         const double way = k ? q[k] - q[k - 1] : 0;
-        out[k] = hb_all_forces(all, forces, q[k], v[k], way, memory);
+        out[k] = hb_all_forces(all, forces, q[k], v[k], way, k ? dt : 0, memory);
     }
 }
 

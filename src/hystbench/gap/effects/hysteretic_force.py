@@ -6,21 +6,51 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hystbench.blocks.bouc_wen_force import BoucWenForce
 from hystbench.blocks.hysteretic_force import HystereticForce as Block
+from hystbench.blocks.iwan_force import IwanForce
 from hystbench.gap.effects.base import ForceEffect
 from hystbench.gap.effects.law import SLIDES, Law, Moved
 
 
 class HystereticForce(ForceEffect):
-    """Bouc and Wen's hysteresis as a force."""
+    """Bouc and Wen's hysteresis as a force, or plays."""
 
     name = "hysteretic-force"
     shows = "branch"
+    laws = ("bouc-wen-force", "iwan-force")
+    vanishing = "beta"
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer it weak, with short and long ways to yield."""
+        """Offer it weak, with short and long ways to yield, or as one that stiffens."""
         names = ("largest", "yield_distance", "sharing")
         for share, way in ((0.03, 0.03), (0.1, 0.3), (0.3, 1.0)):
             block = Block(largest=share * moved.force, yield_distance=way * moved.reach)
             ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
             yield Law("Bouc-Wen", block, names, ranges=ranges)
+        # Beyond such a beta it would slide on nearly all of its way.
+        stiffness = moved.stiffness or moved.force / moved.reach
+        stiffens = {
+            "beta": (0.0, 1.0 / (SLIDES * moved.reach)),
+            "gamma": (-np.inf, 0.0),
+        }
+        for share, softer, stiffer in ((0.1, 0.3, 0.3), (0.3, 1.0, 1.5)):
+            wen = {
+                "stiffness": share * stiffness,
+                "beta": softer / moved.reach,
+                "gamma": -stiffer / moved.reach,
+            }
+            yield Law(
+                "Bouc-Wen, stiffer on loading",
+                BoucWenForce(**wen),
+                tuple(wen),
+                ranges=stiffens,
+            )
+        for share, way in ((0.1, 0.3), (0.3, 1.0)):
+            iwan = {
+                "stiffness": share * stiffness,
+                "slip_distance": way * moved.reach,
+                "exponent": 0.0,
+            }
+            ranges = {"slip_distance": (SLIDES * moved.reach, np.inf)}
+            yield Law("plays", IwanForce(**iwan), tuple(iwan), ranges=ranges)

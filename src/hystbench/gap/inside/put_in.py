@@ -87,7 +87,7 @@ def evened(state: ModelState) -> ModelState:
         columns = np.column_stack([place_counts, v, np.ones(len(q))])
         alike = 1.0 / max(float(np.sum(v**2)), 1.0 / HUGE)  # as records are weighed
         square += alike * columns.T @ columns
-        product += alike * columns.T @ against((law,), q, v)
+        product += alike * columns.T @ against((law,), q, v, record.dt)
     sizes = np.sqrt(np.maximum(np.diag(square), 1.0 / HUGE))
     if not (np.all(np.isfinite(square)) and np.all(np.isfinite(product))):
         return state

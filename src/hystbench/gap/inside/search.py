@@ -304,6 +304,8 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
     for added in state.added:
         name = effects()[added.effect].vanishing
         for place in added.blocks if name else ():
+            if name not in state.chain[place].parameters():
+                continue  # another law of the effect
             chain = list(state.chain)
             chain[place] = replace(chain[place], **{name: 0.0})
             if judged(state.with_chain(tuple(chain)), score) < item.score + SCALE:

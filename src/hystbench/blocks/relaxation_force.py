@@ -1,0 +1,40 @@
+"""Block ``relaxation-force``: a spring in series with a damper, inside a mechanism."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hystbench.blocks.force import Force
+from hystbench.blocks.parameter import HUGE, TINY, number
+
+
+@dataclass(frozen=True)
+class RelaxationForce(Force):
+    """Maxwell's branch: ``dF/dt = stiffness q' - F / relaxation_time_s``.
+
+    Held at a place, the force fades; a slow motion meets a damper of ``stiffness
+    relaxation_time_s``, a fast one a spring. Beside the spring of a mechanism it makes
+    a standard linear solid (Zener's), several make a generalized Maxwell model. Solved
+    exactly for a way that is gone evenly in each step. It begins relaxed.
+
+    References
+    ----------
+    .. [1] J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley, 1980.
+    """
+
+    name: ClassVar = "relaxation-force"
+
+    stiffness: float = number("U/Q", "of the spring, met by a fast motion", 0.0, HUGE)
+    relaxation_time_s: float = number(
+        "s", "in which the force of a place fades to 37 %", TINY, HUGE
+    )
+
+    @property
+    def stiffest(self) -> float:
+        """That of the spring."""
+        return self.stiffness
+
+    def law(self) -> tuple[str, tuple[float, ...]]:
+        """Give the stiffness and the time."""
+        return "relaxation", (self.stiffness, self.relaxation_time_s)

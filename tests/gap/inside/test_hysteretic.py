@@ -1,0 +1,96 @@
+"""Forces that remember the way, of devices written without a block."""
+
+import numpy as np
+import pytest
+
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.inside.hosts import best_host, one_coordinate
+from hystbench.gap.records.sample import Sample
+from hystbench.quantities import Quantities
+from hystbench.record import Channel, Record
+from tests.gap.inside_host import search
+
+DT = 0.005
+NOISE = 1e-4
+OFFERED = ["friction", "hysteretic-force", "stiffness-hardening"]
+
+
+def spring(q):
+    return 60.0 * q
+
+
+def moved(u, held, spring, fine=40):
+    """Give the way of 1 kg on a spring and a damper against a held force, by Euler.
+
+    ``held`` is the change of that force, of it and the velocity.
+    """
+    q, v, force, out = 0.0, 0.0, 0.0, []
+    for push in np.repeat(u, fine):
+        out.append(q)
+        v += DT / fine * (push - 1.5 * v - spring(q) - np.sum(force))
+        force += DT / fine * held(force, v)
+        q += DT / fine * v
+    return np.array(out[::fine])
+
+
+def records_of(held, spring):
+    random = np.random.default_rng(8)
+    for size in (10.0, 20.0):
+        u = size * np.repeat(random.uniform(-1, 1, 80), 20)
+        y = moved(u, held, spring) + NOISE * random.standard_normal(len(u))
+        channels = Channel("in", "N"), Channel("out", "m")
+        yield Record(f"{size:g}", DT, u, y, *channels, "measured", "fit")
+
+
+def best(held, spring=spring, offered=OFFERED):
+    """Name the force in a linear host that was fitted to the records."""
+    records = tuple(records_of(held, spring))
+    begun = one_coordinate(records, Quantities("force", "position"), "zero-order")
+    sample = Sample.of(records)
+    score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
+    found = search(best_host(list(begun), score), score, offered)
+    return min(found, key=lambda item: item.score)
+
+
+def stiffens(force, v):
+    """Wen's equation with stiffness 40, beta 2, gamma -3."""
+    return 40.0 * v - 2.0 * abs(v) * force + 3.0 * v * abs(force)
+
+
+def test_a_loop_that_grows_stiffer_on_loading_is_a_hysteretic_force():
+    item = best(stiffens)
+    assert item.effects == ("hysteretic-force",)
+    law = item.fitted.state.chain[1]
+    assert law.name == "bouc-wen-force"
+    assert law.stiffness == pytest.approx(40.0, rel=0.15)
+    assert law.beta == pytest.approx(2.0, rel=0.15)
+    assert law.gamma == pytest.approx(-3.0, rel=0.15)
+    rms = np.sqrt(np.mean(item.fitted.state.residual**2))
+    assert rms < 1.5 * NOISE
+
+
+def test_a_spring_that_loses_nothing_is_no_hysteretic_force():
+    """With a beta of zero the law is elastic: then it is another effect."""
+
+    def rubber(q):
+        return 60.0 * q + np.sign(q) * 40.0 / 3.0 * np.expm1(3.0 * abs(q))
+
+    item = best(lambda force, v: 0.0, rubber, ["hysteretic-force"])
+    assert item.effects == ()
+
+
+def test_elements_that_slip_one_after_the_other_are_a_hysteretic_force():
+    """Forty of them, of one stiffness: they slip between zero and a way of 0.3."""
+    slips = (np.arange(40) + 0.5) / 40
+
+    def held(force, v):
+        most = slips * 0.3  # a stiffness of one each
+        return np.where((np.abs(force) >= most) & (force * v > 0), 0.0, v)
+
+    item = best(held, offered=["hysteretic-force"])
+    assert (item.effects, item.forms) == (("hysteretic-force",), ("plays",))
+    law = item.fitted.state.chain[1]
+    assert law.stiffness == pytest.approx(40.0, rel=0.05)
+    assert law.slip_distance == pytest.approx(0.3, rel=0.1)
+    assert law.exponent == pytest.approx(0.0, abs=0.15)
+    assert np.sqrt(np.mean(item.fitted.state.residual**2)) < 3 * NOISE
