@@ -150,11 +150,11 @@ class Impedance(HeldBlock):
         """
         own = self.motion(z, dt, forces)
         found = [self._given(own)]
-        for host, moved, against in others:
+        for host, moved, laws in others:
             if moved is not z:
-                motion = host.motion(moved, dt, against)
-            elif against != forces:
-                motion = own._replace(force=host._met(own, z, dt, against))
+                motion = host.motion(moved, dt, laws)
+            elif laws != forces:
+                motion = own._replace(force=host._met(own, z, dt, laws))
             else:
                 motion = own
             found.append(host._given(motion))
