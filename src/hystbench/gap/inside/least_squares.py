@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -88,8 +88,7 @@ def fitted(
             return most  # out of what the blocks accept
 
     def slopes(point: FloatArray) -> FloatArray:
-        steps = STEP * np.eye(len(point))
-        found = outputs_near(moved(point), [values_at(point + step) for step in steps])
+        found = outputs_near(moved(point), dict(enumerate(values_at(point + STEP))))
         now, *others = (weighed(state.reference - output) for output in found)
         return np.column_stack([(other - now) / STEP for other in others])
 
@@ -126,19 +125,25 @@ def at_values(state: ModelState, values: FloatArray) -> ModelState:
     return state.with_chain(state.chain_at(dict(enumerate(values.tolist()))))
 
 
-def outputs_near(state: ModelState, values: Sequence[FloatArray]) -> FloatArray:
-    """Simulate a model, and with other values of its free numbers near its own.
+def outputs_near(state: ModelState, values: Mapping[int, float]) -> FloatArray:
+    """Simulate a model, and with each of some free numbers at a value near its own.
 
-    With values that a block does not take it is as it was.
+    With a value that a block does not take it is as it was.
+
+    Parameters
+    ----------
+    state : ModelState
+    values : mapping of int to float
+        By place in ``free``.
 
     Returns
     -------
     ndarray, shape (1 + values, scored samples)
     """
     chains = []
-    for own in values:
+    for k, value in values.items():
         try:
-            chains.append(at_values(state, own).chain)
+            chains.append(state.chain_at({k: value}))
         except InputError:
             chains.append(state.chain)
     return state.sample.take(state.simulation.near(chains)).T
@@ -167,7 +172,7 @@ def _sizes(state: ModelState) -> FloatArray:
     now = np.array([state.value(free) for free in state.free])
     signed = [k for k, free in enumerate(state.free) if not _positive(state, free)]
     steps = np.where(now == 0.0, 1e-6, 1e-3 * np.abs(now))
-    output, *others = outputs_near(state, [now + np.diag(steps)[k] for k in signed])
+    output, *others = outputs_near(state, {k: now[k] + steps[k] for k in signed})
     rms = float(np.sqrt(np.mean(state.measured**2)))
     for k, other in zip(signed, others, strict=True):
         moved = float(np.sqrt(np.mean((other - output) ** 2)))
