@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.attached import Simulated, attached
+from hystbench.blocks.attached import Simulated, attached, through_near
 from hystbench.blocks.base import Block, RandomBlock
 from hystbench.blocks.held import HOLDS, HeldBlock, Hold
 from hystbench.blocks.parameter import Value
@@ -119,6 +119,25 @@ class Model:
             if rng is not None and isinstance(step, RandomBlock):
                 y = y + step.draw(len(y), dt, rng)
         return y
+
+    def simulate_near(
+        self, others: Sequence[Model], u: FloatArray, dt: float
+    ) -> list[FloatArray]:
+        """Compute the output, and those of models of the same blocks with numbers near.
+
+        Parameters
+        ----------
+        others : sequence of Model
+        u, dt
+            Those of :meth:`simulate`.
+
+        Returns
+        -------
+        list of ndarray, shape (n,)
+            Its own first.
+        """
+        u = np.ascontiguousarray(u, dtype=np.float64)
+        return through_near([self.steps, *(item.steps for item in others)], u, dt)
 
     @cached_property
     def steps(self) -> tuple[Simulated, ...]:

@@ -44,6 +44,66 @@ class AttachedBlock(Block):
         raise InputError(f"{self.name}: expected {self.hosts} before it")
 
 
+def near(
+    step: Any,
+    z: FloatArray,
+    u: FloatArray,
+    dt: float,
+    others: Sequence[tuple[Any, FloatArray]],
+) -> list[FloatArray]:
+    """Simulate a step of a chain, and others of its kind with numbers near.
+
+    For derivatives: one that is equal and has the same input is not simulated again,
+    and a mechanism moves all others along its own way.
+
+    Parameters
+    ----------
+    step : Simulated
+    z, u, dt
+        Those of :meth:`Block.simulate`.
+    others : sequence of (Simulated, ndarray)
+        Each with its own z.
+
+    Returns
+    -------
+    list of ndarray
+        The output of the step, then those of the others.
+    """
+    moved = [own is not z or other != step for other, own in others]
+    changed = [pair for pair, new in zip(others, moved, strict=True) if new]
+    if hasattr(step, "near"):
+        y, *found = step.near(z, u, dt, changed)
+    else:
+        y, *found = (x.simulate(own, u, dt) for x, own in ((step, z), *changed))
+    rest = iter(found)
+    return [y, *(next(rest) if new else y for new in moved)]
+
+
+def through_near(
+    chains: Sequence[Sequence[Any]], u: FloatArray, dt: float
+) -> list[FloatArray]:
+    """Send a model's input through chains of the same steps with numbers near.
+
+    Parameters
+    ----------
+    chains : sequence of sequence of Simulated
+        The first is the one that the others are near.
+    u : ndarray, shape (n,)
+    dt : float
+        Sampling interval in seconds.
+
+    Returns
+    -------
+    list of ndarray, shape (n,)
+        The output of each.
+    """
+    signals = [u] * len(chains)
+    for step, *others in zip(*chains, strict=True):
+        z, *own = signals
+        signals = near(step, z, u, dt, [*zip(others, own, strict=True)])
+    return signals
+
+
 def attached(chain: Sequence[Block]) -> list[Any]:
     """Join every block of a chain with what is attached to it.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
+from functools import cache
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -40,7 +41,8 @@ class Block(ABC):
     """Why the block cannot be exported, if it cannot."""
 
     @classmethod
-    def parameters(cls) -> dict[str, Parameter]:
+    @cache
+    def parameters(cls) -> Mapping[str, Parameter]:
         """Return the declared parameters by name, those with a default last."""
         own = [item for item in fields(cls) if "parameter" in item.metadata]
         declared = sorted(own, key=lambda item: item.default is not MISSING)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple, Protocol
 
@@ -40,6 +41,15 @@ class Host(Protocol):
 
     def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
         """Compute the output with forces inside."""
+
+    def driven_near(
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Sequence[Any],
+    ) -> list[FloatArray]:
+        """Compute the output, then that of each other host, input and forces."""
 
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
         """Say what it does at one sample with forces inside."""
@@ -149,6 +159,17 @@ class Driven:
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
         return self.host.driven(z, dt, self.forces)
+
+    def near(
+        self,
+        z: FloatArray,
+        u: FloatArray,
+        dt: float,
+        others: Sequence[tuple[Driven, FloatArray]],
+    ) -> list[FloatArray]:
+        """Compute the output, and those of others with numbers near."""
+        every = [(other.host, own, other.forces) for other, own in others]
+        return self.host.driven_near(z, dt, self.forces, every)
 
     def step(self, sampling: Sampling) -> Step:
         """Say what both do at one sample, as :meth:`Block.step` does."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from math import factorial
@@ -135,7 +136,33 @@ class Impedance(HeldBlock):
         -------
         ndarray, shape (n,)
         """
-        motion = self.motion(z, dt, forces)
+        return self.driven_near(z, dt, forces, ())[0]
+
+    def driven_near(
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Sequence[tuple[Impedance, FloatArray, tuple[Force, ...]]],
+    ) -> list[FloatArray]:
+        """Compute the force, then that of each other impedance, motion and forces.
+
+        What moves alike moves once, and meets forces that are the same once.
+        """
+        own = self.motion(z, dt, forces)
+        found = [self._given(own)]
+        for host, moved, laws in others:
+            if moved is not z:
+                motion = host.motion(moved, dt, laws)
+            elif laws != forces:
+                motion = own._replace(force=host._met(own, z, dt, laws))
+            else:
+                motion = own
+            found.append(host._given(motion))
+        return found
+
+    def _given(self, motion: Motion) -> FloatArray:
+        """Give the force of a motion."""
         return (
             self.mass * motion.acceleration
             + self.damping * motion.velocity
@@ -207,25 +234,22 @@ class Impedance(HeldBlock):
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Give the motion and the forces that it meets, as for :meth:`driven`."""
         z = np.ascontiguousarray(z, dtype=np.float64)
-        if self.holding != "band-limited" or len(z) < 3:
-            q, v, curved = self._moved(z, dt)
-            return Motion(q, v, curved, against(forces, q, v, dt))
-        way, rate, curvature = weighed(z, _of_curve())
-        # The curve is turned about its ends: its derivatives have a kink there.
-        first, last = slice(AHEAD + 1), slice(-AHEAD, None)
-        for found, rows, order in ((rate, RATE, 1), (curvature, CURVATURE, 2)):
-            found[first] = _weighed(z[: AHEAD + 1 + REACH], rows, order)[first]
-            found[last] = _weighed(z[-AHEAD - REACH :], rows, order)[last]
-            found /= dt**order
-        if self.input == "position":
-            q, v, curved = z, rate, curvature
-        else:
-            way[0] = 0.0
-            q, v, curved = np.cumsum(way * dt), z.copy(), rate
-        force = np.zeros(len(z))
-        if forces:
-            force = coarser(against(forces, *self._between(z, q, dt), dt / SHORT_STEPS))
-        return Motion(q, v, curved, force)
+        motion = Motion(*self._moved(z, dt), np.zeros(len(z)))
+        return motion._replace(force=self._met(motion, z, dt, forces))
+
+    def _met(
+        self, motion: Motion, z: FloatArray, dt: float, forces: tuple[Force, ...]
+    ) -> FloatArray:
+        """Give the sum of the forces that a motion meets, which is that of an input."""
+        if not forces:
+            return np.zeros(len(z))
+        if not self._is_curve(z):
+            return against(forces, motion.position, motion.velocity, dt)
+        fine = self._between(z, motion.position, dt)
+        return coarser(against(forces, *fine, dt / SHORT_STEPS))
+
+    def _is_curve(self, z: FloatArray) -> bool:
+        return self.holding == "band-limited" and len(z) >= 3
 
     def _between(
         self, z: FloatArray, q: FloatArray, dt: float
@@ -249,10 +273,28 @@ class Impedance(HeldBlock):
         self, z: FloatArray, dt: float
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Give position, velocity and acceleration."""
+        if self._is_curve(z):
+            return self._along_curve(z, dt)
         if self.input == "position":
             return z, _rate(z, dt), _curvature(z, dt)
         way = np.cumsum((z[1:] + z[:-1]) / 2 * dt)
         return np.concatenate([np.zeros(min(len(z), 1)), way]), z.copy(), _rate(z, dt)
+
+    def _along_curve(
+        self, z: FloatArray, dt: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Give position, velocity and acceleration of a band-limited motion."""
+        way, rate, curvature = weighed(z, _of_curve())
+        # The curve is turned about its ends: its derivatives have a kink there.
+        first, last = slice(AHEAD + 1), slice(-AHEAD, None)
+        for found, rows, order in ((rate, RATE, 1), (curvature, CURVATURE, 2)):
+            found[first] = _weighed(z[: AHEAD + 1 + REACH], rows, order)[first]
+            found[last] = _weighed(z[-AHEAD - REACH :], rows, order)[last]
+            found /= dt**order
+        if self.input == "position":
+            return z, rate, curvature
+        way[0] = 0.0
+        return np.cumsum(way * dt), z.copy(), rate
 
 
 def _way(points: int, ahead: int) -> FloatArray:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import ClassVar
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 
@@ -27,6 +28,10 @@ MOST = 40
 """Steps of an interval, at most: the linear part is exact however fast it is."""
 CONTACT = 10
 """Steps of an interval that a stiff contact may ask for: it is stable without."""
+
+
+Near: TypeAlias = "tuple[Mechanism, FloatArray, tuple[Force, ...]]"
+"""What drives another mechanism of the same forces, with numbers near."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +105,33 @@ class Mechanism(HeldBlock):
         ndarray, shape (n,)
             NaN from where the motion has run away.
         """
-        motion = self.motion(z, dt, forces)
+        return self._given(self.motion(z, dt, forces))
+
+    def driven_near(
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Sequence[Near],
+    ) -> list[FloatArray]:
+        """Compute the output, then those of others near, as :meth:`motions` does."""
+        found = self.motions(z, dt, forces, others)
+        hosts = (self, *(host for host, _, _ in others))
+        return [host._given(motion) for host, motion in zip(hosts, found, strict=True)]
+
+    def near(
+        self,
+        z: FloatArray,
+        u: FloatArray,
+        dt: float,
+        others: Sequence[tuple[Mechanism, FloatArray]],
+    ) -> list[FloatArray]:
+        """Compute the output, and those of others near, without a force inside."""
+        alone = [(host, own, ()) for host, own in others]
+        return self.driven_near(z, dt, (), alone)
+
+    def _given(self, motion: Motion) -> FloatArray:
+        """Give the output of a motion."""
         if self.output == "force":
             spring = self.damping * motion.velocity + self.stiffness * motion.position
             return spring + motion.force + self.blend * motion.velocity
@@ -112,36 +143,68 @@ class Mechanism(HeldBlock):
 
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Compute how the coordinate moves; arguments are those of :meth:`driven`."""
-        numbers = rows(forces)
+        return self.motions(z, dt, forces, ())[0]
+
+    def motions(
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Sequence[Near],
+    ) -> list[Motion]:
+        """Compute how the coordinate moves, and how others with numbers near do.
+
+        Of those each step is the tangent of this one's: right for small differences.
+
+        Parameters
+        ----------
+        z, dt, forces
+            Those of :meth:`driven`.
+        others : sequence of (Mechanism, ndarray, tuple of Force)
+            Of the same forces, with other numbers.
+        """
+        every: list[Near] = [(self, z, forces), *others]
         path, before = path_from(z, self.start)
         lines, fine = held_lines(path, self.holding)
-        p = self.gain * lines + self.bias
-        n, step = len(p), dt / fine
-        q, v, force = np.zeros(n), np.zeros(n), np.zeros(n)
+        n, step, parts = len(lines), dt / fine, self._parts(dt / fine, forces)
+        p, numbers = np.empty((len(every), n)), np.stack([rows(x) for *_, x in every])
+        steps = np.empty((len(every), 2, 2, 4))
+        q, v, force = np.zeros((3, len(every), n))
         if n == 0:
-            return Motion(q, v, q, force)
-        q[0], v[0] = self.start_position, self.start_velocity
-        if self.start != "rest":
-            q[0] += self._balance(self.gain * before + self.bias, numbers)
-        parts = self._parts(step, forces)
+            return [Motion(*x) for x in zip(q, v, q, force, strict=True)]
+        for k, (host, own_z, _) in enumerate(every):
+            own, own_before = lines, before
+            if own_z is not z:
+                path, own_before = path_from(own_z, self.start)
+                own, _ = held_lines(path, self.holding)
+            p[k] = host.gain * own + host.bias
+            steps[k] = host._steps(step / parts)
+            q[k, 0], v[k, 0] = host.start_position, host.start_velocity
+            if self.start != "rest":
+                q[k, 0] += host._balance(host.gain * own_before + host.bias, numbers[k])
         kernels.call(
             "hb_mechanism",
             n,
+            len(others),
             parts,
             step,
             float(self.holding != "zero-order"),
-            self._steps(step / parts),
-            len(numbers),
+            steps,
+            numbers.shape[1],
             numbers,
-            np.zeros(len(numbers)),
+            np.zeros(numbers.shape[:2]),
             p,
             q,
             v,
             force,
         )
-        acceleration = (p - self.damping * v - self.stiffness * q - force) / self.mass
         shown = slice((len(path) - len(z)) * fine, None, fine)
-        return Motion(q[shown], v[shown], acceleration[shown], force[shown])
+        found = []
+        for k, (host, _, _) in enumerate(every):
+            spring = host.damping * v[k] + host.stiffness * q[k] + force[k]
+            curved = (p[k] - spring) / host.mass
+            found.append(Motion(*(x[shown] for x in (q[k], v[k], curved, force[k]))))
+        return found
 
     def step(self, sampling: Sampling) -> Step:
         """Move the coordinate over the interval that has passed."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.attached import AttachedBlock, near
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven
 from hystbench.blocks.mechanism import Mechanism
@@ -63,6 +63,18 @@ class Superposed:
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""
         return _kept(self.inner, z, u, dt) + _kept(self.by, z, u, dt)
+
+    def near(
+        self,
+        z: FloatArray,
+        u: FloatArray,
+        dt: float,
+        others: Sequence[tuple[Superposed, FloatArray]],
+    ) -> list[FloatArray]:
+        """Compute the output, and those of others with numbers near."""
+        inner = near(self.inner, z, u, dt, [(x.inner, own) for x, own in others])
+        by = near(self.by, z, u, dt, [(x.by, own) for x, own in others])
+        return [a + b for a, b in zip(inner, by, strict=True)]
 
 
 def _kept(

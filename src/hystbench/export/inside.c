@@ -20,14 +20,14 @@ static double hb_mechanism(double gain, double bias, int segments, int points,
             motion[0] += hb_balance(start[2], p, count, forces, memory);
         motion[1] = start[1];
     }
-    double x = motion[0], w = motion[1];
+    double x = motion[0], w = motion[1], ways[8];
     for (int i = 0; i < segments && moves; i++) {
         const double now = hb_weighted(points, corners + i * points, history + 1);
         p = hb_weighted(points, corners + (i + 1) * points, history + 1);
         const double slope = ramp * (p - now) / parts;
         for (int s = 0; s < parts; s++) {
             const double from = now + s * slope;
-            hb_moved(count, forces, memory, step, h, from, from + slope, &x, &w);
+            hb_moved(count, forces, memory, step, h, from, from + slope, &x, &w, ways);
             if (!(fabs(x) < 1e100)) x = w = NAN; /* it has run away, and stays there */
         }
     }

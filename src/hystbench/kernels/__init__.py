@@ -49,7 +49,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_slew_limit": (None, "ifaa"),
     "hb_acting_field": (None, "ifffaa"),
     "hb_hardening": (_SIZE, "iffffaa"),
-    "hb_mechanism": (_SIZE, "iiffaiaaaaaa"),
+    "hb_mechanism": (_SIZE, "iiiffaiaaaaaa"),
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
     "hb_store": (None, "iifffffaaaa"),

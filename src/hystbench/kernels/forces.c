@@ -309,41 +309,56 @@ static int hb_turns(int count, const double *forces)
     return 0;
 }
 
-/* The way of a part h of an interval from q and v, and v after it. What drives it goes
- * from one value to another; step: q and v after the part of q, v and both values. */
+/* The way of a part from q and v, if no force were there. What drives it goes from one
+ * value to another; step: q and v after the part of q, v and both values. */
+static double hb_alone(const double *step, double from, double to, double q, double v)
+{
+    return step[0] * q + step[1] * v + step[2] * from + step[3] * to - q;
+}
+
+/* v after the part, where its way is known: what it lacks of that alone tells the force. */
+static double hb_after(const double *step, double from, double to, double q, double v,
+                       double way)
+{
+    const double held = (hb_alone(step, from, to, q, v) - way) / (step[2] + step[3]);
+    return step[4] * q + step[5] * v + step[6] * (from - held) + step[7] * (to - held);
+}
+
+/* The way of a part h of an interval from q and v, and v after it. */
 static double hb_over(int count, const double *forces, const double *memory,
                       const double *step, double h, double from, double to, double q,
                       double v, double *after)
 {
     const double gives = step[2] + step[3];
-    const double alone = step[0] * q + step[1] * v + step[2] * from + step[3] * to - q;
+    const double alone = hb_alone(step, from, to, q, v);
     const double way =
         count ? hb_way_of(count, forces, memory, q, alone, gives, h) : alone;
-    *after = step[4] * q + step[5] * v + step[6] * from + step[7] * to;
-    *after -= (step[6] + step[7]) * ((alone - way) / gives);
+    *after = hb_after(step, from, to, q, v, way);
     return way;
 }
 
 /* Moves q, v and all memories over a part of an interval. step goes on with the numbers
  * for an eighth of it: where the motion turns back within a part, a force's mean over
- * the way is not its mean over the time, so that the part is taken in eighths. */
-static void hb_moved(int count, const double *forces, double *memory,
-                     const double *step, double h, double from, double to, double *q,
-                     double *v)
+ * the way is not its mean over the time, so that the part is taken in eighths.
+ * Returns how many pieces it was taken in, and the way of each. */
+static int hb_moved(int count, const double *forces, double *memory,
+                    const double *step, double h, double from, double to, double *q,
+                    double *v, double ways[8])
 {
-    double after, way;
-    way = hb_over(count, forces, memory, step, h, from, to, *q, *v, &after);
+    double after;
+    ways[0] = hb_over(count, forces, memory, step, h, from, to, *q, *v, &after);
     const int fine = after * *v < 0 && hb_turns(count, forces) ? 8 : 1;
     for (int i = 0; i < fine; i++) {
         const double now = from + i * (to - from) / fine;
         const double then = from + (i + 1) * (to - from) / fine;
         if (fine > 1)
-            way = hb_over(count, forces, memory, step + 8, h / fine, now, then, *q, *v,
-                          &after);
-        *q += way;
+            ways[i] = hb_over(count, forces, memory, step + 8, h / fine, now, then, *q,
+                              *v, &after);
+        *q += ways[i];
         *v = after;
-        hb_all_forces(count, forces, *q, *v, way, h / fine, memory);
+        hb_all_forces(count, forces, *q, *v, ways[i], h / fine, memory);
     }
+    return fine;
 }
 
 /* Where springs hold a force p, next to where the linear one alone does; NaN where they

@@ -2,34 +2,98 @@
 #include "forces.c"
 #include "lanes.h"
 
+/* One of several motions with numbers near each other. */
+struct motion {
+    const double *step, *forces, *p;
+    double *memory, *q, *v, *out;
+    double from, to; /* what drives it over a part */
+};
+
+/* Moves motions near the first over a part, of which the way in each piece is known. Of
+ * theirs one step of Newton's method from there finds what is left: so they stick, slide
+ * and turn where the first does, and differences of them are its derivatives. q, v and
+ * memory are those of the first before the part. */
+static void follow(int count, index_t near, struct motion *all, index_t k, double h,
+                   int pieces, const double *ways, double q, double v, double *memory)
+{
+    const index_t offset = pieces > 1 ? 8 : 0;
+    for (int i = 0; i < pieces; i++) {
+#define AT(m, j) ((m)->from + (j) * ((m)->to - (m)->from) / pieces)
+#define MISS(m, x, at, memory, way)                                                     \
+    hb_miss(count, (m)->forces, memory, x, hb_alone(step, AT(m, i), AT(m, i + 1), x, at), \
+            step[2] + step[3], h / pieces, way)
+        const double way = ways[i], *step = all->step + offset;
+        const double missed = MISS(all, q, v, memory, way);
+        const double bit = 1e-7 * (fabs(hb_alone(step, AT(all, i), AT(all, i + 1), q, v)) +
+                                   fabs(way));
+        const double grown = MISS(all, q, v, memory, way + bit) - missed;
+        const double slope = bit > 0 ? grown / bit : 1;
+        for (struct motion *m = all + 1; m <= all + near; m++) {
+            double *x = m->q + k + 1, *w = m->v + k + 1;
+            step = m->step + offset;
+            const double own = way - (MISS(m, *x, *w, m->memory, way) - missed) / slope;
+            *w = hb_after(step, AT(m, i), AT(m, i + 1), *x, *w, own);
+            *x += own;
+            hb_all_forces(count, m->forces, *x, *w, own, h / pieces, m->memory);
+        }
+        v = hb_after(all->step + offset, AT(all, i), AT(all, i + 1), q, v, way);
+        q += way;
+        hb_all_forces(count, all->forces, q, v, way, h / pieces, memory);
+#undef MISS
+#undef AT
+    }
+}
+
 /* Motion q, v and force F of the samples, from q[0], v[0].  step holds, for one of
  * `parts` equal parts of an interval of dt: q and v after it of q, v, and of p at its
- * beginning and its end (two rows of four); then the same for an eighth of a part.  Over a part the forces count with their
- * mean over the way, which does their exact work: so a passive force never gives energy,
- * however stiff it is, and the method is of second order.  p moves by the share ramp of
- * a straight line in each interval (1: straight, 0: a staircase).
+ * beginning and its end (two rows of four); then the same for an eighth of a part.
+ * Over a part the forces count with their mean over the way, which does their exact
+ * work: so a passive force never gives energy, however stiff it is, and the method is
+ * of second order.  p moves by the share ramp of a straight line in each interval (1:
+ * straight, 0: a staircase).  Of each array follow those of `near` motions with numbers
+ * near these.
  * Returns the samples taken: fewer than n where the motion runs away; the rest is NaN. */
-EXPORT index_t hb_mechanism(index_t n, index_t parts, double dt, double ramp,
-                            const double *step, index_t count, const double *forces,
-                            double *memory, const double *p, double *q, double *v,
-                            double *out)
+EXPORT index_t hb_mechanism(index_t n, index_t near, index_t parts, double dt,
+                            double ramp, const double *step, index_t count,
+                            const double *forces, double *memory, const double *p,
+                            double *q, double *v, double *out)
 {
-    const int all = (int)count;
-    index_t k = 0;
-    out[0] = hb_all_forces(all, forces, q[0], v[0], 0, 0, memory);
-    for (; k + 1 < n; k++) {
-        const double slope = ramp * (p[k + 1] - p[k]) / parts;
-        double x = q[k], w = v[k];
-        for (index_t s = 0; s < parts; s++) {
-            const double from = p[k] + s * slope;
-            hb_moved(all, forces, memory, step, dt / parts, from, from + slope, &x, &w);
-            if (!(fabs(x) < 1e100)) break;
-        }
-        if (!(fabs(x) < 1e100 && fabs(w) < 1e100)) break;
-        q[k + 1] = x, v[k + 1] = w;
-        out[k + 1] = hb_all_forces(all, forces, x, w, 0, 0, memory);
+    const int each = (int)count;
+    const double h = dt / parts;
+    struct motion all[near + 1];
+    double before[count + 1], ways[8];
+    for (index_t i = 0; i <= near; i++) {
+        all[i] = (struct motion){step + 16 * i,    forces + 6 * count * i, p + n * i,
+                                 memory + count * i, q + n * i,            v + n * i,
+                                 out + n * i};
+        all[i].out[0] = hb_all_forces(each, all[i].forces, q[n * i], v[n * i], 0, 0,
+                                      all[i].memory);
     }
-    for (index_t rest = k + 1; rest < n; rest++) q[rest] = v[rest] = out[rest] = NAN;
+    index_t k = 0;
+    for (; k + 1 < n; k++) {
+        for (index_t i = 0; i <= near; i++)
+            all[i].q[k + 1] = all[i].q[k], all[i].v[k + 1] = all[i].v[k];
+        double *x = q + k + 1, *w = v + k + 1;
+        for (index_t s = 0; s < parts && fabs(*x) < 1e100; s++) {
+            for (index_t i = 0; i <= near; i++) {
+                const double now = all[i].p[k], slope = ramp * (all[i].p[k + 1] - now) / parts;
+                all[i].from = now + s * slope, all[i].to = all[i].from + slope;
+            }
+            const double x_before = *x, w_before = *w;
+            for (index_t i = 0; i < count; i++) before[i] = memory[i];
+            const int pieces = hb_moved(each, forces, memory, step, h, all->from, all->to,
+                                        x, w, ways);
+            if (near)
+                follow(each, near, all, k, h, pieces, ways, x_before, w_before, before);
+        }
+        if (!(fabs(*x) < 1e100 && fabs(*w) < 1e100)) break;
+        for (index_t i = 0; i <= near; i++)
+            all[i].out[k + 1] = hb_all_forces(each, all[i].forces, all[i].q[k + 1],
+                                              all[i].v[k + 1], 0, 0, all[i].memory);
+    }
+    for (index_t i = 0; i <= near; i++)
+        for (index_t j = k + 1; j < n; j++)
+            all[i].q[j] = all[i].v[j] = all[i].out[j] = NAN;
     return k + 1;
 }
 

@@ -285,8 +285,8 @@ def test_a_pair_that_is_told_counts_more_than_many_that_are_not():
         def __init__(self, by):
             self.by = by
 
-        def simulate(self, u, dt):
-            return base + self.by.get(u[0], 0.0) / np.sqrt(2) * beside
+        def simulate_near(self, others, u, dt):
+            return [base + self.by.get(u[0], 0.0) / np.sqrt(2) * beside]
 
     # By so much each pair differs on the first excitation and on the second, rms:
     # half to each side, so that no gain takes a part of it away.
@@ -311,10 +311,10 @@ def test_a_pair_that_is_told_counts_more_than_many_that_are_not():
 @pytest.mark.parametrize("refuses", [False, True])
 def test_a_rival_that_runs_away_rules_an_excitation_out_and_no_other(refuses):
     class Bounded:
-        def simulate(self, u, dt):
+        def simulate_near(self, others, u, dt):
             if refuses and np.abs(u).max() >= 0.5:
                 raise InputError("a function of somebody's: too much")
-            return u**2 if np.abs(u).max() < 0.5 else np.full_like(u, np.nan)
+            return [u**2 if np.abs(u).max() < 0.5 else np.full_like(u, np.nan)]
 
     sets = one_set(("plain", GAIN_MODEL), ("bounded", Bounded()))
     items = candidates(LIMITS, "A")

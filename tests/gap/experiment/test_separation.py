@@ -30,6 +30,9 @@ class Shape:
         self.runs += 1
         return self.shape(u)
 
+    def simulate_near(self, others, u, dt):
+        return [item.simulate(u, dt) for item in (self, *others)]
+
 
 def run(output, *tangents):
     return Run(output, np.array(tangents).T.reshape(len(output), -1))

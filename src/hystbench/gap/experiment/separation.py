@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -22,8 +22,10 @@ CHANGE = 1e-3
 class Simulator(Protocol):
     """What runs from an input: a model."""
 
-    def simulate(self, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the output from rest."""
+    def simulate_near(
+        self, others: Sequence[Any], u: FloatArray, dt: float
+    ) -> list[FloatArray]:
+        """Compute the output, and those of others with numbers near."""
         ...
 
 
@@ -77,17 +79,15 @@ class Rival:
 
         As where a simulator of somebody's own refuses an input.
         """
-        tangents = np.zeros((len(u), len(self.neighbours)))
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                output = self.model.simulate(u, dt)
-                if not np.isfinite(output).all():
-                    return None
-                for k, other in enumerate(self.neighbours):
-                    tangents[:, k] = other.simulate(u, dt) - output
+                outputs = self.model.simulate_near(self.neighbours, u, dt)
         except InputError:
             return None
-        return Run(output, tangents) if np.isfinite(tangents).all() else None
+        every = np.column_stack(outputs)
+        if not np.isfinite(every).all():
+            return None
+        return Run(every[:, 0], every[:, 1:] - every[:, :1])
 
 
 Sets = Mapping[str, Mapping[str, Rival]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,9 +16,8 @@ EVALUATIONS = 100
 """Of the residual in one fit, at most, without those of the derivatives."""
 QUICK = 15
 """The same where starts are compared."""
-STEP = 1e-3
-"""Share of its size by which a number moves for a derivative: more than what a force
-that is not smooth makes of rounding."""
+STEP = 1e-5
+"""Share of its size by which a number moves for a derivative."""
 REACH = 1.0
 """How far the first step may go: numbers change by a factor of e, or by their size."""
 FACTOR = 100.0
@@ -70,31 +70,27 @@ def fitted(
     weights = by_record(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
-    def moved(point: FloatArray) -> ModelState:
+    def values_at(point: FloatArray) -> FloatArray:
         times = np.exp(np.clip(point, -100, 100))
-        found = np.where(logs, values * times, values + point * sizes)
-        return at_values(state, found)
+        return np.where(logs, values * times, values + point * sizes)
 
-    newest: dict[bytes, FloatArray] = {}  # that of one point: slopes begin with it
+    def moved(point: FloatArray) -> ModelState:
+        return at_values(state, values_at(point))
 
-    def residual(point: FloatArray) -> FloatArray:
-        key = point.tobytes()
-        if key not in newest:
-            newest.clear()
-            newest[key] = weighed(point)
-        return newest[key]
-
-    def weighed(point: FloatArray) -> FloatArray:
-        try:
-            rest = moved(point).residual * weights
-        except InputError:
-            return most  # out of what the blocks accept
+    def weighed(rest: FloatArray) -> FloatArray:
+        rest = rest * weights
         return np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
 
+    def residual(point: FloatArray) -> FloatArray:
+        try:
+            return weighed(moved(point).residual)
+        except InputError:
+            return most  # out of what the blocks accept
+
     def slopes(point: FloatArray) -> FloatArray:
-        now = residual(point)
-        steps = STEP * np.eye(len(point))
-        return np.column_stack([(residual(point + s) - now) / STEP for s in steps])
+        found = outputs_near(moved(point), dict(enumerate(values_at(point + STEP))))
+        now, *others = (weighed(state.reference - output) for output in found)
+        return np.column_stack([(other - now) / STEP for other in others])
 
     found = least_squares(
         residual,
@@ -129,6 +125,30 @@ def at_values(state: ModelState, values: FloatArray) -> ModelState:
     return state.with_chain(state.chain_at(dict(enumerate(values.tolist()))))
 
 
+def outputs_near(state: ModelState, values: Mapping[int, float]) -> FloatArray:
+    """Simulate a model, and with each of some free numbers at a value near its own.
+
+    With a value that a block does not take it is as it was.
+
+    Parameters
+    ----------
+    state : ModelState
+    values : mapping of int to float
+        By place in ``free``.
+
+    Returns
+    -------
+    ndarray, shape (1 + values, scored samples)
+    """
+    chains = []
+    for k, value in values.items():
+        try:
+            chains.append(state.chain_at({k: value}))
+        except InputError:
+            chains.append(state.chain)
+    return state.sample.take(state.simulation.near(chains)).T
+
+
 def _positive(state: ModelState, free: Free) -> bool:
     about = state.chain[free.block].parameters()[free.parameter]
     return about.low >= 0.0 and state.value(free) > 0.0
@@ -149,21 +169,13 @@ def _sizes(state: ModelState) -> FloatArray:
     Its own value; of a zero, what moves the output by its own rms.
     """
     sizes = np.ones(len(state.free))
-    all_now = np.array([state.value(free) for free in state.free])
-    now = state.residual
+    now = np.array([state.value(free) for free in state.free])
+    signed = [k for k, free in enumerate(state.free) if not _positive(state, free)]
+    steps = np.where(now == 0.0, 1e-6, 1e-3 * np.abs(now))
+    output, *others = outputs_near(state, {k: now[k] + steps[k] for k in signed})
     rms = float(np.sqrt(np.mean(state.measured**2)))
-    for k, free in enumerate(state.free):
-        if _positive(state, free):
-            continue
-        value = abs(all_now[k])
-        step = 1e-3 * value if value else 1e-6
-        values = all_now.copy()
-        values[k] += step
-        try:
-            change = at_values(state, values).residual - now
-        except InputError:
-            change = np.full(len(now), np.nan)
-        moved = float(np.sqrt(np.mean(change**2)))
-        reach = rms * step / moved if np.isfinite(moved) and moved > 0 else 1.0
-        sizes[k] = max(value, 0.1 * reach) if value else 0.1 * reach
+    for k, other in zip(signed, others, strict=True):
+        moved = float(np.sqrt(np.mean((other - output) ** 2)))
+        reach = rms * steps[k] / moved if np.isfinite(moved) and moved > 0 else 1.0
+        sizes[k] = max(abs(now[k]), 0.1 * reach) if now[k] else 0.1 * reach
     return sizes

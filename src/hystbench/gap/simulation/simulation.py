@@ -9,7 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from hystbench.blocks.attached import AttachedBlock, attached
+from hystbench.blocks.attached import AttachedBlock, attached, through_near
 from hystbench.blocks.base import Block
 from hystbench.blocks.curve import SHORT_STEPS, finer
 from hystbench.blocks.held import HeldBlock, Hold
@@ -86,7 +86,7 @@ class Simulation:
 
     def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
         """Send signals through blocks, from rest."""
-        steps = attached([_quick(block) for block in blocks] if self.quick else blocks)
+        steps = self._steps(blocks)
         out = []
         finely = self.fine and self.hold == LIMITED
         for z, record in zip(signals, self.records, strict=True):
@@ -99,6 +99,25 @@ class Simulation:
                     z = self._known(step, z).simulate(z, record.u, record.dt)
             out.append(z)
         return tuple(out)
+
+    def _steps(self, blocks: Sequence[Block]) -> list[Any]:
+        return attached([_quick(block) for block in blocks] if self.quick else blocks)
+
+    def near(self, chains: Sequence[Sequence[Block]]) -> tuple[FloatArray, ...]:
+        """Simulate the chain and others near it: the same blocks, other numbers.
+
+        What is alike is simulated once; no block may be a hysteresis that others wrap.
+
+        Returns
+        -------
+        tuple of ndarray, shape (n, 1 + chains)
+            One a record: the chain's own output first.
+        """
+        steps = [self._steps(chain) for chain in (self.chain, *chains)]
+        return tuple(
+            np.column_stack(through_near(steps, record.u, record.dt))
+            for record in self.records
+        )
 
     def _known(self, step: Block | Wrapped, z: FloatArray) -> Block | Wrapped:
         """Put in what the chain's own hysteresis gives for a signal, if it is wrapped.

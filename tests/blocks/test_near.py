@@ -1,0 +1,120 @@
+"""Motions that are moved along with one near them: their differences are derivatives.
+
+The independent value is a central difference of whole simulations.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.blocks import registry
+from hystbench.blocks.attached import attached, near, through_near
+from hystbench.blocks.drive_lag import DriveLag
+from hystbench.blocks.gain import Gain
+from hystbench.blocks.impedance import Impedance
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_modes import OtherModes
+
+DT = 0.017
+MACHINE = Mechanism(mass=2.0, damping=1.5, stiffness=200.0, hold="linear", bias=3.0)
+MOVED = Impedance(mass=0.02, damping=1.5, stiffness=2.0, bias=1.0, hold="band-limited")
+LAWS = {
+    "stiffness": {"quadratic": 50.0, "cubic": 300.0},
+    "exponential-stiffness": {"coefficient": 80.0, "reach": 0.3},
+    "stop": {"contact_stiffness": 300.0, "gap": 0.2, "centre": 0.05},
+    "friction-force": {"coulomb": 20.0, "presliding_distance": 0.02},
+    "smooth-friction": {"coulomb": 20.0, "velocity_scale": 0.3},
+    "drag": {"coefficient": 0.8},
+    "hysteretic-force": {"largest": 30.0, "yield_distance": 0.1, "sharing": 0.3},
+    "gravity": {"amplitude": 50.0, "angle": 0.5},
+    "slider-with-gap": {"contact_stiffness": 300.0, "slip_force": 20.0, "gap": 0.1},
+}
+
+
+def drive():
+    t = DT * np.arange(400)
+    return 120 * np.sin(9 * t) + 60 * np.sin(5.1 * t + 1)
+
+
+def moved(chain, place, name, factor):
+    chain = list(chain)
+    value = getattr(chain[place], name)
+    chain[place] = replace(chain[place], **{name: value * factor})
+    return tuple(chain)
+
+
+def check(chain, u, names):
+    """Compare the derivative with each number to that of whole simulations."""
+    steps = attached(chain)
+    (plain,) = through_near([steps], u, DT)
+    size = 1e-6
+    chains = [moved(chain, *name, 1 + size) for name in names]
+    first, *others = through_near([steps, *map(attached, chains)], u, DT)
+    assert np.array_equal(first, plain)
+    for name, other in zip(names, others, strict=True):
+        ends = [
+            through_near([attached(moved(chain, *name, 1 + sign * size))], u, DT)[0]
+            for sign in (1, -1)
+        ]
+        expected = (ends[0] - ends[1]) / (2 * size)
+        found = (other - first) / size
+        assert np.linalg.norm(expected) > 0
+        off = np.linalg.norm(found - expected) / np.linalg.norm(expected)
+        assert off < 1e-4, (name, off)
+
+
+@pytest.mark.parametrize("host", [MACHINE, MOVED], ids=["mechanism", "impedance"])
+@pytest.mark.parametrize("law", LAWS)
+def test_differences_of_motions_near_are_derivatives(law, host):
+    force = registry()[law].from_mapping(LAWS[law])
+    chain = (DriveLag(time_constant_s=0.05), host, force, Gain(value=2.0, offset=1.0))
+    names = [(0, "time_constant_s"), (3, "value"), (3, "offset")]
+    names += [(1, name) for name in ("mass", "damping", "stiffness", "bias")]
+    names += [(2, name) for name in LAWS[law]]
+    check(chain, drive() / (1 if host is MACHINE else 300), names)
+
+
+def test_so_are_those_of_two_forces_and_of_other_modes_beside():
+    chain = (
+        replace(MACHINE, hold="band-limited", start="settled"),
+        registry()["stiffness"].from_mapping(LAWS["stiffness"]),
+        registry()["friction-force"].from_mapping(LAWS["friction-force"]),
+        OtherModes(numerator=(3.0,), denominator=(1.0, 2.0, 900.0)),
+        OtherModes(numerator=(1.0,), denominator=(1.0, 2.0, 2500.0)),
+    )
+    names = [(0, "mass"), (0, "damping"), (0, "gain"), (1, "cubic"), (2, "coulomb")]
+    check(chain, drive(), names)
+    steps, size = attached(chain), 1e-6
+    other = moved(chain, 0, "mass", 1 + size)
+    slower = replace(chain[3], denominator=(1.0, 2.0, 900.0 * (1 + size)))
+    both = [attached(x) for x in (other, (*chain[:3], slower, chain[4]))]
+    first, mass, mode = through_near([steps, *both], drive(), DT)
+    alone = attached((chain[0], slower))[0].simulate(drive(), drive(), DT)
+    before = attached((chain[0], chain[3]))[0].simulate(drive(), drive(), DT)
+    assert mode - first == pytest.approx(alone - before, abs=1e-12)
+    assert np.abs(mass - first).max() > 0
+
+
+def test_what_is_equal_is_simulated_once():
+    class Counted:
+        def __init__(self, size):
+            self.size, self.runs = size, 0
+
+        def __eq__(self, other):
+            return self.size == other.size
+
+        __hash__ = None
+
+        def simulate(self, z, u, dt):
+            self.runs += 1
+            return self.size * z
+
+    u = drive()
+    one, same, other = Counted(2.0), Counted(2.0), Counted(3.0)
+    y, again, larger = near(one, u, u, DT, [(same, u), (other, u)])
+    assert again is y
+    assert np.array_equal(larger, 3 * u)
+    assert (one.runs, same.runs, other.runs) == (1, 0, 1)
+    y, further = near(one, u, u, DT, [(same, 2 * u)])
+    assert np.array_equal(further, 2 * y)
