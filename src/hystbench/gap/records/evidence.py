@@ -72,6 +72,18 @@ class Evidence:
         return (*self.fit, *self.hold_out)[0].output
 
     @property
+    def own_offsets(self) -> bool:
+        """Whether the zero of the output may be another one in each fit record.
+
+        Not where it is physical: a store is empty at zero, and a window of a free mass
+        begins there.
+        """
+        physical = self.quantities.causality == "storage" or any(
+            record.decay_s is not None for record in self.fit
+        )
+        return len(self.fit) > 1 and not physical
+
+    @property
     def slowest(self) -> Record:
         """The record for identification: the one named, or the slowest to fit."""
         if self.identification is None:
