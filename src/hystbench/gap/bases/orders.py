@@ -48,9 +48,12 @@ class Judged(Protocol):
     """A model with its errors on all records, and on folds that did not fit it."""
 
     @property
-    def fit(self) -> float: ...
+    def fit(self) -> float:
+        """Error on all records."""
+
     @property
-    def folds(self) -> float: ...
+    def folds(self) -> float:
+        """Error on the folds."""
 
 
 class Least(NamedTuple):
