@@ -208,23 +208,34 @@ def fewest(found: Found, best: Least, step: float | None) -> Found:
         Sampling interval of the records as they were measured; without one no timing
         is tried.
     """
-    order = len(found.ratio.a)
-    fewer = reversed(range(order)) if order <= HIGHEST else ()
-    tried = [found]
+    tried = _shorter(found, best)
+    for plain in tried[-2:] if step else ():
+        timed = in_time(plain, step)
+        if timed is not None and best.met_by(timed):
+            best = Least.of([best, timed])
+            order, zeros = len(timed.ratio.a), len(timed.ratio.b) - 1
+            lower = (
+                timed.orders.of(k, min(k, zeros))
+                for k in range(1, min(order, HIGHEST + 1))
+            )  # poles may have stood for the sample
+            found = next((item for item in lower if best.met_by(item)), timed)
+            return _last_met(_shorter(found, best), best)
+    return _last_met(tried, best)
+
+
+def _shorter(found: Found, best: Least) -> list[Found]:
+    """Leave out one zero after the other, up to the first that is needed."""
+    order, tried = len(found.ratio.a), [found]
+    fewer = reversed(range(len(found.ratio.b) - 1)) if order <= HIGHEST else ()
     for zeros in fewer:
         tried.append(found.orders.of(order, zeros))
         if not best.met_by(tried[-1]):
             break
-        found = tried[-1]
-    for plain in tried[-2:] if step else ():
-        timed = in_time(plain, step)
-        if timed is not None and best.met_by(timed):
-            zeros = range(len(timed.ratio.b))
-            ways = [(k, min(k, z)) for k in range(1, order + 1) for z in zeros]
-            simpler = (timed.orders.of(*way) for way in dict.fromkeys(ways))
-            best = Least.of([best, timed])
-            return next((x for x in simpler if best.met_by(x)), timed)
-    return found
+    return tried
+
+
+def _last_met(tried: Sequence[Found], best: Least) -> Found:
+    return next(item for item in reversed(tried) if best.met_by(item))
 
 
 def in_time(plain: Found, step: float) -> Found | None:
