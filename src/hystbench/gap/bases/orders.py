@@ -209,8 +209,8 @@ def fewest(found: Found, best: Least, step: float | None) -> Found:
         is tried.
     """
     tried = _shorter(found, best)
-    for plain in tried[-2:] if step else ():
-        timed = in_time(plain, step)
+    for plain in tried[-2:]:
+        timed = None if step is None else in_time(plain, step)
         if timed is not None and best.met_by(timed):
             best = Least.of([best, timed])
             order, zeros = len(timed.ratio.a), len(timed.ratio.b) - 1

@@ -61,8 +61,7 @@ def summed(
 
     def solved(masks: tuple[Mask, ...]) -> FloatArray:
         left, right = masked(scaled, masks), masked(outputs, masks)
-        found: FloatArray = np.linalg.lstsq(left, right, rcond=None)[0]
-        return found
+        return np.asarray(np.linalg.lstsq(left, right, rcond=None)[0], np.float64)
 
     def squares(numbers: FloatArray, masks: tuple[Mask, ...]) -> float:
         error = masked(outputs, masks) - masked(scaled, masks) @ numbers

@@ -21,7 +21,7 @@ from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction, possible_starts
-from hystbench.gap.bases.linear import HIGHEST
+from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
