@@ -68,8 +68,8 @@ def test_slew_limit_catches_up_within_an_interval_and_turns():
     np.testing.assert_allclose(v, [0.0, 0.5, 0.6 - 0.8 * 0.5], rtol=1e-14)
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.4, 1.0, 7.3, 63.5])
-def test_a_sine_is_a_sine_later(delay):
+@pytest.mark.parametrize("delay", [-1.6, -1.0, -0.5, 0.0, 0.4, 1.0, 7.3, 63.5])
+def test_a_sine_is_a_sine_later_or_earlier(delay):
     # A burst that starts and ends smoothly: nothing depends on what was before it.
     k = np.arange(400)
 
@@ -78,7 +78,7 @@ def test_a_sine_is_a_sine_later(delay):
         window = np.where(inside, np.sin(np.pi * (at - 20) / 280) ** 4, 0.0)
         return window * np.sin(2 * np.pi * 0.2 * at + 0.3)
 
-    block = InputDelay(delay_s=delay * DT)
+    block = InputDelay.by(delay * DT)
     found = block.simulate(burst(k), burst(k), DT)
     np.testing.assert_allclose(found, burst(k - delay), rtol=0, atol=1e-5)
     if delay % 1:  # straight lines lose a good part of a sine of five samples
@@ -87,10 +87,10 @@ def test_a_sine_is_a_sine_later(delay):
 
 
 @pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
-@given(z=inputs, whole=st.integers(0, 60))
+@given(z=inputs, whole=st.integers(-3, 60))
 def test_whole_samples_of_delay_shift_the_samples(hold, z, whole):
-    block = InputDelay(delay_s=whole * DT, hold=hold)
-    expected = np.concatenate([np.full(whole, z[0]), z])[: len(z)]
+    block = InputDelay.by(whole * DT, hold=hold)
+    expected = z[np.clip(np.arange(len(z)) - whole, 0, len(z) - 1)]
     np.testing.assert_allclose(block.simulate(z, z, DT), expected, rtol=0, atol=1e-12)
 
 

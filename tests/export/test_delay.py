@@ -113,6 +113,24 @@ def test_what_looks_at_the_input_stays_in_step_with_what_enters(blocks, tmp_path
     np.testing.assert_allclose(y[1:], wanted[:-1], rtol=0, atol=1e-9 * np.ptp(wanted))
 
 
+@pytest.mark.parametrize(("hold", "needed"), [("linear", 2), ("band-limited", 17)])
+def test_an_input_that_is_stamped_late_is_foretold_or_waited_for(
+    hold, needed, tmp_path
+):
+    """By a sample and a half: two samples to come, and those that a curve takes."""
+    block = ("input-delay", {"delay_s": 0.0, "lead_s": 1.5 * DT, "hold": hold})
+    model = model_of("early", chain_of(block))
+    plain = describe(model, Sampling(DT))
+    assert "foretells its input 2 samples to come" in " ".join(plain.differences)
+    assert exact_delay(plain) == needed
+    wanted = model.simulate(INPUT, DT)
+    soon = Compiled([plain], tmp_path).outputs(INPUT)["early"]
+    assert np.abs(soon - wanted)[2:-2].max() < 0.01 * np.ptp(wanted)
+    y = Compiled([late(model, needed)], tmp_path).outputs(INPUT)["early"][needed:]
+    inner = slice(40, -40)
+    np.testing.assert_allclose(y[inner], wanted[:-needed][inner], rtol=0, atol=1e-9)
+
+
 def test_a_measured_input_is_nearer_with_samples_on_both_sides(tmp_path):
     rng = np.random.default_rng(1)
     noisy = INPUT + 1e-3 * rng.standard_normal(len(INPUT))

@@ -1,8 +1,9 @@
-"""Block ``input-delay``: the drive answers late."""
+"""Block ``input-delay``: the drive answers late, or its record is stamped late."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil, floor
 from typing import ClassVar
 
 import numpy as np
@@ -16,9 +17,10 @@ from hystbench.record import FloatArray
 
 @dataclass(frozen=True)
 class InputDelay(HeldBlock):
-    """Pure delay: ``v(t) = z(t - delay_s)``; before the record z rests at its start.
+    """Pure delay: ``v(t) = z(t - delay_s + lead_s)``; z rests before and after.
 
-    With a band-limited input, which is what ``hold`` is by default, the value is taken
+    A lead is no foresight of the device: its input was written down late. With a
+    band-limited input, which is what ``hold`` is by default, the value is taken
     from the smooth curve through the samples of :mod:`hystbench.blocks.curve`. For
     straight lines (``linear``) it is taken from them; for a staircase (``zero-order``)
     it is the mean over the interval that follows, which comes to the same.
@@ -37,17 +39,22 @@ class InputDelay(HeldBlock):
     smooths: ClassVar[bool] = False
 
     delay_s: float = number("s", "time between command and answer", 0.0, 1e3)
+    lead_s: float = number(
+        "s", "time by which the command was written down late", 0.0, 1e3, 0.0
+    )
+
+    @classmethod
+    def by(cls, delay_s: float, hold: str = "default") -> InputDelay:
+        """Give the delay, or the lead where it is below zero."""
+        return cls(delay_s=max(delay_s, 0.0), lead_s=max(-delay_s, 0.0), hold=hold)
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the delayed input."""
-        shift, place = self.delay_s / dt, np.arange(len(z))
+        shift, place = (self.delay_s - self.lead_s) / dt, np.arange(len(z))
         if self.holding != "band-limited" or len(z) < 3:
             between: FloatArray = np.interp(place - shift, place, z)
             return between
-        whole = min(int(shift), len(z))
-        taps = value_at(POINTS, whole - shift - AHEAD)
-        v = np.full(len(z), z[0])
-        v[whole:] = weighed(z, taps[np.newaxis])[0, : len(z) - whole]
+        v = later(z, shift)
         v[place < shift] = z[0]
         return v
 
@@ -55,13 +62,16 @@ class InputDelay(HeldBlock):
         """Keep samples, and take the delayed one from a curve through a few of them.
 
         With straight lines that is through two of them, else through as many on both
-        sides as there are: what the delay has left behind is known.
+        sides as there are: what the delay has left behind is known. Of what is not
+        known yet, the straight line through the newest two is the guess.
         """
-        smooth, shift = self.holding == "band-limited", self.delay_s / sampling.dt
-        known = min(int(shift) + sampling.ahead, AHEAD)
+        smooth = self.holding == "band-limited"
+        shift = (self.delay_s - self.lead_s) / sampling.dt
+        needed = max((AHEAD if smooth else 0) - floor(shift), 0)
         shift += sampling.ahead
-        points = max(sampling.points, 2 * known + 2) if smooth else 2
-        first = max(int(shift) - points // 2 + 1, 0)
+        known = min(max(floor(shift), 0), AHEAD)
+        points = max(sampling.points, 2 * known + 2) if smooth and shift >= 0 else 2
+        first = max(floor(shift) - points // 2 + 1, 0)
         constants = {
             "shift": shift,
             "first": first,
@@ -70,5 +80,27 @@ class InputDelay(HeldBlock):
         }
         states = {"count": 1, "kept": first + points}
         differs = smooth_curve(points, known) if smooth else ""
-        gains = max(AHEAD - int(self.delay_s / sampling.dt), 0) if smooth else 0
-        return Step("input_delay", constants, states, gains=gains, differs=differs)
+        if shift < 0:
+            differs = (
+                f"foretells its input {ceil(-shift)} sample{'s' * (shift < -1)} to "
+                "come by the straight line through the newest two"
+            )
+        return Step("input_delay", constants, states, gains=needed, differs=differs)
+
+
+def later(z: FloatArray, samples: float) -> FloatArray:
+    """Move a signal to later samples along its curve; it rests at its ends.
+
+    Parameters
+    ----------
+    z : ndarray, shape (n,)
+    samples : float
+        Below zero it comes earlier.
+    """
+    whole = floor(samples)
+    places = np.clip(np.arange(len(z)) - whole, 0, len(z) - 1)
+    if whole == samples:
+        return z[places]
+    taps = value_at(POINTS, whole - samples - AHEAD)
+    between: FloatArray = weighed(z, taps[np.newaxis])[0][places]
+    return between

@@ -17,7 +17,7 @@ HUGE, TINY = 1e30, 1e-30
 would let the choice of micrometres or metres decide what a record can mean."""
 
 
-SETTINGS = ("hold", "start")
+SETTINGS = ("hold", "start", "lead_s")
 """Parameters that say how a signal moves and what was before it: no numbers of an
 effect, so no table of them has these."""
 

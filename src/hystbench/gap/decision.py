@@ -28,6 +28,7 @@ from hystbench.gap.fitting.uncertainty import (
 )
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.holdout.show import FitResult
+from hystbench.gap.inside.apart import apart_inside
 from hystbench.gap.inside.name import Inside, beats, named_inside
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.judging.gap_json import (
@@ -44,6 +45,7 @@ from hystbench.gap.naming.name import LITTLE, Named, name
 from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.evidence import own_offsets
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.model import Model
@@ -126,25 +128,34 @@ def find(
     if any(record.decay_s is not None for record in records):
         offered = tuple(name for name in among(offered) if name not in NOT_IN_WINDOWS)
     start, floor = start_state(records, base, hold, declared, offered)
-    inside = None
+    inside, own = None, NONE
     if quantities is not None:
         identified = is_identified(base)
-        inside = named_inside(base, start, floor.rms, quantities, identified, say)
+
+        def look(start: ModelState) -> Inside | None:
+            return named_inside(base, start, floor.rms, quantities, identified, say)
+
+        inside = look(start)
+        if not _leaves_little(inside, floor) and own_offsets(records, quantities):
+            start, inside, own = apart_inside(start, inside, floor.rms, look, say)
     if inside is not None and inside.named.state.power(floor.rms**2) < floor.rms**2:
         say(
             "inside: less than the noise's own power is left above it, so no chain of "
             "effects is tried"
         )
     else:
-        named, own = name(start, floor.rms, say, unnamed_share), NONE
+        named, theirs = name(start, floor.rms, say, unnamed_share), own
         if inside is not None and not beats(inside, named, floor.rms, say):
             inside = None
-        if inside is None or not _leaves_little(inside, floor):
-            start, named, own = named_apart(start, floor.rms, named, say, unnamed_share)
-            if inside is not None and own.records:
+        if not (own.records or _leaves_little(inside, floor)):
+            start, named, theirs = named_apart(
+                start, floor.rms, named, say, unnamed_share
+            )
+            if inside is not None and theirs.records:
                 inside = inside if beats(inside, named, floor.rms, say) else None
+        own = theirs if inside is None else own
     if inside is not None:
-        base, start, named, own = inside.base, inside.start, inside.named, NONE
+        base, start, named = inside.base, inside.start, inside.named
     found = decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
     if inside is None:
         return found
@@ -152,8 +163,10 @@ def find(
     return replace(found, content={**found.content, "reason": reason})
 
 
-def _leaves_little(inside: Inside, floor: Floor) -> bool:
+def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
     """Tell whether forces leave so little that no record needs numbers of its own."""
+    if inside is None:
+        return False
     before, after = (
         state.power(floor.rms**2) for state in (inside.start, inside.named.state)
     )

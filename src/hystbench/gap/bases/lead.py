@@ -13,7 +13,8 @@ from typing import Literal
 import numpy as np
 
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.linear import LEAD, is_identified
+from hystbench.gap.bases.linear import is_identified
+from hystbench.gap.bases.orders import LEAD
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model

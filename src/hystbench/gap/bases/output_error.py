@@ -31,12 +31,16 @@ class OutputError:
         Unit of the ratio's s, in rad/s.
     start : {"rest", "settled", "moving", "repeating"}
         As of the block.
+    own_offsets : bool
+        Whether each record has a constant of its own, as where a sensor's zero is
+        another one every time; a ratio has their mean.
     """
 
     records: tuple[Record, ...]
     hold: Hold
     scale: float
     start: str = "rest"
+    own_offsets: bool = False
 
     def block(self, ratio: Ratio) -> TransferFunction:
         """Give the block of a ratio; its constant is left out."""
@@ -62,9 +66,19 @@ class OutputError:
         return [r.y - y for r, y in zip(self.records, simulated, strict=True)]
 
     def squares(self, ratio: Ratio, masks: Sequence[Mask]) -> float:
-        """Sum of squares of the error over the masked samples."""
-        error = [x[mask] for x, mask in zip(self.left(ratio), masks, strict=True)]
-        return float(sum(part @ part for part in error))
+        """Sum of squares of the error over the masked samples.
+
+        With offsets of their own, those that fit the masked samples best.
+        """
+        error = self._masked(self.left(ratio), masks)
+        return float(sum(np.sum(part**2) for part in error))
+
+    def _masked(
+        self, columns: Sequence[FloatArray], masks: Sequence[Mask]
+    ) -> list[FloatArray]:
+        """Give the masked samples, without their mean where records have offsets."""
+        parts = [x[mask] for x, mask in zip(columns, masks, strict=True)]
+        return [without_mean(x) for x in parts] if self.own_offsets else parts
 
     def refined(self, ratio: Ratio, masks: Sequence[Mask], rounds: int) -> Ratio:
         """Go down the sum of squares of the masked samples.
@@ -101,7 +115,11 @@ class OutputError:
             ratio, cost, damping = moved, after, max(damping / 10.0, 1e-9)
             if small:
                 break
-        return Ratio(ratio.a, ratio.b, ratio.offset, cost)
+        offset = ratio.offset
+        if self.own_offsets:
+            left = [x[mask] for x, mask in zip(self.left(ratio), masks, strict=True)]
+            offset += float(np.mean(np.concatenate(left)))
+        return Ratio(ratio.a, ratio.b, offset, cost)
 
     def _squares_or_none(self, ratio: Ratio, masks: Sequence[Mask]) -> float | None:
         """Sum of squares; None where the block refuses so far a step."""
@@ -119,13 +137,12 @@ class OutputError:
 
     def _triangle(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
         """Triangle of the derivatives, and of the error as its last column."""
-        triangles = []
-        left = self.left(ratio)
-        for record, rest, mask in zip(self.records, left, masks, strict=True):
-            columns = [*self._derivatives(ratio, record), rest]
-            own = np.column_stack(columns)[mask]
-            triangles.append(triangle_of(own))
-        return triangle_of(np.vstack(triangles))
+        columns = [
+            np.column_stack([*self._derivatives(ratio, record), rest])
+            for record, rest in zip(self.records, self.left(ratio), strict=True)
+        ]
+        own = [triangle_of(part) for part in self._masked(columns, masks)]
+        return triangle_of(np.vstack(own))
 
     def _derivatives(self, ratio: Ratio, record: Record) -> list[FloatArray]:
         """Change of the output with each a, each b and the constant."""
@@ -145,6 +162,11 @@ class OutputError:
         numerator = [moves(by_b, power) for power in range(len(b))]
         numerator[0] = numerator[0] + before / a[0]
         return [*columns, *numerator, np.ones(len(record))]
+
+
+def without_mean(x: FloatArray) -> FloatArray:
+    """Take off each column's mean."""
+    return x - x.mean(axis=0) if len(x) else x
 
 
 def _step(triangle: FloatArray, damping: float) -> FloatArray:

@@ -9,6 +9,7 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.impedance import INPUTS, NUMBERS, Impedance
+from hystbench.gap.bases.output_error import without_mean
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold
 from hystbench.record import FloatArray, Mask
@@ -47,27 +48,31 @@ def summed(
     Parameters
     ----------
     signals : sequence of ndarray, shape (n, k)
-        Of each record, in columns.
+        Of each record, in columns; the last is of ones.
     """
     sizes = np.maximum(np.sqrt(np.mean(np.vstack(signals) ** 2, axis=0)), 1e-300)
     scaled = [columns / sizes for columns in signals]
     outputs = [record.y for record in evidence.fit]
+    apart = evidence.own_offsets
+
+    def masked(parts: Sequence[FloatArray], masks: tuple[Mask, ...]) -> FloatArray:
+        taken = [x[mask] for x, mask in zip(parts, masks, strict=True)]
+        return np.concatenate([without_mean(x) for x in taken] if apart else taken)
 
     def solved(masks: tuple[Mask, ...]) -> FloatArray:
-        left = np.vstack([x[mask] for x, mask in zip(scaled, masks, strict=True)])
-        right = np.concatenate(
-            [x[mask] for x, mask in zip(outputs, masks, strict=True)]
-        )
-        found: FloatArray = np.linalg.lstsq(left, right, rcond=None)[0]
-        return found
+        left, right = masked(scaled, masks), masked(outputs, masks)
+        return np.asarray(np.linalg.lstsq(left, right, rcond=None)[0], np.float64)
 
     def squares(numbers: FloatArray, masks: tuple[Mask, ...]) -> float:
-        return sum(
-            float(np.sum((y - x @ numbers)[mask] ** 2))
-            for x, y, mask in zip(scaled, outputs, masks, strict=True)
-        )
+        error = masked(outputs, masks) - masked(scaled, masks) @ numbers
+        return float(error @ error)
 
     best = solved(whole)
+    if apart:  # the mean of what each record has of its own
+        each = zip(scaled, outputs, whole, strict=True)
+        best[-1] = np.mean(
+            np.concatenate([(y - x @ best)[mask] for x, y, mask in each])
+        )
     judged = sum(squares(solved(fold.train), fold.validation) for fold in folds)
     count = sum(int(mask.sum()) for mask in whole)
     return Sum(

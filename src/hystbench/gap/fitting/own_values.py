@@ -21,9 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from hystbench.blocks.curve import AHEAD, POINTS, value_at, weighed
 from hystbench.blocks.held import Hold
-from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.input_delay import InputDelay, later
 from hystbench.gap.records.nuisance import FIRST
 from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, PAYS, RECORD_WEIGHT, SCALE
 from hystbench.record import FloatArray, Record
@@ -47,7 +46,7 @@ class Own(NamedTuple):
 
     def of(self, signal: FloatArray, dt: float) -> FloatArray:
         """Give a simulated output as the record has it, shape (n,)."""
-        return self.gain * late(signal, self.delay_s / dt) + self.offset
+        return self.gain * later(signal, self.delay_s / dt) + self.offset
 
     def beside(self, other: Own) -> Own:
         """Give what comes after another triple to make this one."""
@@ -269,7 +268,7 @@ def fitted(
     y = record.y[:until]
 
     def at(shift: float) -> tuple[float, Own]:
-        x = late(simulated, shift)[:until]
+        x = later(simulated, shift)[:until]
         gain, offset = _scaled(x, y, kinds)
         rest = y - gain * x - offset
         return float(np.mean(rest**2)), Own(shift * record.dt, gain, offset)
@@ -308,20 +307,6 @@ COARSE, NEAREST = 401, 40
 """Delays that are tried first, and samples within which every one is."""
 ROUNDING = 1e-12
 """Of the output's power: what is below comes from the sums of :func:`_squares`."""
-
-
-def late(signal: FloatArray, samples: float) -> FloatArray:
-    """Move a signal to later samples along its curve; it rests at its ends."""
-    whole = round(samples)
-    if whole == samples:
-        between = signal
-    else:
-        taps = value_at(POINTS, whole - samples - AHEAD)
-        between = weighed(signal, taps[np.newaxis])[0]
-    if not whole:
-        return between
-    places = np.clip(np.arange(len(signal)) - whole, 0, len(signal) - 1)
-    return np.asarray(between[places])
 
 
 def _squares(
@@ -369,8 +354,5 @@ def _scaled(x: FloatArray, y: FloatArray, kinds: Sequence[str]) -> tuple[float, 
 def _without(record: Record, own: Own, hold: Hold) -> Record:
     u = record.u
     if own.delay_s:
-        # What comes early is late with time turned round.
-        turn = 1 if own.delay_s > 0 else -1
-        block = InputDelay(hold=hold, delay_s=abs(own.delay_s))
-        u = block.simulate(u[::turn].copy(), u, record.dt)[::turn].copy()
+        u = InputDelay.by(own.delay_s, hold).simulate(u, u, record.dt)
     return replace(record, u=u, y=(record.y - own.offset) / own.gain)

@@ -18,9 +18,10 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
+from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction, possible_starts
-from hystbench.gap.bases.linear import HIGHEST
+from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
@@ -79,6 +80,13 @@ def hosts(
         Whether the base was identified from the records.
     score : Score
     """
+    delay = start.chain[0]
+    if identified and isinstance(delay, InputDelay):
+        for host in hosts(_behind(start), quantities, identified, score):
+            state = _in_front(delay, start, host.fitted.state)
+            alone = _in_front(delay, start, host.alone)
+            yield replace(host, alone=alone, fitted=replace(host.fitted, state=state))
+        return
     if identified and quantities.causality in ("storage", "unknown"):
         noise = float(np.sqrt(score.floor))
         for count, words in STORES.items():
@@ -109,6 +117,28 @@ def hosts(
         frequency = np.sqrt(block.stiffness / block.mass) / (2 * np.pi)
         words = f"the base's mode at {frequency:.3g} Hz is a mechanism of its own"
         yield Host(best.state if identified else mode, best, words)
+
+
+def _behind(start: ModelState) -> ModelState:
+    """Give a base without the timing of its input, on records that have it in time."""
+    delay, *behind = start.chain
+    free = (item._replace(block=item.block - 1) for item in start.free if item.block)
+    records = tuple(
+        replace(item, u=delay.simulate(item.u, item.u, item.dt))
+        for item in start.records
+    )
+    return replace(
+        start, chain=tuple(behind), records=records, free=tuple(free)
+    ).settled()
+
+
+def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
+    """Give a model of such records on those of a base, with the timing of its input."""
+    free = (item._replace(block=item.block + 1) for item in state.free)
+    chain = (delay, *state.chain)
+    return replace(
+        state, chain=chain, records=start.records, free=tuple(free)
+    ).settled()
 
 
 def is_seen_moving(state: ModelState) -> bool:

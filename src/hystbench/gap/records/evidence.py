@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -72,6 +72,11 @@ class Evidence:
         return (*self.fit, *self.hold_out)[0].output
 
     @property
+    def own_offsets(self) -> bool:
+        """Whether each fit record may have an offset of its own."""
+        return own_offsets(self.fit, self.quantities)
+
+    @property
     def slowest(self) -> Record:
         """The record for identification: the one named, or the slowest to fit."""
         if self.identification is None:
@@ -136,6 +141,16 @@ def load_evidence(path: str | Path, use: Use | None = None) -> Evidence:
         dataset.quantities,
         dataset.device_kind,
     )
+
+
+def own_offsets(records: Sequence[Record], quantities: Quantities) -> bool:
+    """Tell whether the zero of the output may be another one in each record.
+
+    Not where it is physical: a store is empty at zero, and a window of a free mass
+    begins there.
+    """
+    windows = any(record.decay_s is not None for record in records)
+    return len(records) > 1 and quantities.causality != "storage" and not windows
 
 
 CUT = (

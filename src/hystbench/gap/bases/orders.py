@@ -1,0 +1,297 @@
+"""Orders of a linear base: fitted to the records, and judged on folds of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from hystbench.blocks.input_delay import InputDelay
+from hystbench.blocks.transfer_function import possible_starts
+from hystbench.gap.bases.output_error import OutputError
+from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio, with_a_mode
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.folds import Fold, make_folds
+from hystbench.record import Mask, Record
+
+#: Highest order that is tried, of all poles at once, and with modes added one by one.
+HIGHEST = 6
+MOST_ORDERS = 12
+#: Order from which on a further mode is looked for: two modes and a lag do not do.
+MANY = 5
+#: Damping ratio at which a further mode is begun.
+BEGUN_DAMPING = 0.01
+#: Peaks of what is left at which a further mode is begun.
+PEAKS = 3
+#: A number is needed if it lowers both errors, of fit and of folds, by more than this
+#: share: a gain on folds alone is their luck.
+PAYS = 0.03
+#: Another timing of the input is one of a few and no number of its own: it is needed if
+#: it lowers the error by this share.
+TIMING_PAYS = 0.01
+#: Orders above are not tried once so many in a row have not mattered.
+IN_VAIN = 2
+#: Share of each record at its beginning that does not count: what it remembers of the
+#: time before would pull the poles.
+LEAD = 0.1
+#: The plainest start is taken whose sum of squares is within this factor of the best.
+CLEARLY = 1.01
+#: Steps of least squares on simulation: of all records, then of each fold.
+ROUNDS = 20
+FOLD_ROUNDS = 4
+
+
+class Judged(Protocol):
+    """A model with its errors on all records, and on folds that did not fit it."""
+
+    @property
+    def fit(self) -> float:
+        """Error on all records."""
+
+    @property
+    def folds(self) -> float:
+        """Error on the folds."""
+
+
+class Least(NamedTuple):
+    """The least error on all records, and on the folds."""
+
+    fit: float
+    folds: float
+
+    @classmethod
+    def of(cls, found: Sequence[Judged]) -> Least:
+        """Give the least errors of some models."""
+        return cls(min(x.fit for x in found), min(x.folds for x in found))
+
+    def met_by(self, item: Judged) -> bool:
+        """Tell whether no more than a needless number would lower a model's errors."""
+        return not (
+            self.fit < (1 - PAYS) * item.fit and self.folds < (1 - PAYS) * item.folds
+        )
+
+
+class Found(NamedTuple):
+    """A ratio that was fitted, and the records that it was fitted to."""
+
+    orders: Orders
+    task: OutputError
+    ratio: Ratio
+    fit: float
+    folds: float
+
+
+@dataclass(frozen=True)
+class Orders:
+    """Records that ratios of all orders are fitted to.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    late : float
+        Sampling intervals by which their input was made later; below zero earlier.
+    """
+
+    evidence: Evidence
+    late: float = 0.0
+
+    @cached_property
+    def whole(self) -> tuple[Mask, ...]:
+        """Samples that count."""
+        return behind_the_lead(self.evidence.fit)
+
+    @cached_property
+    def folds(self) -> tuple[Fold, ...]:
+        """Those of them that fit, and those that judge."""
+        return tuple(
+            Fold(_both(fold.train, self.whole), _both(fold.validation, self.whole))
+            for fold in make_folds(self.evidence.fit)
+        )
+
+    @cached_property
+    def spectra(self) -> Spectra:
+        """Spectra of the records."""
+        each = ((item.u, item.y, item.dt) for item in self.evidence.fit)
+        if self.evidence.own_offsets:  # a constant makes one, but for a transient
+            each = ((u - u.mean(), y - y.mean(), dt) for u, y, dt in each)
+        return Spectra.of([Stretch(*item) for item in each], self.evidence.hold)
+
+    def of(self, order: int, zeros: int) -> Found:
+        """Fit one order to all records, and from there to each fold's."""
+        first = fit_ratio(self.spectra, order, zeros)
+        evidence = self.evidence
+        task = OutputError(
+            evidence.fit,
+            evidence.hold,
+            self.spectra.scale,
+            own_offsets=evidence.own_offsets,
+        )
+        return self.judged(plainest(task, first), first)
+
+    def judged(self, task: OutputError, first: Ratio) -> Found:
+        """Fit a ratio to all records, and from there to each fold's."""
+        count = sum(int(mask.sum()) for mask in self.whole)
+        ratio = task.refined(first, self.whole, ROUNDS)
+        judged = sum(
+            task.squares(task.refined(ratio, fold.train, FOLD_ROUNDS), fold.validation)
+            for fold in self.folds
+        )
+        fit, folds = (float(np.sqrt(x / count)) for x in (ratio.cost, judged))
+        return Found(self, task, ratio, fit, folds)
+
+    def searched(self, without: Judged) -> list[Found]:
+        """Fit orders from one on, while they matter beside a model without any pole.
+
+        With many, one mode more at a time.
+        """
+        found: list[Found] = []
+        best, in_vain = Least.of([without]), 0
+        for order in range(1, HIGHEST + 1):
+            found.append(self.of(order, order))
+            least = Least.of([best, found[-1]])
+            in_vain = 0 if not least.met_by(best) else in_vain + 1
+            best = least
+            if in_vain > IN_VAIN:
+                break
+        likely = next((item for item in found if best.met_by(item)), None)
+        if likely is not None and len(likely.ratio.a) >= MANY:
+            found += self._further_modes(likely)
+        return found
+
+    def _further_modes(self, last: Found) -> list[Found]:
+        """Add one mode at a time where most is left, while it matters.
+
+        Of many poles at once a fit to the spectra finds no good start.
+        """
+        found: list[Found] = []
+        while len(last.ratio.a) + 2 <= MOST_ORDERS:
+            left = last.task.left(last.ratio)
+            begun = [
+                last.task.refined(ratio, self.whole, FOLD_ROUNDS)
+                for ratio in with_a_mode(
+                    self.spectra, last.ratio, left, BEGUN_DAMPING, PEAKS
+                )
+            ]
+            best = min(begun, key=lambda ratio: ratio.cost)
+            further = self.judged(last.task, best)
+            if Least.of([further]).met_by(last):
+                break
+            found.append(further)
+            last = further
+        return found
+
+    def moved(self, late: float, step: float) -> Orders:
+        """Give them with the input so many sampling intervals of a step later."""
+        block = InputDelay.by(late * step, self.evidence.hold)
+        fit = tuple(
+            replace(item, u=block.simulate(item.u, item.u, item.dt))
+            for item in self.evidence.fit
+        )
+        return Orders(replace(self.evidence, fit=fit), late)
+
+
+def fewest(found: Found, best: Least, step: float | None) -> Found:
+    """Leave out zeros that a ratio does not need, and take its input in time.
+
+    A sample between input and output looks like a zero, or like a pole and some.
+
+    Parameters
+    ----------
+    found : Found
+        As many zeros as poles.
+    best : Least
+        Errors of the best model.
+    step : float, optional
+        Sampling interval of the records as they were measured; without one no timing
+        is tried.
+    """
+    tried = _shorter(found, best)
+    for plain in tried[-2:]:
+        timed = None if step is None else in_time(plain, step)
+        if timed is not None and best.met_by(timed):
+            best = Least.of([best, timed])
+            order, zeros = len(timed.ratio.a), len(timed.ratio.b) - 1
+            lower = (
+                timed.orders.of(k, min(k, zeros))
+                for k in range(1, min(order, HIGHEST + 1))
+            )  # poles may have stood for the sample
+            found = next((item for item in lower if best.met_by(item)), timed)
+            return _last_met(_shorter(found, best), best)
+    return _last_met(tried, best)
+
+
+def _shorter(found: Found, best: Least) -> list[Found]:
+    """Leave out one zero after the other, up to the first that is needed."""
+    order, tried = len(found.ratio.a), [found]
+    fewer = reversed(range(len(found.ratio.b) - 1)) if order <= HIGHEST else ()
+    for zeros in fewer:
+        tried.append(found.orders.of(order, zeros))
+        if not best.met_by(tried[-1]):
+            break
+    return tried
+
+
+def _last_met(tried: Sequence[Found], best: Least) -> Found:
+    return next(item for item in reversed(tried) if best.met_by(item))
+
+
+def in_time(plain: Found, step: float) -> Found | None:
+    """Fit with the input half a sample or a whole one early or late.
+
+    None where that does not lower the errors, or more than a sample would lower them
+    further: this is the device's own, a lag or a delay.
+
+    Parameters
+    ----------
+    plain : Found
+        A ratio with the input as it is.
+    step : float
+        Sampling interval of the records.
+    """
+    order, zeros = len(plain.ratio.a), len(plain.ratio.b) - 1
+
+    def late(samples: float) -> Found:
+        orders = plain.orders.moved(samples, step)
+        if order <= HIGHEST:
+            return orders.of(order, zeros)
+        task = replace(plain.task, records=orders.evidence.fit)
+        return orders.judged(task, plain.ratio)
+
+    best = min(late(-0.5), late(0.5), key=lambda item: item.fit)
+    half = best.orders.late
+    if best.fit > plain.fit:
+        return None
+    half = best.orders.late
+    for farther in (2 * half, 3 * half):
+        beyond = late(farther)
+        if beyond.fit > best.fit:
+            pays = best.fit < (1 - TIMING_PAYS) * plain.fit
+            return best if pays and best.folds < plain.folds else None
+        best = beyond
+    return None
+
+
+def plainest(task: OutputError, ratio: Ratio) -> OutputError:
+    """Take the plainest start of the records that does nearly as well as any."""
+    everything = [record.counted for record in task.records]
+    tasks = [replace(task, start=start) for start in possible_starts(task.records)]
+    costs = [task.squares(ratio, everything) for task in tasks]
+    return next(
+        task
+        for task, cost in zip(tasks, costs, strict=True)
+        if cost <= CLEARLY * min(costs)
+    )
+
+
+def behind_the_lead(records: Sequence[Record]) -> tuple[Mask, ...]:
+    """Give the samples of records that count."""
+    return tuple(
+        (np.arange(len(item)) >= LEAD * len(item)) & item.counted for item in records
+    )
+
+
+def _both(masks: tuple[Mask, ...], others: tuple[Mask, ...]) -> tuple[Mask, ...]:
+    return tuple(a & b for a, b in zip(masks, others, strict=True))
