@@ -84,11 +84,19 @@ def laws_for(
 
 
 def singles(
-    host: Fitted, offer: Offer, score: Score, say: Say = silent
+    host: Fitted,
+    offer: Offer,
+    score: Score,
+    say: Say = silent,
+    other: ModelState | None = None,
 ) -> list[Hypothesis]:
-    """Try each force alone: the host without one first, then the least score."""
+    """Try each force alone: the host without one first, then the least score.
+
+    Forces are put into the host, or into another model that is as good without them.
+    """
     alone = Hypothesis((), (), host)
-    return [alone, *_one_more([alone], offer, score, SINGLES, host.score, say)]
+    begun = replace(alone, fitted=host if other is None else replace(host, state=other))
+    return [alone, *_one_more([begun], offer, score, SINGLES, host.score, say)]
 
 
 def together(
