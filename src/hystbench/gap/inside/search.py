@@ -321,14 +321,15 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
 
 def how_it_moves(state: ModelState, turns: bool) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
-    host: Any = next(block for block in state.chain if is_host(block))
+    place = next(k for k, block in enumerate(state.chain) if is_host(block))
+    host: Any = state.chain[place]
     reach = speed = force = 0.0
-    for record in state.records:
-        motion = host.motion(record.u, record.dt, ())
+    for record, z in zip(state.records, state.simulation.at(place), strict=True):
+        motion = host.motion(z, record.dt, ())
         q = motion.position
         reach = max(reach, float(np.ptp(q)) / 2)
         speed = max(speed, float(np.max(np.abs(motion.velocity))))
-        driving = record.y if host.name == "impedance" else record.u
+        driving = record.y if host.name == "impedance" else z
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
     step = min(record.dt for record in state.records)
