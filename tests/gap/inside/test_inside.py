@@ -12,7 +12,12 @@ from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import best_host, is_seen_moving, one_coordinate
-from hystbench.gap.inside.search import how_it_moves
+from hystbench.gap.inside.search import (
+    Hypothesis,
+    how_it_moves,
+    laws_for,
+    starts,
+)
 from hystbench.gap.records.evidence import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.sample import Sample
@@ -60,6 +65,20 @@ def test_friction_of_a_device_that_is_moved_is_found_with_its_numbers(found):
 def test_a_host_without_a_force_stands_first(found):
     assert found[0].effects == ()
     assert found[0].score > min(item.score for item in found) + 100
+
+
+def test_a_law_promises_what_its_numbers_do_that_start_at_zero():
+    """A spring that is stiffer on one side has a square; its fit starts without."""
+    x = 5.0 * np.sin(7 * TIME) + 1.5 * np.sin(19 * TIME)
+    y = 2.0 * x + 0.1 * np.gradient(x, DT) + 0.05 * x**2
+    given = (record("one", x, y + NOISE * np.sin(TIME**2 * 99)),)
+    begun = list(one_coordinate(given, Quantities("position", "force"), "linear"))
+    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    host = best_host(begun, score)
+    laws = laws_for(host)["stiffness-hardening"]
+    put_in = starts(Hypothesis((), (), host), "stiffness-hardening", laws, score)
+    promised = {item.forms: item.score for item in put_in}
+    assert promised["square and cube",] < promised["cube",] - 200
 
 
 def test_a_store_has_no_impedance():

@@ -22,6 +22,7 @@ from hystbench.gap.inside.put_in import evened, is_host, with_law
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
+from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
@@ -179,8 +180,9 @@ def starts(
 ) -> Iterator[Hypothesis]:
     """Put a further force inside, by each law and start, with the score to be expected.
 
-    The residual is explained by what the force does as it starts, as one column, and
-    by what changes of all numbers do, by least squares.
+    The residual is explained by what the force does as it starts, as one column, by
+    what each of its numbers does that starts at zero, which that column does not hold,
+    and by what changes of all other numbers do, by least squares.
     """
     state = before.fitted.state
     tangents, weights = state.tangents, by_record(state)
@@ -194,7 +196,8 @@ def starts(
             begun = evened(begun)
         if not np.all(np.isfinite(begun.residual)):
             continue
-        columns = np.column_stack([tangents, state.residual - begun.residual])
+        does = state.residual - begun.residual
+        columns = np.column_stack([tangents, does, of_zeros(begun)])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         scaled = columns / sizes
         found, *_ = np.linalg.lstsq(
@@ -204,6 +207,13 @@ def starts(
         expected = score.of(rest, begun.freedom)
         effects, forms = (*before.effects, effect), (*before.forms, law.form)
         yield Hypothesis(effects, forms, Fitted(begun, expected))
+
+
+def of_zeros(begun: ModelState) -> FloatArray:
+    """Give the slopes by the numbers of what was put in last that start at zero."""
+    own = begun.added[-1].blocks
+    zeros = (x for x in begun.free if x.block in own and begun.value(x) == 0.0)
+    return replace(begun, free=tuple(zeros)).tangents
 
 
 def fitted_likely(
