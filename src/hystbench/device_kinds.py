@@ -92,6 +92,10 @@ CAUSES: Mapping[str, Mapping[str, Sequence[DeviceKind]]] = {
     },
     "asymmetry": {
         "a bias field": _MAGNETIC,
+        "a force by the square of the current or voltage": (
+            *_MAGNETIC,
+            "piezoelectric",
+        ),
         "poling or a bias voltage": ("piezoelectric",),
         "unequal areas of the piston": ("hydraulic",),
         "cooling that is not heating reversed": ("thermal",),

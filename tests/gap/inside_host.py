@@ -5,7 +5,7 @@ from functools import partial
 from hystbench.gap.inside.search import laws_for, singles, together
 
 
-def search(host, score, offered=None, turns=False):
+def search(host, score, offered=None, turns=False, other=None):
     """Give the host alone first; then every other with the score that was reached."""
     offer = partial(laws_for, offered=offered, turns=turns)
-    return together(singles(host, offer, score), offer, score)
+    return together(singles(host, offer, score, other=other), offer, score)

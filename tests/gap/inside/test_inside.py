@@ -5,12 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.blocks.gain import Gain
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import best_host, is_seen_moving, one_coordinate
+from hystbench.gap.inside.search import (
+    Hypothesis,
+    how_it_moves,
+    laws_for,
+    starts,
+)
 from hystbench.gap.records.evidence import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.sample import Sample
@@ -58,6 +65,20 @@ def test_friction_of_a_device_that_is_moved_is_found_with_its_numbers(found):
 def test_a_host_without_a_force_stands_first(found):
     assert found[0].effects == ()
     assert found[0].score > min(item.score for item in found) + 100
+
+
+def test_a_law_promises_what_its_numbers_do_that_start_at_zero():
+    """A spring that is stiffer on one side has a square; its fit starts without."""
+    x = 5.0 * np.sin(7 * TIME) + 1.5 * np.sin(19 * TIME)
+    y = 2.0 * x + 0.1 * np.gradient(x, DT) + 0.05 * x**2
+    given = (record("one", x, y + NOISE * np.sin(TIME**2 * 99)),)
+    begun = list(one_coordinate(given, Quantities("position", "force"), "linear"))
+    score = Score(begun[0].sample, np.zeros((len(begun[0].sample), 0)), NOISE**2)
+    host = best_host(begun, score)
+    laws = laws_for(host)["stiffness-hardening"]
+    put_in = starts(Hypothesis((), (), host), "stiffness-hardening", laws, score)
+    promised = {item.forms: item.score for item in put_in}
+    assert promised["square and cube",] < promised["cube",] - 200
 
 
 def test_a_store_has_no_impedance():
@@ -178,6 +199,41 @@ def test_a_limit_of_the_amplifier_before_a_mass_on_a_spring_is_found_there():
     limit, *_ = best.fitted.state.chain
     assert limit.limit == pytest.approx(3.0, rel=0.02)
     assert best.fitted.state.added[0].place == "before"
+
+
+def test_a_force_by_the_square_of_a_current_is_found_before_a_mass_on_a_spring():
+    random = np.random.default_rng(7)
+    records = []
+    for size in (0.2, 0.5):
+        u = 1.0 + size * np.repeat(random.uniform(-1, 1, 160), 10)
+        q, v, out = 3.0 * u[0] ** 2 / 60.0, 0.0, []
+        for current in np.repeat(u, 20):
+            out.append(q)
+            v += DT / 20 * (3.0 * current**2 - 1.5 * v - 60.0 * q)
+            q += DT / 20 * v
+        noise = 1e-4 * random.standard_normal(1600)
+        records.append(record(f"{size:g}", u, np.array(out[::20]) + noise, ("A", "m")))
+    host, score = hosted(records, 1e-4)
+    best = min(search(host, score), key=lambda x: x.score)
+    assert best.effects == ("asymmetry",)
+    assert best.fitted.state.added[0].place == "before"
+    # What u + c u^2 bends by, over what it rises by, is that of u^2 about one ampere.
+    coefficient = best.fitted.state.chain[0].coefficient
+    assert coefficient / (1 + 2 * coefficient) == pytest.approx(0.5, rel=0.05)
+
+
+def test_how_far_a_mass_goes_is_counted_behind_what_stands_before_it():
+    """Else a further force would begin at a reach that is not the motion's."""
+    u = np.sin(TIME)
+    given = (record("sine", u, u, ("A", "m")),)
+    machine = Mechanism(mass=1.0, damping=2.0, stiffness=60.0)
+    plain, tenfold = (
+        how_it_moves(ModelState(chain, given, Sample.of(given)), False)
+        for chain in ((machine,), (Gain(value=10.0), machine))
+    )
+    assert tenfold.reach == pytest.approx(10 * plain.reach)
+    assert tenfold.speed == pytest.approx(10 * plain.speed)
+    assert tenfold.force == pytest.approx(10 * plain.force)
 
 
 def test_a_slider_without_a_clearance_is_friction_and_no_rival_of_it():

@@ -1,13 +1,16 @@
 """Effects of stores: two tanks, written here by small steps of Euler."""
 
+from itertools import islice
+
 import numpy as np
 import pytest
 
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.hosts import best_host
+from hystbench.gap.inside.hosts import best_host, hosts
 from hystbench.gap.inside.name import chosen
 from hystbench.gap.inside.stores import stores
+from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import search
 
@@ -16,19 +19,19 @@ NOISE = 0.02
 CHANNELS = Channel("pump", "V"), Channel("level", "V")
 
 
-def tanks(root, height, seed=3):
+def tanks(root, height, seed=3, powers=None, rates=None):
     """One tank above another; what the upper one spills is lost."""
     rng = np.random.default_rng(seed)
     u = np.clip(3 + np.repeat(rng.normal(0, 1.5, COUNT // 20), 20), 0, 7)
     upper, lower, out = 60.0, 50.0, []
-    power = 0.5 if root else 1.0
-    rates = (0.35, 0.3) if root else (0.04, 0.03)
+    powers = powers or ((0.5, 0.5) if root else (1.0, 1.0))
+    rates = rates or ((0.35, 0.3) if root else (0.04, 0.03))
     step = DT / FINE
     for flow in u:
         out.append(lower)
         for _ in range(FINE):
-            leaves = rates[0] * max(upper, 0.0) ** power
-            lower += step * (leaves - rates[1] * max(lower, 0.0) ** power)
+            leaves = rates[0] * max(upper, 0.0) ** powers[0]
+            lower += step * (leaves - rates[1] * max(lower, 0.0) ** powers[1])
             upper = min(upper + step * (flow - leaves), height)
     noise = NOISE * rng.standard_normal(COUNT)
     y = np.array(out) / 20
@@ -50,6 +53,28 @@ def test_an_outflow_by_the_root_of_the_level_is_named():
                for store in best.fitted.state.chain)  # fmt: skip
     left = np.sqrt(np.mean(best.fitted.state.residual**2))
     assert left < 1.5 * NOISE
+
+
+@pytest.mark.parametrize("powers", [(1.0, 0.5), (0.5, 1.0)])
+def test_the_law_may_be_in_either_of_a_slow_and_a_fast_store(powers):
+    """Linear, either order does the same: the host cannot tell which is which."""
+    slow, fast = 0.2, 0.06  # the root's is the slow one at these levels
+    rates = (fast, slow) if powers[0] == 1.0 else (slow, fast)
+    record = tanks(root=None, height=np.inf, powers=powers, rates=rates)
+    begun = next(stores((record,), "zero-order", NOISE, 2))
+    score = Score(begun.sample, np.zeros((COUNT, 0)), NOISE**2)
+    every = islice(hosts(begun, Quantities(output="level"), True, score), 3)
+    best = min(
+        (
+            chosen(search(host.fitted, score, other=host.other), score.floor)
+            for host in every
+        ),
+        key=lambda item: item.score,
+    )
+    assert best.effects == ("outflow",)
+    found = [store.exponent for store in best.fitted.state.chain]
+    assert found == pytest.approx(powers, abs=0.1)
+    assert np.sqrt(np.mean(best.fitted.state.residual**2)) < 1.5 * NOISE
 
 
 def test_overflow_is_named_and_goes_out_again():

@@ -15,8 +15,16 @@ from hystbench.gap.naming.rank import (
     rank,
 )
 from hystbench.gap.naming.rounds import Candidate
+from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import CERTAIN, LOOSE, PAYS
-from tests.gap.small import block, measured, plain_score, records, state_of
+from tests.gap.small import (
+    block,
+    chains,
+    measured,
+    plain_score,
+    records,
+    state_of,
+)
 
 NOISE = 0.02
 
@@ -85,6 +93,19 @@ def test_a_corner_of_the_field_is_the_limit_of_the_drive():
     assert first.effect == "drive-saturation"
     assert soft.effect == "saturation"
     assert "sharpness = 20" in soft.declined
+
+
+@pytest.mark.parametrize("share", [0.8, 0.2])
+def test_a_linear_base_may_saturate_behind_what_moves(share):
+    """Whether the records meet the level seldom or nearly always."""
+    moved = chains()["mode inside"]
+    level = share * Simulation(moved, records()).largest(len(moved))
+    bent = (*moved, block("saturation", level=level))
+    first, *_ = ranked(bent, moved, ("saturation", "sensor-nonlinearity"))
+    assert first.effect == "saturation"
+    (place,) = first.state.added[0].blocks
+    assert place == len(moved)
+    assert first.state.chain[place].level == pytest.approx(level, rel=0.02)
 
 
 def test_one_that_was_not_judged_on_records_held_back_is_never_first(monkeypatch):

@@ -14,6 +14,7 @@ from hystbench.gap.effects.base import (
     logarithmic,
     places_inside,
 )
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
 
@@ -38,6 +39,11 @@ class Asymmetry(Effect):
             yield self._bias(simulation, simulation.hysteresis)
             yield self._square(simulation, simulation.hysteresis, "square of the field")
             yield self._butterfly(simulation, simulation.hysteresis)
+
+    def inside(self, moved: Moved) -> Iterator[Law]:
+        """Offer the square before the mechanism: a force by the square of a current."""
+        for sign in (1.0, -1.0):
+            yield self.curve("before", "square", coefficient=sign * 0.1 / moved.given)
 
     def _square(self, simulation: Simulation, place: int, form: str) -> Variant:
         unit = {"coefficient": 1e-3 / simulation.largest(place)}

@@ -6,11 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hystbench.blocks.gain import Gain
 from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
 from hystbench.gap.simulation.simulation import Simulation
 
 SOFTEST, SHARPEST = 1.0, 20.0
 """Froelich's law of magnetisation; a curve within 3.4 % of a corner."""
+STRONGEST = 0.1
+"""Share of the largest signal that the level may be: it is met nearly always."""
 WEAKEST = 1000.0
 """Largest signals that the level may be of the softest law, whose curve is nearest."""
 
@@ -23,11 +26,15 @@ class Saturation(Effect):
     place = "material"
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
-        """Offer levels from half to thirty times the largest signal there.
+        """Offer levels from a tenth to thirty times the largest signal there.
 
-        Of the output, or of the field that drives the hysteresis.
+        Of the output, or of the field that drives the hysteresis. A linear base does
+        not say where in it the material is: before it, inside or behind it.
         """
-        for place in (simulation.behind_hysteresis, *places_inside(simulation)):
+        places = {simulation.behind_hysteresis, *places_inside(simulation)}
+        if simulation.loop is None and not _is_static(simulation):
+            places.add(simulation.behind_mechanics)
+        for place in sorted(places):
             yield from self._at(simulation, place)
         if simulation.hysteresis is not None:
             yield from self._at(simulation, simulation.hysteresis, "field")
@@ -36,7 +43,7 @@ class Saturation(Effect):
         self, simulation: Simulation, place: int, of: str = ""
     ) -> Iterator[Variant]:
         largest = simulation.largest(place)
-        levels = logarithmic(0.5 * largest, 30 * largest, 5)
+        levels = logarithmic(STRONGEST * largest, 30 * largest, 5)
         yield self.inserted(simulation, place, form=of, grids={"level": levels})
         yield self.inserted(
             simulation,
@@ -47,9 +54,14 @@ class Saturation(Effect):
                 "sharpness": np.array([SOFTEST, 2.0, 3.0, 4.5, 8.0]),
             },
             limits={
-                "level": (0.5 * largest, WEAKEST * largest),
+                "level": (STRONGEST * largest, WEAKEST * largest),
                 "sharpness": (SOFTEST, SHARPEST),
             },
             # The field is the drive's: a corner there is the drive's limit.
             refused={"sharpness": "upper"} if of else {},
         )
+
+
+def _is_static(simulation: Simulation) -> bool:
+    """Tell whether a chain is gains alone: before and behind it is the same place."""
+    return all(isinstance(block, Gain) for block in simulation.chain)

@@ -26,7 +26,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.inside.modes import modes
-from hystbench.gap.inside.stores import stores
+from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.records.sample import Sample, rms
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
@@ -58,11 +58,15 @@ class Host:
         The same, its numbers fitted to the records: what forces are put in.
     words : str
         How it stands in place of the base.
+    other : ModelState, optional
+        What forces are put in instead: as good while linear, and not fitted, as a fit
+        would come back.
     """
 
     alone: ModelState
     fitted: Fitted
     words: str
+    other: ModelState | None = None
 
 
 def hosts(
@@ -92,8 +96,12 @@ def hosts(
         for count, words in STORES.items():
             begun = stores(start.records, start.hold, noise, count)
             best = best_host(list(begun), score)
-            if best is not None:
-                yield Host(best.state, best, f"{words} in place of the base")
+            if best is None:
+                continue
+            words = f"{words} in place of the base"
+            yield Host(best.state, best, words)
+            for other in in_other_order(best.state):
+                yield Host(best.state, best, words, other)
     if identified and not of_many_modes(start):
         begun = one_coordinate(start.records, quantities, start.hold)
         best = best_host(list(begun), score)

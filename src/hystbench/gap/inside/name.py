@@ -91,7 +91,7 @@ def named_inside(
     offer = partial(laws_for, turns=turns, offered=start.offered)
     tried = []
     for host in hosts(fewer, quantities, identified, score):
-        found = singles(host.fitted, offer, score, say)
+        found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
         if not may_gain(chosen(found, score.floor), score):
             break  # no other host could do better

@@ -22,6 +22,7 @@ from hystbench.gap.inside.put_in import evened, is_host, with_law
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
+from hystbench.record import FloatArray
 
 SINGLES, PAIRS = 4, 2
 """Of them, so many are carried into pairs and into threes: forces that gain little
@@ -84,11 +85,19 @@ def laws_for(
 
 
 def singles(
-    host: Fitted, offer: Offer, score: Score, say: Say = silent
+    host: Fitted,
+    offer: Offer,
+    score: Score,
+    say: Say = silent,
+    other: ModelState | None = None,
 ) -> list[Hypothesis]:
-    """Try each force alone: the host without one first, then the least score."""
+    """Try each force alone: the host without one first, then the least score.
+
+    Forces are put into the host, or into another model that is as good without them.
+    """
     alone = Hypothesis((), (), host)
-    return [alone, *_one_more([alone], offer, score, SINGLES, host.score, say)]
+    begun = replace(alone, fitted=host if other is None else replace(host, state=other))
+    return [alone, *_one_more([begun], offer, score, SINGLES, host.score, say)]
 
 
 def together(
@@ -171,8 +180,9 @@ def starts(
 ) -> Iterator[Hypothesis]:
     """Put a further force inside, by each law and start, with the score to be expected.
 
-    The residual is explained by what the force does as it starts, as one column, and
-    by what changes of all numbers do, by least squares.
+    The residual is explained by what the force does as it starts, as one column, by
+    what each of its numbers does that starts at zero, which that column does not hold,
+    and by what changes of all other numbers do, by least squares.
     """
     state = before.fitted.state
     tangents, weights = state.tangents, by_record(state)
@@ -186,7 +196,8 @@ def starts(
             begun = evened(begun)
         if not np.all(np.isfinite(begun.residual)):
             continue
-        columns = np.column_stack([tangents, state.residual - begun.residual])
+        does = state.residual - begun.residual
+        columns = np.column_stack([tangents, does, of_zeros(begun)])
         sizes = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
         scaled = columns / sizes
         found, *_ = np.linalg.lstsq(
@@ -196,6 +207,13 @@ def starts(
         expected = score.of(rest, begun.freedom)
         effects, forms = (*before.effects, effect), (*before.forms, law.form)
         yield Hypothesis(effects, forms, Fitted(begun, expected))
+
+
+def of_zeros(begun: ModelState) -> FloatArray:
+    """Give the slopes by the numbers of what was put in last that start at zero."""
+    own = begun.added[-1].blocks
+    zeros = (x for x in begun.free if x.block in own and begun.value(x) == 0.0)
+    return replace(begun, free=tuple(zeros)).tangents
 
 
 def fitted_likely(
@@ -315,14 +333,15 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
 
 def how_it_moves(state: ModelState, turns: bool) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
-    host: Any = next(block for block in state.chain if is_host(block))
+    place = next(k for k, block in enumerate(state.chain) if is_host(block))
+    host: Any = state.chain[place]
     reach = speed = force = 0.0
-    for record in state.records:
-        motion = host.motion(record.u, record.dt, ())
+    for record, z in zip(state.records, state.simulation.at(place), strict=True):
+        motion = host.motion(z, record.dt, ())
         q = motion.position
         reach = max(reach, float(np.ptp(q)) / 2)
         speed = max(speed, float(np.max(np.abs(motion.velocity))))
-        driving = record.y if host.name == "impedance" else record.u
+        driving = record.y if host.name == "impedance" else z
         force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
     tiny = 1.0 / HUGE
     step = min(record.dt for record in state.records)

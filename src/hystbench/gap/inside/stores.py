@@ -98,6 +98,26 @@ def _chain(
     return (upper, Store(gain=size, rate=rates[1], exponent=1.0, hold=between))
 
 
+def in_other_order(state: ModelState) -> Iterator[ModelState]:
+    """Give two stores in series with the slower and the faster one exchanged.
+
+    While both are linear either order does the same but for how it starts. With a law
+    inside one of them it does not, and no fit leads from one order to the other.
+    """
+    if len(state.chain) != 2:
+        return
+    upper, last = state.chain
+    assert isinstance(upper, Store)  # noqa: S101  (for the type checker)
+    assert isinstance(last, Store)  # noqa: S101  (for the type checker)
+    ratio = upper.rate / last.rate
+    level = upper.start_level * ratio  # as much flows out of it at first
+    upper, last = (
+        replace(upper, rate=last.rate, start_level=level),
+        replace(last, rate=upper.rate, gain=last.gain * ratio),
+    )
+    yield state.with_chain((upper, last))
+
+
 def how_it_fills(state: ModelState) -> Filled:
     """Look how high the stores of a chain are filled on its records."""
     tops = []
