@@ -17,7 +17,7 @@ from hystbench.gap.naming import rank as ranked
 from hystbench.gap.naming.rank import make_score, on_folds, rank
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.records.folds import make_folds
-from hystbench.gap.thresholds import CERTAIN, PAYS
+from hystbench.gap.thresholds import CERTAIN, PAYS, SCALE
 from tests.gap.made import multisine, record, steady
 from tests.gap.small import block, plain_score, state_of
 
