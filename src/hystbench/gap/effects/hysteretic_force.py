@@ -29,7 +29,7 @@ class HystereticForce(ForceEffect):
             ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
             yield Law("Bouc-Wen", block, names, ranges=ranges)
         # Beyond such a beta it would slide on nearly all of its way.
-        stiffness = moved.stiffness or moved.force / moved.reach
+        stiffness = max(moved.stiffness, moved.force / moved.reach)
         stiffens = {
             "beta": (0.0, 1.0 / (SLIDES * moved.reach)),
             "gamma": (-np.inf, 0.0),
