@@ -46,11 +46,10 @@ class HystereticForce(ForceEffect):
                 tuple(wen),
                 ranges=stiffens,
             )
+        plays = ("stiffness", "slip_distance", "exponent")
         for share, way in ((0.1, 0.3), (0.3, 1.0)):
-            iwan = {
-                "stiffness": share * stiffness,
-                "slip_distance": way * moved.reach,
-                "exponent": 0.0,
-            }
+            iwan = IwanForce(
+                stiffness=share * stiffness, slip_distance=way * moved.reach
+            )
             ranges = {"slip_distance": (SLIDES * moved.reach, np.inf)}
-            yield Law("plays", IwanForce(**iwan), tuple(iwan), ranges=ranges)
+            yield Law("plays", iwan, plays, ranges=ranges)
