@@ -29,7 +29,7 @@ class HystereticForce(ForceEffect):
             ranges = {"yield_distance": (SLIDES * moved.reach, np.inf)}
             yield Law("Bouc-Wen", block, names, ranges=ranges)
         # Beyond such a beta it would slide on nearly all of its way.
-        stiffness = moved.stiffness or moved.force / moved.reach
+        stiffness = max(moved.stiffness, moved.force / moved.reach)
         stiffens = {
             "beta": (0.0, 1.0 / (SLIDES * moved.reach)),
             "gamma": (-np.inf, 0.0),
@@ -46,11 +46,10 @@ class HystereticForce(ForceEffect):
                 tuple(wen),
                 ranges=stiffens,
             )
+        plays = ("stiffness", "slip_distance", "exponent")
         for share, way in ((0.1, 0.3), (0.3, 1.0)):
-            iwan = {
-                "stiffness": share * stiffness,
-                "slip_distance": way * moved.reach,
-                "exponent": 0.0,
-            }
+            iwan = IwanForce(
+                stiffness=share * stiffness, slip_distance=way * moved.reach
+            )
             ranges = {"slip_distance": (SLIDES * moved.reach, np.inf)}
-            yield Law("plays", IwanForce(**iwan), tuple(iwan), ranges=ranges)
+            yield Law("plays", iwan, plays, ranges=ranges)
