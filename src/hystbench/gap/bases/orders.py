@@ -209,18 +209,27 @@ def fewest(found: Found, best: Least, step: float | None) -> Found:
         is tried.
     """
     tried = _shorter(found, best)
+    motion = found.orders.evidence.quantities.causality == "force to motion"
     for plain in tried[-2:]:
         timed = None if step is None else in_time(plain, step)
-        if timed is not None and best.met_by(timed):
-            best = Least.of([best, timed])
-            order, zeros = len(timed.ratio.a), len(timed.ratio.b) - 1
-            lower = (
-                timed.orders.of(k, min(k, zeros))
-                for k in range(1, min(order, HIGHEST + 1))
-            )  # poles may have stood for the sample
-            found = next((item for item in lower if best.met_by(item)), timed)
-            return _last_met(_shorter(found, best), best)
+        if timed is None or not best.met_by(timed):
+            continue
+        simpler = _simpler(timed, Least.of([best, timed]))
+        # What grows with the frequency, as the force on a mass that is moved, asks for
+        # poles that would have to come early: no timing makes up for that.
+        if motion or len(simpler.ratio.b) <= len(simpler.ratio.a):
+            return simpler
     return _last_met(tried, best)
+
+
+def _simpler(timed: Found, best: Least) -> Found:
+    """Leave out the poles and zeros that stood for the sample."""
+    order, zeros = len(timed.ratio.a), len(timed.ratio.b) - 1
+    lower = (
+        timed.orders.of(k, min(k, zeros)) for k in range(1, min(order, HIGHEST + 1))
+    )
+    found = next((item for item in lower if best.met_by(item)), timed)
+    return _last_met(_shorter(found, best), best)
 
 
 def _shorter(found: Found, best: Least) -> list[Found]:
