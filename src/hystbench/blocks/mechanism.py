@@ -163,48 +163,46 @@ class Mechanism(HeldBlock):
         others : sequence of (Mechanism, ndarray, tuple of Force)
             Of the same forces, with other numbers.
         """
-        every: list[Near] = [(self, z, forces), *others]
+        hosts = (self, *(host for host, _, _ in others))
+        signals = (z, *(own for _, own, _ in others))
+        numbers = np.array([rows(own) for own in (forces, *(x for _, _, x in others))])
         path, before = path_from(z, self.start)
         lines, fine = held_lines(path, self.holding)
         n, step, parts = len(lines), dt / fine, self._parts(dt / fine, forces)
-        p, numbers = np.empty((len(every), n)), np.stack([rows(x) for *_, x in every])
-        steps = np.empty((len(every), 2, 2, 4))
-        q, v, force = np.zeros((3, len(every), n))
-        if n == 0:
-            return [Motion(*x) for x in zip(q, v, q, force, strict=True)]
-        for k, (host, own_z, _) in enumerate(every):
-            own, own_before = lines, before
-            if own_z is not z:
-                path, own_before = path_from(own_z, self.start)
-                own, _ = held_lines(path, self.holding)
-            p[k] = host.gain * own + host.bias
-            steps[k] = host._steps(step / parts)
+        gain, bias, mass, damping, stiffness = np.array(
+            [[x.gain, x.bias, x.mass, x.damping, x.stiffness] for x in hosts]
+        ).T[..., None]
+        q, v, force = np.zeros((3, len(hosts), n))
+        p = gain * lines + bias
+        for k, host in enumerate(hosts if n else ()):
+            first = before
+            if signals[k] is not z:
+                own, first = path_from(signals[k], self.start)
+                p[k] = host.gain * held_lines(own, self.holding)[0] + host.bias
             q[k, 0], v[k, 0] = host.start_position, host.start_velocity
             if self.start != "rest":
-                q[k, 0] += host._balance(host.gain * own_before + host.bias, numbers[k])
-        kernels.call(
-            "hb_mechanism",
-            n,
-            len(others),
-            parts,
-            step,
-            float(self.holding != "zero-order"),
-            steps,
-            numbers.shape[1],
-            numbers,
-            np.zeros(numbers.shape[:2]),
-            p,
-            q,
-            v,
-            force,
-        )
+                q[k, 0] += host._balance(host.gain * first + host.bias, numbers[k])
+        if n:
+            kernels.call(
+                "hb_mechanism",
+                n,
+                len(others),
+                parts,
+                step,
+                float(self.holding != "zero-order"),
+                np.array([host._steps(step / parts) for host in hosts]),
+                numbers.shape[1],
+                numbers,
+                np.zeros(numbers.shape[:2]),
+                p,
+                q,
+                v,
+                force,
+            )
+        curved = (p - damping * v - stiffness * q - force) / mass
         shown = slice((len(path) - len(z)) * fine, None, fine)
-        found = []
-        for k, (host, _, _) in enumerate(every):
-            spring = host.damping * v[k] + host.stiffness * q[k] + force[k]
-            curved = (p[k] - spring) / host.mass
-            found.append(Motion(*(x[shown] for x in (q[k], v[k], curved, force[k]))))
-        return found
+        moves = (x[:, shown] for x in (q, v, curved, force))
+        return [Motion(*each) for each in zip(*moves, strict=True)]
 
     def step(self, sampling: Sampling) -> Step:
         """Move the coordinate over the interval that has passed."""

@@ -62,7 +62,7 @@ def fitted(
     """
     if not state.free:
         return Fitted(state, judged(state, score))
-    from scipy.optimize import least_squares  # late: a start alone needs none of it
+    from scipy.optimize import leastsq  # late: a start alone needs none of it
 
     sizes = _sizes(state)
     logs = np.array([_positive(state, free) for free in state.free], dtype=bool)
@@ -75,7 +75,7 @@ def fitted(
         return np.where(logs, values * times, values + point * sizes)
 
     def moved(point: FloatArray) -> ModelState:
-        return at_values(state, values_at(point))
+        return at_values(state, values_at(point)) if point.any() else state
 
     def weighed(rest: FloatArray) -> FloatArray:
         rest = rest * weights
@@ -92,17 +92,19 @@ def fitted(
         now, *others = (weighed(state.reference - output) for output in found)
         return np.column_stack([(other - now) / STEP for other in others])
 
-    found = least_squares(
+    start = np.zeros(len(values))
+    first = slopes(start)  # MINPACK's wrapper asks for it once more, to see its shape
+    point, *_ = leastsq(
         residual,
-        np.zeros(len(values)),
-        slopes,
-        method="lm",  # a trust region would take a singular value decomposition a step
-        x_scale=np.full(len(values), REACH / FACTOR),
-        max_nfev=evaluations,
+        start,
+        Dfun=lambda point: slopes(point) if point.any() else first,
+        full_output=True,
+        maxfev=evaluations,
         xtol=SMALL,
         ftol=SMALL,
+        diag=np.full(len(values), FACTOR / REACH),
     )
-    best = moved(found.x)
+    best = moved(point)
     return Fitted(best, judged(best, score))
 
 
