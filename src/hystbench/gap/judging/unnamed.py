@@ -24,7 +24,7 @@ RELATED = 0.1
 """Share of what stays that must follow known signals, to be called by their sort."""
 
 SORTS = {
-    "strength": "its strength changes with time or between records",
+    "strength": "its strength changes with time or between records, perhaps with level",
     "history": "it depends on how hard the device was driven before",
     "memory": "it has memory or delay of another kind",
     "curve": "it is a curve or a loop of another kind",
