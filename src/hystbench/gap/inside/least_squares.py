@@ -10,6 +10,7 @@ import numpy as np
 from hystbench.errors import InputError
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
+from hystbench.gap.thresholds import SCALE
 from hystbench.record import FloatArray
 
 EVALUATIONS = 100
@@ -106,6 +107,18 @@ def fitted(
     )
     best = moved(point)
     return Fitted(best, judged(best, score))
+
+
+def fitted_to_the_end(state: ModelState, score: Score) -> Fitted:
+    """Fit as :func:`fitted`, again from there while the score falls by what matters.
+
+    Each record counts by what was left of it before a fit: where that changed much, the
+    next one weighs otherwise.
+    """
+    best = fitted(state, score)
+    while (again := fitted(best.state, score)).score < best.score - SCALE:
+        best = again
+    return best
 
 
 def judged(state: ModelState, score: Score) -> float:

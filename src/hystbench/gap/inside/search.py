@@ -17,7 +17,14 @@ from hystbench.gap.effects.law import Changed, Law, Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
-from hystbench.gap.inside.least_squares import QUICK, Fitted, by_record, fitted, judged
+from hystbench.gap.inside.least_squares import (
+    QUICK,
+    Fitted,
+    by_record,
+    fitted,
+    fitted_to_the_end,
+    judged,
+)
 from hystbench.gap.inside.put_in import evened, is_host, with_law
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.progress import Say, silent
@@ -306,7 +313,10 @@ def fitted_each(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
 
 def _to_the_end(begun: Iterable[Hypothesis], score: Score) -> list[Hypothesis]:
     """Fit hypotheses to the end; the least score first, none that runs away."""
-    done = [replace(item, fitted=fitted(item.fitted.state, score)) for item in begun]
+    done = [
+        replace(item, fitted=fitted_to_the_end(item.fitted.state, score))
+        for item in begun
+    ]
     kept = (
         item for item in done if np.isfinite(item.score) and not _vanishes(item, score)
     )
