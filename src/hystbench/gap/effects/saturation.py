@@ -12,8 +12,9 @@ from hystbench.gap.simulation.simulation import Simulation
 
 SOFTEST, SHARPEST = 1.0, 20.0
 """Froelich's law of magnetisation; a curve within 3.4 % of a corner."""
-STRONGEST = 0.1
-"""Share of the largest signal that the level may be: it is met nearly always."""
+STRONG, STRONGEST = 0.5, 0.1
+"""Share of the largest signal that the level may be; behind a linear base, which may
+follow the curve nearly everywhere, where it is met nearly always."""
 WEAKEST = 1000.0
 """Largest signals that the level may be of the softest law, whose curve is nearest."""
 
@@ -26,7 +27,7 @@ class Saturation(Effect):
     place = "material"
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
-        """Offer levels from a tenth to thirty times the largest signal there.
+        """Offer levels from half, or a tenth, to thirty times the largest signal there.
 
         Of the output, or of the field that drives the hysteresis. A linear base does
         not say where in it the material is: before it, inside or behind it.
@@ -43,7 +44,8 @@ class Saturation(Effect):
         self, simulation: Simulation, place: int, of: str = ""
     ) -> Iterator[Variant]:
         largest = simulation.largest(place)
-        levels = logarithmic(STRONGEST * largest, 30 * largest, 5)
+        least = (STRONGEST if simulation.loop is None else STRONG) * largest
+        levels = logarithmic(least, 30 * largest, 5)
         yield self.inserted(simulation, place, form=of, grids={"level": levels})
         yield self.inserted(
             simulation,
@@ -54,7 +56,7 @@ class Saturation(Effect):
                 "sharpness": np.array([SOFTEST, 2.0, 3.0, 4.5, 8.0]),
             },
             limits={
-                "level": (STRONGEST * largest, WEAKEST * largest),
+                "level": (least, WEAKEST * largest),
                 "sharpness": (SOFTEST, SHARPEST),
             },
             # The field is the drive's: a corner there is the drive's limit.
