@@ -138,8 +138,9 @@ def identified_linear(evidence: Evidence) -> Linear:
             chain, fit, more = halves
             note += more
     if orders.late:
+        half = "half " if abs(orders.late) < 1 else ""
         when = "late" if orders.late > 0 else "early"
-        note += f"; its input is taken {abs(orders.late):g} of a sample {when}"
+        note += f"; its input is taken {half}a sample {when}"
         delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.hold)
         chain = (delay, *chain)
     model = Model(LINEAR, evidence.input, evidence.output, chain)
