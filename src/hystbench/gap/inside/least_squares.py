@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +18,8 @@ QUICK = 15
 """The same where starts are compared."""
 STEP = 1e-5
 """Share of its size by which a number moves for a derivative."""
+NOTHING = 1e-6
+"""By how much one moves that is zero."""
 REACH = 1.0
 """How far the first step may go: numbers change by a factor of e, or by their size."""
 FACTOR = 100.0
@@ -65,9 +66,11 @@ def fitted(
         return Fitted(state, judged(state, score))
     from scipy.optimize import leastsq  # late: a start alone needs none of it
 
-    sizes = _sizes(state)
     logs = np.array([_positive(state, free) for free in state.free], dtype=bool)
     values = np.array([state.value(free) for free in state.free])
+    steps = np.where(values == 0.0, NOTHING, STEP * np.abs(values))
+    tangents = _tangents(state, steps)
+    sizes = np.where(logs, values, _sizes(state, values, tangents))
     weights = by_record(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
@@ -78,27 +81,25 @@ def fitted(
     def moved(point: FloatArray) -> ModelState:
         return at_values(state, values_at(point)) if point.any() else state
 
-    def weighed(rest: FloatArray) -> FloatArray:
-        rest = rest * weights
-        return np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
-
     def residual(point: FloatArray) -> FloatArray:
         try:
-            return weighed(moved(point).residual)
+            rest = moved(point).residual * weights
         except InputError:
             return most  # out of what the blocks accept
+        return np.where(np.isfinite(rest), np.clip(rest, -most, most), most)
 
     def slopes(point: FloatArray) -> FloatArray:
-        found = outputs_near(moved(point), dict(enumerate(values_at(point + STEP))))
-        now, *others = (weighed(state.reference - output) for output in found)
-        return np.column_stack([(other - now) / STEP for other in others])
+        # MINPACK's wrapper asks for the first ones once more, to see their shape.
+        scale, own = sizes, tangents
+        if point.any():
+            scale = np.where(logs, values_at(point), sizes)
+            own = _tangents(moved(point), STEP * scale)
+        return -weights[:, None] * own * scale
 
-    start = np.zeros(len(values))
-    first = slopes(start)  # MINPACK's wrapper asks for it once more, to see its shape
     point, *_ = leastsq(
         residual,
-        start,
-        Dfun=lambda point: slopes(point) if point.any() else first,
+        np.zeros(len(values)),
+        Dfun=slopes,
         full_output=True,
         maxfev=evaluations,
         xtol=SMALL,
@@ -140,28 +141,21 @@ def at_values(state: ModelState, values: FloatArray) -> ModelState:
     return state.with_chain(state.chain_at(dict(enumerate(values.tolist()))))
 
 
-def outputs_near(state: ModelState, values: Mapping[int, float]) -> FloatArray:
-    """Simulate a model, and with each of some free numbers at a value near its own.
+def _tangents(state: ModelState, steps: FloatArray) -> FloatArray:
+    """How the output changes with each free number, shape (scored samples, k).
 
-    With a value that a block does not take it is as it was.
-
-    Parameters
-    ----------
-    state : ModelState
-    values : mapping of int to float
-        By place in ``free``.
-
-    Returns
-    -------
-    ndarray, shape (1 + values, scored samples)
+    By differences of so much; none with a number that a block does not take, nor where
+    the motion runs away.
     """
     chains = []
-    for k, value in values.items():
+    for k, step in enumerate(steps.tolist()):
         try:
-            chains.append(state.chain_at({k: value}))
+            chains.append(state.moved({k: step}))
         except InputError:
             chains.append(state.chain)
-    return state.sample.take(state.simulation.near(chains)).T
+    found = state.sample.take(state.simulation.near(chains))
+    change = found[:, 1:] - found[:, :1]
+    return np.where(np.isfinite(change), change, 0.0) / steps
 
 
 def _positive(state: ModelState, free: Free) -> bool:
@@ -178,19 +172,12 @@ def by_record(state: ModelState) -> FloatArray:
     return weights
 
 
-def _sizes(state: ModelState) -> FloatArray:
+def _sizes(state: ModelState, values: FloatArray, tangents: FloatArray) -> FloatArray:
     """What is a large change of each number that may have either sign.
 
-    Its own value; of a zero, what moves the output by its own rms.
+    Its own value, or what moves the output by a tenth of its own rms.
     """
-    sizes = np.ones(len(state.free))
-    now = np.array([state.value(free) for free in state.free])
-    signed = [k for k, free in enumerate(state.free) if not _positive(state, free)]
-    steps = np.where(now == 0.0, 1e-6, 1e-3 * np.abs(now))
-    output, *others = outputs_near(state, {k: now[k] + steps[k] for k in signed})
-    rms = float(np.sqrt(np.mean(state.measured**2)))
-    for k, other in zip(signed, others, strict=True):
-        moved = float(np.sqrt(np.mean((other - output) ** 2)))
-        reach = rms * steps[k] / moved if np.isfinite(moved) and moved > 0 else 1.0
-        sizes[k] = max(abs(now[k]), 0.1 * reach) if now[k] else 0.1 * reach
-    return sizes
+    output = float(np.sqrt(np.mean(state.measured**2)))
+    moved = np.sqrt(np.mean(tangents**2, axis=0))
+    tenth = 0.1 * np.where(moved > 0, output / np.where(moved > 0, moved, 1.0), 1.0)
+    return np.where(values == 0.0, tenth, np.maximum(np.abs(values), tenth))
