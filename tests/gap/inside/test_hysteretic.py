@@ -6,6 +6,7 @@ import pytest
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.hosts import best_host, one_coordinate
 from hystbench.gap.records.sample import Sample
+from hystbench.gap.thresholds import SCALE
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import search
@@ -44,12 +45,16 @@ def records_of(held, spring):
 
 def best(held, spring=spring, offered=OFFERED):
     """Name the force in a linear host that was fitted to the records."""
+    return min(tried(held, spring, offered), key=lambda item: item.score)
+
+
+def tried(held, spring, offered):
+    """Put forces into a linear host that was fitted to the records."""
     records = tuple(records_of(held, spring))
     begun = one_coordinate(records, Quantities("force", "position"), "zero-order")
     sample = Sample.of(records)
     score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
-    found = search(best_host(list(begun), score), score, offered)
-    return min(found, key=lambda item: item.score)
+    return search(best_host(list(begun), score), score, offered)
 
 
 def stiffens(force, v):
@@ -94,3 +99,16 @@ def test_elements_that_slip_one_after_the_other_are_a_hysteretic_force():
     assert law.slip_distance == pytest.approx(0.3, rel=0.1)
     assert law.exponent == pytest.approx(0.0, abs=0.15)
     assert np.sqrt(np.mean(item.fitted.state.residual**2)) < 3 * NOISE
+
+
+def test_elements_that_all_slip_at_once_are_friction_and_clearly_so():
+    """One stop: friction that gives way by 0.05 before it slides at 2 N."""
+
+    def held(force, v):
+        return 0.0 if abs(force) >= 2.0 and force * v > 0 else 40.0 * v
+
+    found = tried(held, spring, ["friction", "hysteretic-force"])
+    scores = {item.effects: item.score for item in found}
+    rival = scores.pop(("hysteretic-force",))
+    assert min(scores, key=lambda effects: scores[effects]) == ("friction",)
+    assert rival > scores["friction",] + SCALE

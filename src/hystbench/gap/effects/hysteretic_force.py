@@ -12,6 +12,10 @@ from hystbench.blocks.iwan_force import IwanForce
 from hystbench.gap.effects.base import ForceEffect
 from hystbench.gap.effects.law import SLIDES, Law, Moved
 
+STEEPEST = 1.0
+"""Exponent of plays, at most. Of a joint it is below zero (Segalman); a large one makes
+one way at which all slip, which is dry friction that gives way."""
+
 
 class HystereticForce(ForceEffect):
     """Bouc and Wen's hysteresis as a force, or plays."""
@@ -51,5 +55,8 @@ class HystereticForce(ForceEffect):
             iwan = IwanForce(
                 stiffness=share * stiffness, slip_distance=way * moved.reach
             )
-            ranges = {"slip_distance": (SLIDES * moved.reach, np.inf)}
+            ranges = {
+                "slip_distance": (SLIDES * moved.reach, np.inf),
+                "exponent": (-np.inf, STEEPEST),
+            }
             yield Law("plays", iwan, plays, ranges=ranges)
