@@ -91,6 +91,7 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
         name
         for name in found.model.parameter_names()
         if not isinstance(value := found.model.value(name), str)
+        and not name.startswith("input-delay.")  # how records were stamped
         and not (
             name.endswith(".denominator") and len(np.atleast_1d(value)) > HIGHEST + 1
         )

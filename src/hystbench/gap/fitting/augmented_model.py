@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.blocks.parameter import SETTINGS
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added, ModelState, beside_count
 from hystbench.model import Model
@@ -76,7 +77,8 @@ def _names_now(base: Model, state: ModelState, labels: list[str]) -> dict[str, s
 
 
 def _numeric(model: Model, name: str) -> bool:
-    return not isinstance(model.value(name), str)
+    setting = name.rpartition(".")[2] in SETTINGS
+    return not setting and not isinstance(model.value(name), str)
 
 
 def places_of_base(state: ModelState) -> list[int | None]:
