@@ -69,7 +69,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     to 6 are fitted to the spectra first, then by least squares on simulation with the
     dataset's hold, without the first tenth of each record, and with an offset of each
     record where its zero is not physical. Where the folds ask for 5 or more, modes are
-    added one by one, up to order 12. The order is the lowest whose error is within 3 %
+    added one by one, up to order 12. The order is the lowest whose error is within 2 %
     of the best on folds of the fit records, or on all of them; then the numerator is
     shortened by the same rule, and the input may come up to a sample early or late.
     Where a motion makes a force, the impedance of a mass on a spring is tried as well.

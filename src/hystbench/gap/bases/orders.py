@@ -28,7 +28,7 @@ BEGUN_DAMPING = 0.01
 PEAKS = 3
 #: A number is needed if it lowers both errors, of fit and of folds, by more than this
 #: share: a gain on folds alone is their luck.
-PAYS = 0.03
+PAYS = 0.02
 #: Another timing of the input is one of a few and no number of its own: it is needed if
 #: it lowers the error by this share.
 TIMING_PAYS = 0.01
