@@ -29,6 +29,9 @@ PEAKS = 3
 #: A number is needed if it lowers both errors, of fit and of folds, by more than this
 #: share: a gain on folds alone is their luck.
 PAYS = 0.02
+#: A further one of many modes has a band of its own, of which it may take all while it
+#: takes little of the whole: it is needed from this share on.
+MODE_PAYS = 0.005
 #: Another timing of the input is one of a few and no number of its own: it is needed if
 #: it lowers the error by this share.
 TIMING_PAYS = 0.01
@@ -67,11 +70,10 @@ class Least(NamedTuple):
         """Give the least errors of some models."""
         return cls(min(x.fit for x in found), min(x.folds for x in found))
 
-    def met_by(self, item: Judged) -> bool:
+    def met_by(self, item: Judged, share: float = PAYS) -> bool:
         """Tell whether no more than a needless number would lower a model's errors."""
-        return not (
-            self.fit < (1 - PAYS) * item.fit and self.folds < (1 - PAYS) * item.folds
-        )
+        most = 1 - share
+        return not (self.fit < most * item.fit and self.folds < most * item.folds)
 
 
 class Found(NamedTuple):
@@ -177,7 +179,7 @@ class Orders:
             ]
             best = min(begun, key=lambda ratio: ratio.cost)
             further = self.judged(last.task, best)
-            if Least.of([further]).met_by(last):
+            if Least.of([further]).met_by(last, MODE_PAYS):
                 break
             found.append(further)
             last = further
