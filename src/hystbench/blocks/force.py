@@ -15,7 +15,7 @@ from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
-KINDS = (
+LAWS = (
     *("stiffness", "sinh", "stop", "friction"),
     *("drag", "hysteretic", "gravity", "slider", "smooth", "relaxation"),
 )
@@ -67,7 +67,7 @@ class Force(AttachedBlock):
 
     @abstractmethod
     def law(self) -> tuple[str, tuple[float, ...] | FloatArray]:
-        """Give the kernel's law, one of :data:`KINDS`, and its numbers.
+        """Give the kernel's law, one of :data:`LAWS`, and its numbers.
 
         Of a force that is the sum of several of one law, the numbers of each, a row for
         each.
@@ -83,7 +83,7 @@ class Force(AttachedBlock):
         kind, numbers = self.law()
         own = np.atleast_2d(np.asarray(numbers, dtype=np.float64))
         found = np.zeros((len(own), ROW))
-        found[:, 0] = KINDS.index(kind)
+        found[:, 0] = LAWS.index(kind)
         found[:, 1 : 1 + own.shape[1]] = own
         return found
 

@@ -272,7 +272,6 @@ def in_time(plain: Found, step: float) -> Found | None:
         return orders.judged(task, plain.ratio)
 
     best = min(late(-0.5), late(0.5), key=lambda item: item.fit)
-    half = best.orders.late
     if best.fit > plain.fit:
         return None
     half = best.orders.late
