@@ -211,7 +211,7 @@ def searched():
         return run_module.Outcome(fitted.base, decided, outputs)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run_module, "find", find)
+        patch.setattr(run_module, "search", find)
         patch.setattr(run_module, "outcome", outcome)
         yield calls
 

@@ -9,7 +9,7 @@ from hystbench.blocks.curve import finer
 from hystbench.blocks.simulated_column import SimulatedColumn
 from hystbench.errors import InputError
 from hystbench.gap import decision as decision_module
-from hystbench.gap.decision import decide, find
+from hystbench.gap.decision import judge_and_tell, search
 from hystbench.gap.effects import effects
 from hystbench.gap.experiment import tell_apart
 from hystbench.gap.experiment.excitations import Limits
@@ -47,9 +47,9 @@ def test_noise_alone_is_no_gap_only_where_the_noise_is_known():
     chain = (block("gain", value=12.0),)
     base = Model("base", CURRENT, DISPLACEMENT, chain)
     given = measured(chain, noise)
-    content = find("made", given, base, declared=noise).content
+    content = search("made", given, base, declared=noise).content
     assert content["verdict"] == "no-gap"
-    content = find("made", given, base).content
+    content = search("made", given, base).content
     assert content["verdict"] == "unnamed"
     assert "only an upper bound" in content["reason"]
 
@@ -92,7 +92,7 @@ def decided(alike, *names, base=None, limits=None):
     plain, start, floor, found = alike
     named = rounds_of(start, found, *names)
     base = plain if base is None else base
-    return decide("made", base, start, floor, named, limits=limits)
+    return judge_and_tell("made", base, start, floor, named, limits=limits)
 
 
 def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
@@ -122,7 +122,7 @@ def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypa
     base, start, _, _ = alike
     monkeypatch.setattr(decision_module, "name", lambda *given: pytest.fail("searched"))
     with pytest.raises(InputError, match="expected low < high"):
-        find("made", start.records, base, asked={"low": 1.0, "high": 0.5})
+        search("made", start.records, base, asked={"low": 1.0, "high": 0.5})
 
 
 def too_narrow(alike, names, monkeypatch):
@@ -176,7 +176,7 @@ def test_rivals_beside_what_is_new_in_every_record_are_told_apart_without_it(ali
         for name in ("drive-lag", "sensor-lag")
     }
     named = rounds_of(start, lags, "drive-lag", "sensor-lag")
-    beside = decide("made", base, start, floor, named).experiment
+    beside = judge_and_tell("made", base, start, floor, named).experiment
     plain = decided(alike, "drive-lag", "sensor-lag").experiment
     assert beside.left_out == ()
     assert beside.excitation.words == plain.excitation.words
@@ -229,7 +229,7 @@ def test_what_the_simulation_misses_by_its_steps_is_measured():
     chain = (hysteresis(),)
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     start, floor = start_state(measured(chain, 0.02), base, "band-limited", 0.02)
-    found = decide("made", base, start, floor, Named(start)).content["fit"]
+    found = judge_and_tell("made", base, start, floor, Named(start)).content["fit"]
     missed = []
     for one in start.records:
         fine = finer(one.u, 64)
@@ -240,7 +240,7 @@ def test_what_the_simulation_misses_by_its_steps_is_measured():
     gain = (block("gain", value=12.0),)
     base = Model("rig", CURRENT, DISPLACEMENT, gain)
     start, floor = start_state(measured(gain, 0.02), base, "band-limited", 0.02)
-    found = decide("made", base, start, floor, Named(start)).content["fit"]
+    found = judge_and_tell("made", base, start, floor, Named(start)).content["fit"]
     assert found["step_error"] == pytest.approx(0.0, abs=1e-9)
 
 
@@ -250,7 +250,7 @@ def test_the_ranking_tells_of_every_place_and_form():
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     curve = block("sensor-nonlinearity", quadratic=0.03, cubic=0.0)
     given = measured((hysteresis(), curve, lag), 0.02)
-    content = find("made", given, base, declared=0.02).content
+    content = search("made", given, base, declared=0.02).content
     rows = {row["name"]: row for row in content["ranking"] if row["round"] == 1}
     tried = rows["sensor-nonlinearity"]["variants"]
     # The square, the cube and both, behind the lag and before it.

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from hystbench.dataset import load_dataset
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.example import whole_period, write_example
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.measurement import measure
@@ -107,7 +107,7 @@ def named(settings, twin, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         # What would tell likely effects apart takes long and decides nothing.
         patch.setattr("hystbench.gap.decision.tell_apart", lambda *given: (None, ""))
-        content = find(evidence.name, evidence.fit, base, evidence.hold).content
+        content = search(evidence.name, evidence.fit, base, evidence.hold).content
     assert content["verdict"] == "named"
     return {item["name"]: item["parameters"] for item in content["effects"]}
 

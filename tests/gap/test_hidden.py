@@ -12,7 +12,7 @@ import pytest
 from hystbench.challenge.case import make_case
 from hystbench.challenge.plant.effects import VOCABULARY
 from hystbench.challenge.spec import CaseSpec
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.judging.unnamed import what_is_unnamed
@@ -108,7 +108,7 @@ def decided(monkeypatch):
     monkeypatch.setattr("hystbench.gap.decision.tell_apart", lambda *given: (None, ""))
 
     def decide(name, family):
-        return find("hidden", *hidden((name,), family)).content
+        return search("hidden", *hidden((name,), family)).content
 
     return decide
 

@@ -82,7 +82,7 @@ class Decision(FitResult):
     experiment: Experiment | None
 
 
-def find(
+def search(
     dataset: str,
     records: tuple[Record, ...],
     base: Model,
@@ -156,7 +156,9 @@ def find(
         own = theirs if inside is None else own
     if inside is not None:
         base, start, named = inside.base, inside.start, inside.named
-    found = decide(dataset, base, start, floor, named, say, limits, own, unnamed_share)
+    found = judge_and_tell(
+        dataset, base, start, floor, named, say, limits, own, unnamed_share
+    )
     if inside is None:
         return found
     reason = f"{found.content['reason']}; {inside.sentence}"
@@ -173,7 +175,7 @@ def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
     return after <= LOOSE * before
 
 
-def decide(
+def judge_and_tell(
     dataset: str,
     base: Model,
     start: ModelState,

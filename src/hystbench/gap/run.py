@@ -11,7 +11,7 @@ from pathlib import Path
 
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
-from hystbench.gap.decision import Decision, find
+from hystbench.gap.decision import Decision, search
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
@@ -155,7 +155,7 @@ def found_on_fit(
     can have.
     """
     base, built_in = put_in(base, evidence, vocabulary.fixed, say)
-    decision = find(
+    decision = search(
         evidence.name,
         evidence.fit,
         base,

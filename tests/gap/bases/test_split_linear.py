@@ -10,7 +10,7 @@ from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
 from hystbench.gap.bases.split_linear import _block
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import INSIDE
 from hystbench.gap.records.evidence import Evidence
@@ -115,7 +115,7 @@ def test_without_a_curve_inside_the_base_is_one_block():
 
 def test_the_curve_is_named_in_its_place(split, clipped_records):
     model = split[0].with_hold("band-limited")
-    found = find("made", clipped_records.fit, model)
+    found = search("made", clipped_records.fit, model)
     assert found.content["verdict"] == "named"
     first = found.content["effects"][0]
     assert (first["name"], first["place"]) == ("saturation", INSIDE)

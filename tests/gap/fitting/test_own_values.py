@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.own_values import NONE, Own, OwnValues, fitted, own_values
@@ -130,7 +130,7 @@ def values_of(content):
 
 
 def test_an_effect_is_named_beside_late_triggers():
-    content = find("made", made(DELAYS, LAG_S), rig(), declared=NOISE).content
+    content = search("made", made(DELAYS, LAG_S), rig(), declared=NOISE).content
     assert content["verdict"] == "named"
     (effect,) = content["effects"]
     # Behind a plain gain the lags are one and the same.

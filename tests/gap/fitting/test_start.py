@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.start import free_numbers, start_state
 from hystbench.model import Model
@@ -64,7 +64,7 @@ def test_a_gap_beyond_the_tolerance_is_not_put_down_to_parameters():
     given = measured((block("gain", value=12.0),), NOISE)
     for tolerance, word in ((0.2, "parameters"), (0.01, None)):
         model = base(chain, gain__value=tolerance)
-        content = find("made", given, model, declared=NOISE).content
+        content = search("made", given, model, declared=NOISE).content
         after = content["base_parameters"]["gain.value"]["after"]
         assert after <= 11.0 * (1 + tolerance) * (1 + 1e-12)
         assert (content["verdict"] == "parameters") == (word is not None)

@@ -15,7 +15,7 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.start import start_state
-from hystbench.gap.holdout.show import FAR, FitResult, bounded, reach, show
+from hystbench.gap.holdout.show import FAR, FitResult, bounded, reach, score_hold_out
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.evidence import Evidence
@@ -150,7 +150,7 @@ def test_a_base_that_runs_away_on_a_hold_out_record_is_refused_before_the_search
     def find(*given):
         pytest.fail("a search")
 
-    monkeypatch.setattr(run, "find", find)
+    monkeypatch.setattr(run, "search", find)
     chain = (
         block("gain", value=FORCE),
         block(
@@ -197,7 +197,7 @@ def test_what_is_beyond_any_use_runs_away_though_it_is_a_number(size):
     held = (record(u, 12 * u, name="far", use="hold-out"),)
     rungs = (Rung("base", start), Rung("asymmetry", after))
     box = black_box(compare(start), floor.rms)
-    shown = show(FitResult(base, after, floor, box, rungs), held)
+    shown = score_hold_out(FitResult(base, after, floor, box, rungs), held)
     assert [item["record"] for item in shown.content["runs_away"]] == ["far"]
     assert shown.content["runs_away"][0]["from_s"] == pytest.approx(0.3)
     assert np.isnan(shown.outputs[0][1]).all()
@@ -215,7 +215,7 @@ def test_a_simulator_may_refuse_what_an_effect_sends_it():
     )
     rungs = (Rung("base", start), Rung("asymmetry", after))
     box = black_box(compare(start), floor.rms)
-    shown = show(FitResult(base, after, floor, box, rungs), held)
+    shown = score_hold_out(FitResult(base, after, floor, box, rungs), held)
     (away,) = shown.content["runs_away"]
     assert (away["record"], away["from_s"]) == ("far", 0.0)
     assert "it raised ValueError: current beyond 1 A" in away["refused"]

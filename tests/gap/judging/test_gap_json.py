@@ -10,7 +10,7 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
@@ -207,7 +207,7 @@ def found_in(before, *behind):
     records = measured((before, *chain, *behind), 0.05)
     base = Model("rig", CURRENT, DISPLACEMENT, chain)
     # So little may stay that the search goes on to the last of them.
-    content = find("made", records, base, declared=0.05, unnamed_share=1e-4).content
+    content = search("made", records, base, declared=0.05, unnamed_share=1e-4).content
     return through_a_file(content)
 
 

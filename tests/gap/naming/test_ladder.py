@@ -4,9 +4,9 @@ from itertools import pairwise
 
 import pytest
 
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.fitting.state import Added, Free
-from hystbench.gap.holdout.show import show
+from hystbench.gap.holdout.show import score_hold_out
 from hystbench.gap.naming.ladder import BASE, RETUNED, rungs
 from hystbench.gap.naming.name import Named
 from hystbench.gap.naming.rounds import Round
@@ -92,13 +92,13 @@ def retuned():
     records = measured((block("gain", value=11.0),), noise=0.05)
     chain = (block("gain", value=10.0),)
     base = Model("base", CURRENT, DISPLACEMENT, chain, free=("gain.value",))
-    return base, find("made", records, base), records
+    return base, search("made", records, base), records
 
 
 def test_the_ladder_of_a_re_tuned_base_on_records_it_has_not_seen(retuned):
     _, found, _ = retuned
     held = measured((block("gain", value=11.0),), noise=0.05, seed=9)
-    shown = show(found, held)
+    shown = score_hold_out(found, held)
     ladder = shown.content["ladder"]
     assert [item["name"] for item in ladder] == [BASE, RETUNED]
     assert ladder[0]["rms"] == pytest.approx(shown.content["gap"]["before"])

@@ -14,7 +14,7 @@ from hystbench.blocks.external import External
 from hystbench.challenge.case import make_case
 from hystbench.challenge.spec import CaseSpec
 from hystbench.gap.bases.load import load_base, simulated_column
-from hystbench.gap.decision import find
+from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.records.evidence import Evidence
@@ -115,7 +115,7 @@ def seen(module, tmp_path):
 
 def test_a_loop_of_the_wrong_shape_is_no_effect(seen):
     fit, base = seen((), "column")
-    content = find("hidden", fit, base).content
+    content = search("hidden", fit, base).content
     assert (content["verdict"], content["effects"]) == ("no-gap", [])
     assert "not tried" not in content["reason"]  # there is no name to doubt
     assert {"drive-lag", "dead-zone"} <= set(content["not_tried"])
@@ -123,7 +123,7 @@ def test_a_loop_of_the_wrong_shape_is_no_effect(seen):
 
 def test_a_curve_of_the_material_lies_behind_its_loop(seen):
     fit, base = seen(("saturation",), "function")
-    content = find("hidden", fit, base).content
+    content = search("hidden", fit, base).content
     assert content["verdict"] == "named"
     (effect,) = content["effects"]
     assert (effect["name"], effect["place"]) == ("saturation", "material")
@@ -136,7 +136,7 @@ def test_beside_a_name_stands_what_a_stored_output_did_not_let_be_tried(tmp_path
     lagging = measured((gain, block("sensor-lag", time_constant_s=0.004)), 0.02)
     fit = tuple(replace(item, simulated=12.0 * item.u) for item in lagging)
     base, _ = simulated_column(Evidence("rig", fit, (), simulated_column="s"))
-    decision = find("rig", fit, base, declared=0.02)
+    decision = search("rig", fit, base, declared=0.02)
     assert decision.content["effects"][0]["name"] == "sensor-lag"
     assert "drive-lag" in decision.content["not_tried"]
     assert (

@@ -15,7 +15,12 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.start import run_base
-from hystbench.gap.holdout.show import FitResult, as_recorded, nuisance_of, show
+from hystbench.gap.holdout.show import (
+    FitResult,
+    as_recorded,
+    nuisance_of,
+    score_hold_out,
+)
 from hystbench.gap.holdout.shrink import left_rms
 from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
@@ -56,7 +61,7 @@ def outcome(
         What gap.json holds, but for what the hold-out records show.
     evidence : Evidence
     """
-    shown = show(fitted, evidence.hold_out)
+    shown = score_hold_out(fitted, evidence.hold_out)
     content = {
         **decided,
         "withdrawn": None,
@@ -70,7 +75,7 @@ def outcome(
         # The ladder and what runs away stay: they tell why.
         first = fitted.rungs[0]
         unchanged = replace(fitted, state=first.state, rungs=(first,))
-        alone = show(unchanged, evidence.hold_out)
+        alone = score_hold_out(unchanged, evidence.hold_out)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **kept}, taken)
         model = base.with_hold(state.hold)

@@ -69,7 +69,7 @@ class Shown:
     outputs: list[tuple[FloatArray, FloatArray]]
 
 
-def show(fitted: FitResult, records: tuple[Record, ...]) -> Shown:
+def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Shown:
     """Compare base and model on hold-out records.
 
     Parameters
