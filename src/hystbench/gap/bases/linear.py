@@ -132,7 +132,10 @@ def identified_linear(evidence: Evidence) -> Linear:
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
     )
-    if not isinstance(chain[0], Impedance) and _is_bent(orders, found):
+    # A free mass adds up what drives it: it is no filter with a curve in the middle.
+    free_mass = any(item.decay_s is not None for item in evidence.fit)
+    split = not free_mass and not isinstance(chain[0], Impedance)
+    if split and _is_bent(orders, found):
         halves = _halves(everything, found)
         if halves is not None:
             chain, fit, more = halves
