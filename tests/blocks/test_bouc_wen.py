@@ -1,18 +1,15 @@
 """Bouc and Wen's hysteresis by Wen's numbers: its equation, its energy, its limits."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
 from hystbench.blocks.bouc_wen_force import BoucWenForce
 from hystbench.blocks.hysteretic_force import HystereticForce
-from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.errors import InputError
 
-BARE = Impedance(mass=0.0, damping=0.0, stiffness=0.0)
+from .bare import against, along, errors_of
 
 #: Stiffness, beta and gamma of loops that soften, stiffen, or lose nothing.
 LOOPS = {
@@ -30,11 +27,6 @@ def wen(name):
     return BoucWenForce(stiffness=stiffness, beta=beta, gamma=gamma)
 
 
-def against(block, q):
-    """Give the force against a motion."""
-    return block.attach(BARE).simulate(np.asarray(q, dtype=float), None, 1e-3)
-
-
 @pytest.mark.parametrize("name", LOOPS)
 def test_the_force_is_the_solution_of_wens_equation(name):
     stiffness, beta, gamma = LOOPS[name]
@@ -43,18 +35,8 @@ def test_the_force_is_the_solution_of_wens_equation(name):
     def slope(q, f, direction):
         return stiffness - np.abs(f) * (beta * np.sign(f * direction) + gamma)
 
-    force, wanted, way = [0.0], [np.zeros(1)], [np.zeros(1)]
-    for a, b in pairwise(turns):
-        places = np.linspace(a, b, 41)[1:]
-        found = solve_ivp(
-            slope, (a, b), force, t_eval=places, args=(np.sign(b - a),),
-            rtol=1e-11, atol=1e-13, max_step=1e-3,
-        )  # fmt: skip
-        force = found.y[:, -1]
-        wanted.append(found.y[0])
-        way.append(places)
-    found = against(wen(name), np.concatenate(way))
-    np.testing.assert_allclose(found, np.concatenate(wanted), atol=2e-5)
+    way, wanted = along(slope, turns)
+    np.testing.assert_allclose(against(wen(name), way), wanted, atol=2e-5)
 
 
 @pytest.mark.parametrize("name", LOOPS)
@@ -169,14 +151,10 @@ def test_half_the_step_makes_a_quarter_of_the_error():
         moves, (0, end), np.zeros(3), t_eval=fine, method="DOP853",
         rtol=1e-10, atol=1e-14, max_step=1e-4,
     ).y[0]  # fmt: skip
-    errors = []
-    for count in (800, 1600, 3200):
-        t = np.linspace(0, end, count + 1)
-        found = OSCILLATOR.driven(drive(t), t[1], (BENCHMARK,))
-        off = np.sqrt(np.mean((found - wanted[:: 3200 // count]) ** 2))
-        errors.append(off / np.ptp(wanted))
+    counts = (800, 1600, 3200)
+    errors = errors_of(OSCILLATOR, (BENCHMARK,), drive, wanted, end, counts)
     assert errors[-1] < 3e-4
-    ratios = np.array(errors[:-1]) / errors[1:]
+    ratios = errors[:-1] / errors[1:]
     assert (ratios > 3.3).all()
     assert (ratios < 4.7).all()
 

@@ -1,32 +1,24 @@
 """Forces inside a mechanism: their laws, their memory, and that they only dissipate."""
 
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from hystbench.blocks import registry
 from hystbench.blocks.friction_force import FrictionForce
-from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.errors import InputError
 from hystbench.model import Model
 from hystbench.record import Channel
 
+from .bare import BARE, against, along
+
 DT = 1e-3
-#: A device that is nothing but the forces inside.
-BARE = Impedance(mass=0.0, damping=0.0, stiffness=0.0)
 
 
 def force(name, **values):
     return registry()[name].from_mapping(values)
-
-
-def against(block, q, dt=DT):
-    """Give the force against a motion."""
-    return block.attach(BARE).simulate(np.asarray(q, dtype=float), None, dt)
 
 
 def motion(count=4001, seed=1):
@@ -132,21 +124,12 @@ def test_bouc_and_wen_are_the_solution_of_their_equation(sharing):
         share = sharing + (1 - sharing) * np.sign(z * direction)
         return (1 - np.abs(z) * share) / reach
 
-    z, wanted, way = [0.0], [np.zeros(1)], [np.zeros(1)]
-    for a, b in pairwise(turns):
-        places = np.linspace(a, b, 41)[1:]
-        found = solve_ivp(
-            slope, (a, b), z, t_eval=places, args=(np.sign(b - a),),
-            rtol=1e-11, atol=1e-13, max_step=1e-3,
-        )  # fmt: skip
-        z = found.y[:, -1]
-        wanted.append(found.y[0])
-        way.append(places)
+    way, wanted = along(slope, turns)
     block = force(
         "hysteretic-force", largest=largest, yield_distance=reach, sharing=sharing
     )
-    found = against(block, np.concatenate(way))
-    np.testing.assert_allclose(found, largest * np.concatenate(wanted), atol=1e-6)
+    found = against(block, way)
+    np.testing.assert_allclose(found, largest * wanted, atol=1e-6)
 
 
 def test_the_step_of_bouc_and_wen_does_not_matter():

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.iwan_force import IwanForce
 from hystbench.blocks.mechanism import Mechanism
 
-BARE = Impedance(mass=0.0, damping=0.0, stiffness=0.0)
+from .bare import against, errors_of
+
 EXPONENTS = (-0.9, -0.5, 0.0, 1.0, 20.0)
 
 
@@ -18,10 +18,6 @@ def joint(exponent=0.0, weights=()):
     return IwanForce(
         stiffness=8.0, slip_distance=0.5, exponent=exponent, weights=weights
     )
-
-
-def against(block, q):
-    return block.attach(BARE).simulate(np.asarray(q, dtype=float), None, 1e-3)
 
 
 def first_loading(q, exponent):
@@ -117,12 +113,8 @@ def test_half_the_step_makes_a_quarter_of_the_error():
         rtol=1e-8, atol=1e-10, max_step=2e-3,
     ).y[0]  # fmt: skip
     host = Mechanism(mass=2.0, damping=0.5, stiffness=20.0, hold="linear")
-    errors = []
-    for count in (200, 400, 800):
-        t = np.linspace(0, end, count + 1)
-        found = host.driven(drive(t), t[1], (joint(weights=weights),))
-        off = np.sqrt(np.mean((found - wanted[:: 800 // count]) ** 2))
-        errors.append(off / np.ptp(wanted))
+    forces, counts = (joint(weights=weights),), (200, 400, 800)
+    errors = errors_of(host, forces, drive, wanted, end, counts)
     assert errors[-1] < 3e-4
     for before, after in pairwise(errors):
         assert before / after > 3.0

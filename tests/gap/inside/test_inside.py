@@ -190,18 +190,24 @@ def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring(
     assert best.fitted.state.chain[1].amplitude == pytest.approx(40.0, rel=0.05)
 
 
+def pushed(forces, q=0.0):
+    """Move a mass of 1 kg on a spring of 60 N/m by forces, in small steps of Euler."""
+    v, out = 0.0, []
+    for force in np.repeat(forces, 20):
+        out.append(q)
+        v += DT / 20 * (force - 1.5 * v - 60.0 * q)
+        q += DT / 20 * v
+    return np.array(out[::20])
+
+
 def test_a_limit_of_the_amplifier_before_a_mass_on_a_spring_is_found_there():
     random = np.random.default_rng(6)
     records = []
     for size in (2.0, 6.0):
         u = size * np.repeat(random.uniform(-1, 1, 160), 10)
-        q, v, out = 0.0, 0.0, []
-        for force in np.repeat(np.clip(u, -3.0, 3.0), 20):
-            out.append(q)
-            v += DT / 20 * (force - 1.5 * v - 60.0 * q)
-            q += DT / 20 * v
+        moved = pushed(np.clip(u, -3.0, 3.0))
         noise = 1e-4 * random.standard_normal(1600)
-        records.append(record(f"{size:g}", u, np.array(out[::20]) + noise, ("N", "m")))
+        records.append(record(f"{size:g}", u, moved + noise, ("N", "m")))
     host, score = hosted(records, 1e-4)
     best = min(search(host, score), key=lambda x: x.score)
     assert best.effects == ("drive-saturation",)
@@ -215,13 +221,9 @@ def test_a_force_by_the_square_of_a_current_is_found_before_a_mass_on_a_spring()
     records = []
     for size in (0.2, 0.5):
         u = 1.0 + size * np.repeat(random.uniform(-1, 1, 160), 10)
-        q, v, out = 3.0 * u[0] ** 2 / 60.0, 0.0, []
-        for current in np.repeat(u, 20):
-            out.append(q)
-            v += DT / 20 * (3.0 * current**2 - 1.5 * v - 60.0 * q)
-            q += DT / 20 * v
+        moved = pushed(3.0 * u**2, 3.0 * u[0] ** 2 / 60.0)
         noise = 1e-4 * random.standard_normal(1600)
-        records.append(record(f"{size:g}", u, np.array(out[::20]) + noise, ("A", "m")))
+        records.append(record(f"{size:g}", u, moved + noise, ("A", "m")))
     host, score = hosted(records, 1e-4)
     best = min(search(host, score), key=lambda x: x.score)
     assert best.effects == ("asymmetry",)

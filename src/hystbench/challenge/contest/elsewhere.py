@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from hystbench.challenge.contest.frames import CONFIDENT
-from hystbench.challenge.contest.score import Row, judge, stated
+from hystbench.challenge.contest.score import Row, given, judge
 from hystbench.challenge.contest.summary import FAMILIES, HIDDEN, figures, of
 from hystbench.challenge.contest.tables import calibration_error, middle
 from hystbench.files import read_json
@@ -126,7 +126,7 @@ def _number(
 def _with_names(cases: pd.DataFrame) -> pd.DataFrame:
     """Add whether no name is given, one surely, and a wrong one surely."""
     names = [
-        stated(words) if verdict == "named" else {}
+        given(verdict, words)
         for verdict, words in zip(cases["verdict"], cases["confidences"], strict=True)
     ]
     hidden = [str(truth).split() for truth in cases["truth"]]

@@ -7,7 +7,7 @@ from collections import Counter
 import pandas as pd
 
 from hystbench.challenge.contest.frames import CONFIDENT
-from hystbench.challenge.contest.score import SHAPE, stated
+from hystbench.challenge.contest.score import SHAPE, given
 from hystbench.challenge.contest.wilson import wilson
 
 COLUMNS = ("left_out", "cases", "no_name", "low", "high", "confident", "called")
@@ -40,7 +40,7 @@ def left_out(cases: pd.DataFrame) -> pd.DataFrame:
 
 def _names(row: pd.Series) -> dict[str, float]:
     """Give the names of an answer with what they are stated with."""
-    names = stated(row["confidences"]) if row["verdict"] == "named" else {}
+    names = given(row["verdict"], row["confidences"])
     free = row["family"] != "gpi"
     return {name: sure for name, sure in names.items() if not (free and name == SHAPE)}
 

@@ -229,6 +229,14 @@ def stated(confidences: str) -> dict[str, float]:
     return {name: float(confidence) for name, _, confidence in parts}
 
 
+def given(verdict: str, confidences: str) -> dict[str, float]:
+    """Give the names that an answer gives, with what they are stated with.
+
+    Names beside another verdict than ``named`` do not count.
+    """
+    return stated(confidences) if verdict == "named" else {}
+
+
 _NOTHING: dict[str, Any] = {"verdict": "", "effects": [], "where": [], "gap": None}
 
 

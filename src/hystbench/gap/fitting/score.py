@@ -173,15 +173,15 @@ class Score:
         whole = np.column_stack([residual, columns])
         if not np.isfinite(whole).all():
             return Amplitudes(np.zeros(own), np.inf)  # a model that runs away
+        k = own + (0 if beside is None else len(beside.charge))
+        if k == 0:
+            return Amplitudes(np.zeros(0), self.of(residual, freedom))
         scale = _sizes(columns)
         whole[:, 1:] /= scale
         charge = np.zeros(own) if stiffness is None else stiffness / scale**2
         found = self._products(whole, np.diag(np.concatenate([[0.0], charge])))
         if beside is not None:
             found = self._joined(found, beside)
-        k = len(found.charge) - 1
-        if k == 0:
-            return Amplitudes(np.zeros(0), self.of(residual, freedom))
         flat, inner = found.grams.reshape(len(self.parts), -1), found.within.ravel()
         d = max(self.directions.shape[1], 1)
         full, last = np.eye(1, k + 1)[0], np.inf
