@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from hystbench.blocks import registry
 from hystbench.blocks.force import Force
 from hystbench.blocks.gain import Gain
-from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.sensor_noise import SensorNoise
+from hystbench.blocks.superposed import BesideBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.errors import InputError
 from hystbench.model import Model, load_model
@@ -164,7 +164,7 @@ units = st.sampled_from(["A", "mV", "um", "µm", "m/s^2", "-", "1", "N*m"])
 
 def host_of(block):
     """Give the block that one has to be attached to, if so."""
-    if isinstance(block, Force | OtherModes):
+    if isinstance(block, Force | BesideBlock):
         return [registry()["mechanism"].from_mapping(EXAMPLES["mechanism"])]
     return [GPI] if isinstance(block, WrappingBlock) else []
 

@@ -267,3 +267,9 @@ def test_the_command_writes_it_with_its_limits(tmp_path):
     assert "current (A) of displacement (um)" in " ".join(header.split())
     done = run_hystbench(*asked, "--limit-low", 1, "--limit-high", 0.7)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+
+
+def test_modes_beside_a_mechanism_cannot_be_undone():
+    beside = ("other-modes", {"numerator": [1], "denominator": [1, 2, 900]})
+    with pytest.raises(InputError, match=r"^chain: block 2: mechanism: no inverse"):
+        inverted((GPI, MECHANISM, beside))

@@ -10,6 +10,7 @@ from hystbench.blocks import registry
 from hystbench.blocks.force import Force
 from hystbench.blocks.held import HOLDS
 from hystbench.blocks.step import Sampling
+from hystbench.blocks.superposed import BesideBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.errors import InputError
 from hystbench.export.c import header, source
@@ -65,7 +66,7 @@ def variants():
                 if isinstance(own, WrappingBlock):
                     inner = ("gpi", "prandtl-ishlinskii")[draw % 2]
                     before = [registry()[inner].from_mapping(EXAMPLES[inner]), own]
-                if own.name == "other-modes":
+                if isinstance(own, BesideBlock):
                     host = registry()["mechanism"]
                     before = [host.from_mapping(EXAMPLES["mechanism"]), own]
                 if isinstance(own, Force):
@@ -159,6 +160,15 @@ def mixed():
             ("other-modes",
              {**EXAMPLES["other-modes"], "numerator": [2.0], "start": "settled"}),
             ("gain", {"value": -0.5}),
+        ),
+        "friction in two of three modes": chain_of(
+            ("mechanism", EXAMPLES["mechanism"] | {"output": "acceleration"}),
+            ("friction-force", EXAMPLES["friction-force"]),
+            ("other-mechanism",
+             EXAMPLES["other-mechanism"] | {"output": "acceleration", "blend": 2.0}),
+            ("friction-force", EXAMPLES["friction-force"]),
+            ("stiffness", EXAMPLES["stiffness"]),
+            ("other-modes", EXAMPLES["other-modes"]),
         ),
         "a settled coordinate": chain_of(
             ("gain", {"value": 1.0, "offset": 3.0}),

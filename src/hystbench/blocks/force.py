@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
@@ -87,10 +87,10 @@ class Force(AttachedBlock):
         found[:, 1 : 1 + own.shape[1]] = own
         return found
 
-    def attach(self, before: Any) -> Driven:
+    def attach(self, before: Any) -> Any:
         """Let the force act inside the mechanism before."""
-        if isinstance(before, Driven):
-            return Driven(before.host, (*before.forces, self))
+        if hasattr(before, "taking"):
+            return before.taking(self)
         if not hasattr(before, "driven"):
             raise InputError(
                 "expected mechanism or impedance just before it, or another force "
@@ -155,6 +155,10 @@ class Driven:
 
     hysteretic: ClassVar[bool] = False
     name: ClassVar[str] = "mechanism"
+
+    def taking(self, force: Force) -> Driven:
+        """Let another force act beside those that are there."""
+        return replace(self, forces=(*self.forces, force))
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Compute the output, as :meth:`Block.simulate` does."""

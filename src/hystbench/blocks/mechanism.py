@@ -11,6 +11,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 
 from hystbench import kernels
+from hystbench.blocks.base import Place
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Force, Motion, exported, rows
 from hystbench.blocks.held import HeldBlock
@@ -56,7 +57,7 @@ class Mechanism(HeldBlock):
     """
 
     name: ClassVar = "mechanism"
-    place: ClassVar = "base"
+    place: ClassVar[Place] = "base"
     reference: ClassVar = "Gonzalez, J. Nonlinear Sci. 6 (1996)"
 
     mass: float = number("U s^2/Q", "m; Q is the unit of the coordinate", TINY, HUGE)

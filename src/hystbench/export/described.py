@@ -9,14 +9,14 @@ from typing import Any
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.force import Driven, Host
-from hystbench.blocks.other_modes import OtherModes, Superposed
 from hystbench.blocks.step import (
     LARGEST_POINTS,
     UNKNOWN_PAST,
     Sampling,
     Step,
 )
-from hystbench.blocks.wrapping import Wrapped, WrappingBlock
+from hystbench.blocks.superposed import Superposed
+from hystbench.blocks.wrapping import Wrapped
 from hystbench.errors import InputError
 from hystbench.export.names import identifier, one_line, plain
 from hystbench.model import Model
@@ -254,8 +254,7 @@ def pieces_of(model: Model) -> Callable[[Any, Sampling], Piece]:
             return of_block(step.host, step, sampling)
         if not isinstance(step, Wrapped | Superposed):
             return of_block(step, step, sampling)
-        outer: WrappingBlock | OtherModes = step.by
-        around = of_block(outer, outer, sampling)
+        around = of_step(step.by, sampling)
         if isinstance(step, Superposed):  # both get the same input, and stay in step
             beside = of_step(step.inner, sampling)
             gains = max(around.step.gains, beside.step.gains)

@@ -25,6 +25,7 @@ from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
 from hystbench.blocks.rdgpi import RateDependentPrandtlIshlinskii
 from hystbench.blocks.slew_limit import SlewLimit
 from hystbench.blocks.step import Sampling, Step
+from hystbench.blocks.superposed import Superposed
 from hystbench.blocks.wrapping import HystereticBlock, Wrapped
 from hystbench.errors import InputError
 from hystbench.export import undone
@@ -96,8 +97,8 @@ def describe_inverse(model: Model, sampling: Sampling, limits: Ends) -> Describe
 def _first(step: Simulated) -> Block:
     """Give the block that a step of the model begins with."""
     first: Any = step
-    while isinstance(first, Wrapped | Driven):
-        first = first.inner if isinstance(first, Wrapped) else first.host
+    while isinstance(first, Wrapped | Driven | Superposed):
+        first = first.host if isinstance(first, Driven) else first.inner
     block: Block = first
     return block
 

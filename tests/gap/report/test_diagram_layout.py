@@ -120,7 +120,7 @@ def test_a_force_is_fed_back_below_its_mechanism_and_subtracted():
 
 
 def test_a_branch_beside_stands_above_and_is_added_behind():
-    diagram = drawn(Stage(Part("impedance"), beside=(Part("friction"),)))
+    diagram = drawn(Stage(Part("impedance"), beside=(Stage(Part("friction")),)))
     core, force = (named(diagram, name) for name in ("impedance", "friction"))
     (total,) = of(diagram, Sum)
     assert not total.minus
@@ -142,7 +142,7 @@ def test_other_modes_are_beside_the_loop_of_a_force():
         Stage(
             Part("mechanism"),
             fed_back=(Part("friction"),),
-            beside=(Part("other modes"),),
+            beside=(Stage(Part("other modes")),),
         )
     )
     loop, total = sorted(of(diagram, Sum), key=lambda item: item.x)
@@ -197,8 +197,9 @@ WORDS = st.text("abc imw", min_size=1, max_size=40).map(
 )
 PARTS = st.builds(Part, WORDS, st.lists(WORDS, max_size=2).map(tuple), st.just("added"))
 SOME = st.lists(PARTS, max_size=2).map(tuple)
+BESIDE = st.lists(st.builds(Stage, PARTS, fed_back=SOME), max_size=2).map(tuple)
 STAGES = st.builds(
-    Stage, PARTS, SOME, SOME, SOME, SOME, st.none() | PARTS, st.booleans()
+    Stage, PARTS, SOME, SOME, SOME, BESIDE, st.none() | PARTS, st.booleans()
 )
 
 
@@ -233,3 +234,16 @@ def test_texts_fit_their_boxes():
     assert " ".join(box.words) == words
     assert all(text_width(line, 8.0) < box.width for line in box.words)
     assert all(text_width(line, 7.0) < box.width for line in box.numbers)
+
+
+def test_a_mechanism_beside_has_the_loop_of_its_own_force():
+    other = Stage(Part("other mechanism"), fed_back=(Part("stop"),))
+    diagram = drawn(
+        Stage(Part("mechanism"), fed_back=(Part("friction"),), beside=(other,))
+    )
+    core, beside = (named(diagram, x) for x in ("mechanism", "other mechanism"))
+    friction, stop = (named(diagram, x) for x in ("friction", "stop"))
+    assert friction.y < core.y < stop.y < beside.y
+    every = (core, beside, friction, stop)
+    assert all(apart(*pair) for pair in combinations(every, 2))
+    assert sorted(item.minus for item in of(diagram, Sum)) == [False, True, True]

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.report.parts import Part, in_one_line, number_words, stages
+from hystbench.gap.report.parts import Part, Stage, in_one_line, number_words, stages
 from hystbench.model import Model
 
 
@@ -78,13 +78,13 @@ def test_a_force_inside_a_mechanism_is_fed_back_with_its_numbers():
 
 def test_a_force_inside_an_impedance_is_beside_it():
     (found,) = stages(model(IMPEDANCE, FRICTION), gap(FELT))
-    assert [part.words for part in found.beside] == ["friction"]
+    assert [one.core.words for one in found.beside] == ["friction"]
     assert found.fed_back == ()
 
 
 def test_other_modes_are_beside_and_of_the_simulator():
     (found,) = stages(model(MECHANISM, FRICTION, OTHERS), gap(FELT))
-    assert found.beside == (Part("other modes"),)
+    assert found.beside == (Stage(Part("other modes")),)
     assert [part.whose for part in found.fed_back] == ["added"]
 
 
@@ -230,3 +230,14 @@ def test_the_diagram_in_words():
         "force, then input delay, then mechanism with friction fed back and other "
         "modes beside it, then position"
     )
+
+
+def test_a_force_behind_a_mechanism_beside_acts_in_that_one():
+    beside = {"other-mechanism": MECHANISM["mechanism"]}
+    (found,) = stages(model(MECHANISM, FRICTION, beside, FRICTION, OTHERS), gap())
+    assert [part.words for part in found.fed_back] == ["friction force"]
+    other, rest = found.beside
+    assert [part.words for part in other.fed_back] == ["friction force"]
+    assert (rest.core.words, rest.fed_back) == ("other modes", ())
+    words = in_one_line(model(MECHANISM, FRICTION, beside, FRICTION), (found,))
+    assert "other mechanism with friction force fed back" in words

@@ -63,7 +63,7 @@ def modes(
             chain=(*split, *behind),
             free=tuple(Free(0, name) for name in NUMBERS),
         ).settled()
-        found.append((-_explained_by_levels(state), len(found), state))
+        found.append((-explained_by_levels(state), len(found), state))
     found.sort()
     for share, _, state in found:
         if -share >= NEEDS * -found[0][0]:
@@ -76,31 +76,39 @@ def with_others_free(state: ModelState) -> ModelState:
     assert isinstance(others, OtherModes)  # noqa: S101  (for the type checker)
     each = one_by_one(others)
     free = [
-        Free(place, name, element)
-        for place, block in enumerate(each, 1)
-        for name, numbers in (
-            ("numerator", range(len(block.numerator))),
-            ("denominator", range(1, len(block.denominator))),
-        )
-        for element in numbers
+        item for place, block in enumerate(each, 1) for item in numbers_of(block, place)
     ]
     chain = (mode, *each, *behind)
     return replace(state, chain=chain, free=(*state.free, *free)).settled()
 
 
+def numbers_of(block: OtherModes, place: int) -> list[Free]:
+    """Give the coefficients of a ratio as free numbers; the leading one is fixed."""
+    return [
+        *(Free(place, "numerator", k) for k in range(len(block.numerator))),
+        *(Free(place, "denominator", k) for k in range(1, len(block.denominator))),
+    ]
+
+
+def poles_of(block: TransferFunction) -> tuple[ComplexArray, ComplexArray]:
+    """Give simple poles and their residues."""
+    down = np.array(block.denominator)
+    poles = np.asarray(np.roots(down), dtype=np.complex128)
+    residues = np.polyval(block.numerator, poles) / np.polyval(np.polyder(down), poles)
+    return poles, np.asarray(residues, dtype=np.complex128)
+
+
 def one_by_one(others: OtherModes) -> list[OtherModes]:
     """Write a ratio as a sum of ratios of order two, and one of all real poles."""
-    down, up = np.array(others.denominator), np.array(others.numerator)
-    poles = np.asarray(np.roots(down), dtype=np.complex128)
-    direct = float(up[0] / down[0]) if len(up) == len(down) else 0.0
-    residues = np.polyval(up, poles) / np.polyval(np.polyder(down), poles)
+    poles, residues = poles_of(others)
+    direct = direct_of(others)
     pairs = [[poles[k], poles[k].conj()] for k in np.flatnonzero(poles.imag > 0)]
     groups = [np.flatnonzero(np.isin(poles, pair)) for pair in pairs]
     real = np.flatnonzero(poles.imag == 0)
     groups += [real] if len(real) else []
-    parts = [_sum_of(others, poles[k], residues[k], 0.0) for k in groups[:-1]]
+    parts = [sum_of(others, poles[k], residues[k], 0.0) for k in groups[:-1]]
     last = groups[-1]
-    return [*parts, _sum_of(others, poles[last], residues[last], direct)]
+    return [*parts, sum_of(others, poles[last], residues[last], direct)]
 
 
 def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block]]:
@@ -121,28 +129,44 @@ def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block
     list of (Mechanism, OtherModes)
         By frequency; empty if fewer than two modes oscillate, or two poles coincide.
     """
-    down, up = np.array(block.denominator), np.array(block.numerator)
-    poles = np.asarray(np.roots(down), dtype=np.complex128)
+    poles, residues = poles_of(block)
     away = np.abs(poles[:, None] - poles) + np.diag(np.abs(poles))
     pairs = [int(k) for k in np.argsort(np.abs(poles)) if poles[k].imag > 0]
     if len(pairs) < 2 or np.any(away < APART * np.abs(poles)):
         return []
-    direct = float(up[0] / down[0]) if len(up) == len(down) else 0.0
-    slopes = np.polyval(np.polyder(down), poles)
-    residues = np.polyval(up, poles) / slopes
-    split = [_split(block, poles, residues, direct, k, output) for k in pairs]
-    return [both for both in split if both is not None]
+    direct = direct_of(block)
+    found: list[tuple[Block, Block]] = []
+    for k in pairs:
+        one = mode_of(block, poles[k], residues[k], output)
+        if one is None:
+            continue
+        mode, through = one
+        others = ~np.isin(poles, (poles[k], poles[k].conj()))
+        try:
+            rest = sum_of(block, poles[others], residues[others], direct - through)
+        except InputError:
+            continue  # so little damped that rounding its numbers makes it unstable
+        found.append((mode, rest))
+    return found
 
 
-def _split(
-    block: TransferFunction,
-    poles: ComplexArray,
-    residues: ComplexArray,
-    direct: float,
-    k: int,
-    output: str,
-) -> tuple[Block, Block] | None:
-    pole, residue = poles[k], residues[k]
+def direct_of(block: TransferFunction) -> float:
+    """Give what passes a transfer function at once."""
+    up, down = block.numerator, block.denominator
+    return float(up[0] / down[0]) if len(up) == len(down) else 0.0
+
+
+def mode_of(
+    block: TransferFunction, pole: complex, residue: complex, output: str
+) -> tuple[Mechanism, float] | None:
+    """Write a pair of poles as a mechanism.
+
+    Returns
+    -------
+    mode : Mechanism
+    through : float
+        What passes it at once, which the pair of poles alone does not let pass.
+    """
     damping, stiffness = -2 * pole.real, abs(pole) ** 2
     rate = 2 * residue.real
     constant = -2 * (residue.real * pole.real + residue.imag * pole.imag)
@@ -176,15 +200,10 @@ def _split(
         start=block.start,
         hold=block.hold,
     )
-    others = [i for i in range(len(poles)) if poles[i] not in (pole, pole.conjugate())]
-    try:
-        rest = _sum_of(block, poles[others], residues[others], direct - through)
-    except InputError:
-        return None  # so little damped that rounding its coefficients makes it unstable
-    return mode, rest
+    return mode, float(through)
 
 
-def _sum_of(
+def sum_of(
     block: TransferFunction,
     poles: ComplexArray,
     residues: ComplexArray,
@@ -203,7 +222,7 @@ def _sum_of(
     )
 
 
-def _explained_by_levels(state: ModelState) -> float:
+def explained_by_levels(state: ModelState) -> float:
     """Mean share of a record that other numbers of the mode in it would explain."""
     shares = []
     for part in state.sample.slices:

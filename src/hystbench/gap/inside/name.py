@@ -18,6 +18,11 @@ from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
+from hystbench.gap.inside.further_modes import (
+    further_words,
+    in_further_modes,
+    with_modes,
+)
 from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -108,6 +113,8 @@ def named_inside(
     if not best.effects:
         say("inside: no force pays")
         return None
+    wider, modes = in_further_modes(best, offer, score, say)
+    found, best = [wider if x is best else x for x in found], wider
     if fewer is not start:
         on_all = OnAll.of(start, score_of_all, alone, identified)
         way = (found[0], *way_to(best, found))
@@ -117,12 +124,12 @@ def named_inside(
         alone = found[0].fitted.state if identified else on_all.state(alone)
     fitted = found[0].fitted.state
     state = replace(best.fitted.state, offered=start.offered).settled()
-    alone = replace(alone, offered=start.offered).settled()
+    alone = with_modes(replace(alone, offered=start.offered), modes).settled()
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
     sentence = (
-        f"{host.words}, with effects inside (rms of the fit records above the floor: "
-        f"{before} of the base, {after} of what stands for it)"
+        f"{host.words}{further_words(alone)}, with effects inside (rms of the fit "
+        f"records above the floor: {before} of the base, {after} of what stands for it)"
     )
     # The first rung is the host re-tuned, so that no effect has the credit of that.
     rounds = _rounds(replace(fitted, offered=start.offered).settled(), best, found)

@@ -23,9 +23,9 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
     """Put a law into a chain, with its numbers free.
 
     A force goes behind the host, a filter before all or behind all. What a force stands
-    for goes out of the host's spring.
+    for goes out of the host's spring. Of several hosts it is the last one.
     """
-    host = next(k for k, block in enumerate(state.chain) if is_host(block))
+    host = host_of(state)
     place = {"before": 0, "inside": host + 1, "behind": len(state.chain)}[law.place]
     base: list[Any] = list(state.chain)
     if law.stands_for:
@@ -74,13 +74,14 @@ def evened(state: ModelState) -> ModelState:
     """
     (place,) = state.added[-1].blocks
     law, chain = state.chain[place], list(state.chain)
-    number = next(k for k, block in enumerate(chain) if is_host(block))
+    number = host_of(state)
     host = chain[number]
     if not (isinstance(law, Force) and isinstance(host, Mechanism)):
         return state
-    others = tuple(x for x in chain if isinstance(x, Force) and x is not law)
+    own = chain[number + 1 :]
+    others = tuple(x for x in own if isinstance(x, Force) and x is not law)
     square, product = np.zeros((3, 3)), np.zeros(3)
-    for record, z in zip(state.records, state.simulation.at(number), strict=True):
+    for record, z in zip(state.records, state.simulation.driving(number), strict=True):
         way = host.motion(z, record.dt, others)
         q, v = (np.ascontiguousarray(x) for x in (way.position, way.velocity))
         place_counts = q if host.stiffness else np.zeros(len(q))
@@ -99,6 +100,11 @@ def evened(state: ModelState) -> ModelState:
         damping=max(host.damping - damper, REMAINS * host.damping),
     )
     return state.with_chain(tuple(chain))
+
+
+def host_of(state: ModelState) -> int:
+    """Give the place of what forces are put inside of: the last host of the chain."""
+    return max(k for k, block in enumerate(state.chain) if is_host(block))
 
 
 def is_host(block: Block) -> bool:

@@ -25,7 +25,7 @@ from hystbench.gap.inside.least_squares import (
     fitted_to_the_end,
     judged,
 )
-from hystbench.gap.inside.put_in import evened, is_host, with_law
+from hystbench.gap.inside.put_in import evened, host_of, with_law
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
@@ -343,10 +343,10 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
 
 def how_it_moves(state: ModelState, turns: bool) -> Moved:
     """Look how far, how fast and by what force a host moves on its records."""
-    place = next(k for k, block in enumerate(state.chain) if is_host(block))
+    place = host_of(state)
     host: Any = state.chain[place]
     reach = speed = force = 0.0
-    for record, z in zip(state.records, state.simulation.at(place), strict=True):
+    for record, z in zip(state.records, state.simulation.driving(place), strict=True):
         motion = host.motion(z, record.dt, ())
         q = motion.position
         reach = max(reach, float(np.ptp(q)) / 2)

@@ -265,14 +265,14 @@ def _with_frame(group: _Group, part: Part) -> _Group:
 
 def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
     """Draw a loop below a group: what it gives comes back and is subtracted."""
-    boxes = [_box(part) for part in parts]
+    back = [_core(part, ()) for part in parts]
     # The loop is as wide as its boxes ask for; the group stands in its middle.
-    inner = max(group.width, LEAD + max(box.width for box in boxes))
+    inner = max(group.width, LEAD + max(one.width for one in back))
     start = RADIUS
     left = start + RADIUS + LEAD + (inner - group.width) / 2
     end = start + RADIUS + LEAD + inner + STUB
     width = end + STUB
-    loop, reach = _branches(boxes, end, start, -group.down)
+    loop, reach = _branches(back, end, start, -group.down)
     ways = (
         Line(((start + RADIUS, 0.0), (left, 0.0)), group.arrow),
         Line(((left + group.width, 0.0), (width, 0.0))),
@@ -281,13 +281,13 @@ def _with_feedback(group: _Group, parts: Sequence[Part]) -> _Group:
     return _Group(width, group.up, -reach, group.at(left) + ways + loop)
 
 
-def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
+def _with_beside(group: _Group, stages: Sequence[Stage]) -> _Group:
     """Draw branches above a group: they have its input, and are added to its output."""
-    boxes = [_box(part) for part in parts]
-    inner = max(group.width, *(box.width for box in boxes))
+    beside = [_group(stage) for stage in stages]
+    inner = max(group.width, *(one.width for one in beside))
     left = STUB + LEAD + (inner - group.width) / 2
     end = STUB + LEAD + inner + LEAD + RADIUS
-    above, reach = _branches(boxes, STUB, end, group.up)
+    above, reach = _branches(beside, STUB, end, group.up)
     drawn = (
         *group.at(left),
         Line(((0.0, 0.0), (left, 0.0)), group.arrow),
@@ -298,13 +298,14 @@ def _with_beside(group: _Group, parts: Sequence[Part]) -> _Group:
 
 
 def _branches(
-    boxes: Sequence[Box], tap: float, total: float, edge: float
+    groups: Sequence[_Group], tap: float, total: float, edge: float
 ) -> tuple[tuple[Shape, ...], float]:
-    """Stack boxes on ways from where a signal is tapped to where they are summed.
+    """Stack groups on ways from where a signal is tapped to where they are summed.
 
     Parameters
     ----------
-    boxes : sequence of Box
+    groups : sequence of Group
+        Of a single box each, where the ways go back.
     tap, total : float
         Where, along the signal's line, the ways begin and end.
     edge : float
@@ -320,21 +321,23 @@ def _branches(
     onward = 1 if total > tap else -1
     drawn: list[Shape] = []
     before = 0.0
-    for k, box in enumerate(boxes):
-        middle = edge + up * (SPACE + box.height / 2)
-        x = (tap + total - box.width) / 2
-        near, far = (x, x + box.width)[::onward]
+    for k, group in enumerate(groups):
+        inward, outward = (group.down, group.up)[::up]
+        middle = edge + up * (SPACE + inward)
+        x = (tap + total - group.width) / 2
+        near, far = (x, x + group.width)[::onward]
         ways: list[tuple[Point, ...]] = [((tap, before), (tap, middle), (near, middle))]
         head = (total, before + up * RADIUS)
-        if k == len(boxes) - 1:
+        if k == len(groups) - 1:
             ways.append(((far, middle), (total, middle), head))
         else:  # what comes from further out is added first
             ways.append(((far, middle), (total - onward * RADIUS, middle)))
             ways.append(((total, middle - up * RADIUS), head))
             drawn.append(Sum(total, middle))
-        drawn.append(box._replace(x=x, y=middle - box.height / 2))
-        drawn += [Line(way, arrow=True) for way in ways]
-        edge, before = middle + up * box.height / 2, middle
+        drawn += group.at(x, middle)
+        into, *on = ways
+        drawn += [Line(into, group.arrow), *(Line(way, arrow=True) for way in on)]
+        edge, before = middle + up * outward, middle
     return tuple(drawn), edge
 
 

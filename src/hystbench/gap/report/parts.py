@@ -61,7 +61,7 @@ class Stage:
         What changes the block, from the inside out.
     fed_back : tuple of Part
         Forces that act against its motion.
-    beside : tuple of Part
+    beside : tuple of Stage
         What has the same input, and is added to its output.
     spilt : Part or None
         What leaves it where it is full.
@@ -73,7 +73,7 @@ class Stage:
     within: tuple[Part, ...] = ()
     around: tuple[Part, ...] = ()
     fed_back: tuple[Part, ...] = ()
-    beside: tuple[Part, ...] = ()
+    beside: tuple[Stage, ...] = ()
     spilt: Part | None = None
     caught: bool = False
 
@@ -81,8 +81,9 @@ class Stage:
     def parts(self) -> tuple[Part, ...]:
         """All of them."""
         spilt = (self.spilt,) if self.spilt else ()
-        attached = (*self.within, *self.around, *self.fed_back, *self.beside)
-        return (self.core, *attached, *spilt)
+        attached = (*self.within, *self.around, *self.fed_back)
+        beside = (part for stage in self.beside for part in stage.parts)
+        return (self.core, *attached, *beside, *spilt)
 
 
 @dataclass(frozen=True)
@@ -196,28 +197,31 @@ def _attached(stage: Stage, block: Block, host: Block | None, part: Part) -> Sta
     """Attach a block where its class says.
 
     The force of an impedance is a part of its output; in a mechanism it acts against
-    the motion that it depends on.
+    the motion that it depends on, of the last mechanism beside if there is one.
     """
     if isinstance(block, WrappingBlock):
         return replace(stage, around=(*stage.around, part))
     if isinstance(block, Force) and not isinstance(host, Impedance):
-        return replace(stage, fed_back=(*stage.fed_back, part))
-    return replace(stage, beside=(*stage.beside, part))
+        if not stage.beside:
+            return replace(stage, fed_back=(*stage.fed_back, part))
+        *others, last = stage.beside
+        last = replace(last, fed_back=(*last.fed_back, part))
+        return replace(stage, beside=(*others, last))
+    return replace(stage, beside=(*stage.beside, Stage(part)))
 
 
 def _told(stage: Stage) -> str:
+    def words(parts: Sequence[Part]) -> list[str]:
+        return [part.words for part in parts]
+
     places = (
-        ("in it", stage.within),
-        ("around it", stage.around),
-        ("fed back", stage.fed_back),
-        ("beside it", stage.beside),
-        ("above it", (stage.spilt,) if stage.spilt else ()),
+        ("in it", words(stage.within)),
+        ("around it", words(stage.around)),
+        ("fed back", words(stage.fed_back)),
+        ("beside it", [_told(one) for one in stage.beside]),
+        ("above it", [stage.spilt.words] if stage.spilt else []),
     )
-    told = [
-        f"{' and '.join(part.words for part in parts)} {place}"
-        for place, parts in places
-        if parts
-    ]
+    told = [f"{' and '.join(each)} {place}" for place, each in places if each]
     return stage.core.words + (f" with {' and '.join(told)}" if told else "")
 
 

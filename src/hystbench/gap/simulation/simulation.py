@@ -69,6 +69,12 @@ class Simulation:
             self._at[place] = signals
         return self._at[place]
 
+    def driving(self, place: int) -> Signals:
+        """Signals that enter a block, or the block that it is attached to."""
+        while isinstance(self.chain[place], AttachedBlock):
+            place -= 1
+        return self.at(place)
+
     @cached_property
     def _at(self) -> dict[int, Signals]:
         return {0: tuple(record.u for record in self.records)}

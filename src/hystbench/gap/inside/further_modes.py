@@ -1,0 +1,225 @@
+"""A force that acts in one mode of a structure, in other modes of it as well."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, replace
+
+import numpy as np
+
+from hystbench.blocks.base import Block
+from hystbench.blocks.force import Force
+from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_mechanism import OtherMechanism
+from hystbench.blocks.other_modes import OtherModes
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import Added, Free, ModelState
+from hystbench.gap.inside.beginnings import Beginnings
+from hystbench.gap.inside.least_squares import fitted
+from hystbench.gap.inside.modes import (
+    NONE,
+    NUMBERS,
+    direct_of,
+    explained_by_levels,
+    mode_of,
+    numbers_of,
+    poles_of,
+    sum_of,
+)
+from hystbench.gap.inside.put_in import host_of
+from hystbench.gap.inside.search import (
+    Hypothesis,
+    Offer,
+    fitted_likely,
+    may_gain,
+    starts,
+)
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.thresholds import CERTAIN, FURTHER, UNNAMED_SHARE
+
+
+def in_further_modes(
+    found: Hypothesis, offer: Offer, score: Score, say: Say = silent
+) -> tuple[Hypothesis, tuple[int, ...]]:
+    """Let a force act in other modes too, one after the other, while that pays.
+
+    A joint that slips is in every mode that moves it. It is one effect, with numbers of
+    its own in each mode, and it has to pay in each as a further effect does. The mode
+    itself may be fitted without the force, so that the force has no credit of that.
+
+    Parameters
+    ----------
+    found : Hypothesis
+    offer : callable
+        Gives what may be put into the last host of a model.
+    score : Score
+    say : callable
+
+    Returns
+    -------
+    found : Hypothesis
+    modes : tuple of int
+        Which of :func:`with_another_mode` was taken, each time.
+    """
+    modes: list[int] = []
+    while may_gain(found, score) and (more := _in_one_more(found, offer, score)):
+        found, mode = more
+        modes.append(mode)
+        host = found.fitted.state.chain[host_of(found.fitted.state)]
+        assert isinstance(host, Mechanism)  # noqa: S101  (for the type checker)
+        say(f"inside: also in the mode at {frequency_of(host):.3g} Hz")
+    return found, tuple(modes)
+
+
+def with_modes(state: ModelState, modes: tuple[int, ...]) -> ModelState:
+    """Write the same modes of a model as mechanisms; it does what it did."""
+    for number in modes:
+        state = list(with_another_mode(state))[number]
+    return state
+
+
+def frequency_of(mode: Mechanism) -> float:
+    """Give the natural frequency of a mode in Hz."""
+    return float(np.sqrt(mode.stiffness / mode.mass) / (2 * np.pi))
+
+
+def further_words(state: ModelState) -> str:
+    """Tell which further modes are mechanisms; nothing if none is."""
+    modes = [x for x in state.chain if isinstance(x, OtherMechanism)]
+    return "".join(f", as is that at {frequency_of(mode):.3g} Hz" for mode in modes)
+
+
+def _in_one_more(
+    found: Hypothesis, offer: Offer, score: Score
+) -> tuple[Hypothesis, int] | None:
+    """Put the force into the mode that needs it most; None if it does not pay there."""
+    state = found.fitted.state
+    acting = [
+        item
+        for item in state.added
+        if item.blocks and isinstance(state.chain[item.blocks[0]], Force)
+    ]
+    split = list(with_another_mode(state))
+    if not split or not acting:
+        return None
+    needs = [_needs(one) for one in split]
+    mode = int(np.argmax(needs))
+    linear = fitted(split[mode], score)
+    alone = replace(found, fitted=linear)
+    laws = offer(linear)
+    begun = [
+        start
+        for item in acting
+        for start in starts(
+            alone,
+            item.effect,
+            [law for law in laws.get(item.effect, ()) if law.form == item.form],
+            score,
+        )
+    ]
+    best = fitted_likely(begun, Beginnings.of(linear.state, score), score, 1)
+    if not best:
+        return None
+    (also,) = best[:1]
+    gap = max(state.power(score.floor), score.floor)
+    share = also.fitted.state.share(linear.state, score.floor, gap)
+    pays = FURTHER if share > UNNAMED_SHARE else CERTAIN
+    if also.score > min(linear.score, found.score) - pays:
+        return None
+    joined = replace(
+        also.fitted.state, added=_joined(also.fitted.state.added, also.effects[-1])
+    )
+    return replace(found, fitted=replace(also.fitted, state=joined)), mode
+
+
+def _joined(added: tuple[Added, ...], effect: str) -> tuple[Added, ...]:
+    """Make one effect of those of one name: the last one goes to the one before."""
+    *before, last = added
+    return tuple(
+        item._replace(
+            blocks=(*item.blocks, *last.blocks), charge=item.charge + last.charge
+        )
+        if item.effect == effect
+        else item
+        for item in before
+    )
+
+
+def with_another_mode(state: ModelState) -> Iterator[ModelState]:
+    """Take a mode out of what is beside a mechanism, as one of its own; each in turn.
+
+    The model does what it did. The numbers of the mode are free, and come last.
+    """
+    first = next((x for x in state.chain if isinstance(x, Mechanism)), None)
+    if first is None:
+        return
+    for place, block in enumerate(state.chain):
+        if not isinstance(block, OtherModes):
+            continue
+        poles, residues = poles_of(block)
+        for k in np.flatnonzero(poles.imag > 0):
+            one = mode_of(block, poles[k], residues[k], first.output)
+            if one is None:
+                continue
+            mode, through = one
+            others = ~np.isin(poles, (poles[k], poles[k].conj()))
+            direct = direct_of(block) - through
+            if not np.any(others):
+                chain = _passing(state.chain, place, direct, abs(through))
+            else:
+                rest = sum_of(block, poles[others], residues[others], direct)
+                chain = (*state.chain[:place], rest, *state.chain[place + 1 :])
+            if chain is not None:
+                yield _with_mode(state, chain, place, mode, bool(np.any(others)))
+
+
+def _passing(
+    chain: tuple[Block, ...], place: int, direct: float, size: float
+) -> tuple[Block, ...] | None:
+    """Let other modes pass at once what a block that leaves the chain did.
+
+    None if there are no others, and it is more than nothing.
+    """
+    rest = list(chain)
+    for k in reversed(range(len(chain))):
+        block = chain[k]
+        if k != place and isinstance(block, OtherModes):
+            up = np.polyadd(block.numerator, direct * np.array(block.denominator))
+            rest[k] = replace(block, numerator=tuple(up.tolist()))
+            return tuple(rest)
+    return chain if abs(direct) <= NONE * size else None
+
+
+def _with_mode(
+    state: ModelState,
+    chain: tuple[Block, ...],
+    place: int,
+    mode: Mechanism,
+    rest: bool,
+) -> ModelState:
+    """Put a mode in before what is left of the block that it was in, or instead."""
+    new = OtherMechanism(**{x.name: getattr(mode, x.name) for x in fields(mode)})
+    behind = list(chain[place + (0 if rest else 1) :])
+    blocks = (*chain[:place], new, *behind)
+    moved = {k: k + (rest and k >= place) for k in range(len(chain))}
+    free: list[Free] = []
+    for item in state.free:
+        old = state.chain[item.block]
+        if isinstance(old, OtherModes):
+            continue
+        free.append(item._replace(block=moved[item.block]))
+    for k in sorted({x.block for x in state.free}):
+        block = blocks[moved[k]]
+        if isinstance(block, OtherModes):
+            free += numbers_of(block, moved[k])
+    free += [Free(place, name) for name in NUMBERS]
+    added = (
+        item._replace(blocks=tuple(moved[k] for k in item.blocks))
+        for item in state.added
+    )
+    return replace(state, chain=blocks, free=tuple(free), added=tuple(added)).settled()
+
+
+def _needs(state: ModelState) -> float:
+    """How much of the records other numbers of the mode put in last would explain."""
+    return explained_by_levels(replace(state, free=state.free[-len(NUMBERS) :]))
