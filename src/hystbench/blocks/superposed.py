@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -16,7 +16,7 @@ from hystbench.record import FloatArray
 KEPT = 256
 """Responses that are kept, at most: of each mode to each record, quick and exact."""
 _Response = tuple[FloatArray, FloatArray]
-_KEPT: OrderedDict[tuple[int, float, Hashable], _Response] = OrderedDict()
+_KEPT: OrderedDict[tuple[int, float, Simulated], _Response] = OrderedDict()
 
 
 @dataclass(frozen=True)
