@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings
@@ -68,6 +69,20 @@ def test_every_record_is_cut_by_itself():
     early, late = shares(state(np.exp(-TIME / 0.01), TIME))
     assert early < 0.26
     assert late > 0.6
+
+
+def test_of_records_that_repeat_the_two_ends_are_left_whole():
+    sine = np.sin(2 * np.pi * 50 * TIME)
+    whole = state(0.3 * sine, 0.1 * sine, 0.9 * sine, 0.2 * sine)
+    lag = TransferFunction(
+        numerator=(1.0,), denominator=(1e-9, 1.0), start="repeating", hold="linear"
+    )
+    whole = replace(whole, chain=(lag,))
+    found = beginnings(whole)
+    assert [record.name for record in found.records] == ["run-1", "run-2"]
+    assert all(len(record) == COUNT for record in found.records)
+    cut = found.cut(whole)
+    np.testing.assert_allclose(cut.residual, whole.residual[found.kept], atol=1e-12)
 
 
 def test_what_is_scored_of_a_beginning_is_that_of_the_whole_record():

@@ -3,7 +3,9 @@
 A simulation runs over whole records, and a fit simulates them some hundred times. Which
 of many laws is likely is seen on less: a quarter of each record, and as much as holds a
 quarter of what the host leaves of it. Records that move alike from end to end become
-four times as short; one that is driven harder and harder keeps most of its length.
+four times as short; one that is driven harder and harder keeps most of its length. A
+record that repeats stays whole: of several, the two are left of which the host leaves
+least and most, as a rule the most gently driven and the hardest driven.
 """
 
 from __future__ import annotations
@@ -47,6 +49,8 @@ class Beginnings:
     def of(cls, state: ModelState, score: Score) -> Beginnings:
         """Cut the records where a quarter of a model's residual power has passed.
 
+        Of those that repeat leave out all but two.
+
         Parameters
         ----------
         state : ModelState
@@ -58,15 +62,23 @@ class Beginnings:
         repeats = any(
             getattr(block, "start", "") == "repeating" for block in state.chain
         )
+        rest = np.nan_to_num(state.residual)
+        powers = [float(np.mean(rest[part] ** 2)) for part in state.sample.slices]
+        ends = {int(np.argmin(powers)), int(np.argmax(powers))}
         own_starts = state.sample.of_start or (None,) * len(state.records)
-        for record, places, part, start in zip(
-            state.records,
-            state.sample.positions,
-            state.sample.slices,
-            own_starts,
-            strict=True,
+        for number, (record, places, part, start) in enumerate(
+            zip(
+                state.records,
+                state.sample.positions,
+                state.sample.slices,
+                own_starts,
+                strict=True,
+            )
         ):
-            passed = np.cumsum(np.nan_to_num(state.residual[part]) ** 2)
+            if repeats and number not in ends:
+                kept.append(np.zeros(len(places), dtype=bool))
+                continue
+            passed = np.cumsum(rest[part] ** 2)
             count = int(np.searchsorted(passed, PART * passed[-1])) + 1
             count = max(count, ceil(PART * len(places)))
             if repeats:
