@@ -55,6 +55,11 @@ static double hb_polynomial(int count, const double *coefficients, double z)
     return y;
 }
 
+static double hb_magnitude(double scale, double z)
+{
+    return scale * fabs(z);
+}
+
 static double hb_saturation(double level, double sharpness, double z)
 {
     const double ratio = z / level;

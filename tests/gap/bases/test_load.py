@@ -521,7 +521,9 @@ def test_of_many_poles_the_denominator_is_not_free(monkeypatch):
     def identified(evidence):
         block = TransferFunction(numerator=(1.0,), denominator=tuple(down.tolist()))
         chain = (block, Gain(value=1.0, offset=0.0))
-        return Linear(Model("linear", known.input, known.output, chain), "", 0.0, 0.0)
+        return Linear(
+            Model("linear", known.input, known.output, chain), "", 0.0, 0.0, 0.0
+        )
 
     monkeypatch.setattr(bases, "identified_linear", identified)
     model, _ = load_base("linear", evidence(known))

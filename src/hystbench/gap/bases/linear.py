@@ -26,6 +26,7 @@ from hystbench.gap.bases.orders import (
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
 from hystbench.gap.bases.summed import constant, impedance, static
+from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
@@ -54,16 +55,60 @@ class Linear(NamedTuple):
     fit_rms, fold_rms : float
         Error on the fit records, and on the folds of them that did not fit it, in
         units of the output, both after the first tenth of each record.
+    constant_rms : float
+        Error of a constant on these folds.
+    signed : bool
+        Whether it is of an output with a sign that the sensor may not show.
     """
 
     model: Model
     note: str
     fit_rms: float
     fold_rms: float
+    constant_rms: float
+    signed: bool = False
 
 
 def identified_linear(evidence: Evidence) -> Linear:
     """Find the linear model that simulates the fit records best.
+
+    Of their output, or where this is never below zero and that does better on folds, of
+    an output with a sign that the sensor may not show.
+
+    Parameters
+    ----------
+    evidence : Evidence
+        Only its fit records are looked at.
+
+    Raises
+    ------
+    InputError
+        If a record is too short for folds, or no linear model predicts the folds
+        better than a constant.
+    """
+    best, unit = linear_of(evidence), evidence.output.unit
+    signed = with_signs(evidence)
+    if signed is not None:
+        other = linear_of(signed)
+        if other.fold_rms < (1 - PAYS) * best.fold_rms:
+            note = (
+                f"{other.note}, of an output with a sign that the sensor may not show "
+                f"(without a sign {best.fold_rms:.4g} {unit} on folds)"
+            )
+            still = best.constant_rms
+            best = other._replace(note=note, constant_rms=still, signed=True)
+    fold, still = best.fold_rms, best.constant_rms
+    if fold > (1 - PAYS) * still:
+        raise InputError(
+            f"{evidence.name}: linear: on folds of the fit records the best linear "
+            f"model is {fold:.4g} {unit} off, a constant {still:.4g}; expected an "
+            "output that follows the input, or a model file in --model"
+        )
+    return best
+
+
+def linear_of(evidence: Evidence) -> Linear:
+    """Find the linear model that simulates the output of the fit records best.
 
     A ratio of polynomials in s and a constant, in output error. Orders from 0 (a gain)
     to 6 are fitted to the spectra first, then by least squares on simulation with the
@@ -83,8 +128,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     Raises
     ------
     InputError
-        If a record is too short for folds, or no linear model predicts the folds
-        better than a constant.
+        If a record is too short for folds.
     """
     everything = Orders(evidence)
     orders = Orders(_coarse(evidence))
@@ -122,12 +166,6 @@ def identified_linear(evidence: Evidence) -> Linear:
         what += f", start: {ratio.start}"
     unit = evidence.output.unit
     still = constant(orders.evidence, orders.whole, orders.folds).folds
-    if fold > (1 - PAYS) * still:
-        raise InputError(
-            f"{evidence.name}: linear: on folds of the fit records the best linear "
-            f"model is {fold:.4g} {unit} off, a constant {still:.4g}; expected an "
-            "output that follows the input, or a model file in --model"
-        )
     note = (
         f"linear base: {what}; rms error {fit:.4g} {unit} on the fit records, "
         f"{fold:.4g} {unit} on folds of them"
@@ -147,7 +185,7 @@ def identified_linear(evidence: Evidence) -> Linear:
         delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.hold)
         chain = (delay, *chain)
     model = Model(LINEAR, evidence.input, evidence.output, chain)
-    return Linear(model, note, fit, fold)
+    return Linear(model, note, fit, fold, still)
 
 
 def _coarse(evidence: Evidence) -> Evidence:

@@ -85,6 +85,8 @@ def _identified(word: str, evidence: Evidence) -> tuple[Model, str]:
     if word == "gpi":
         return identified_gpi(evidence)
     found = identified_linear(evidence)
+    if found.signed:  # re-tuned without a sign it would be another model
+        return found.model, found.note
     # It was fitted with the gap in it: what is added may take its part back. Of many
     # poles, a small step of one coefficient alone may make the model unstable.
     numbers = [

@@ -5,20 +5,29 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from hystbench.gap.effects.base import Effect, Variant, places_in_sensor
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
+UNSIGNED = "unsigned-sensor"
+
 
 class SensorNonlinearity(Effect):
-    """A square and a cube behind the last block."""
+    """A square and a cube behind the last block, or the magnitude."""
 
     name = "sensor-nonlinearity"
     shows = "amplitude"
     place = "sensor"
+    laws = (UNSIGNED,)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
-        """Offer the square, the cube and both, before the sensor's lag as well."""
+        """Offer the square, the cube and both, before the sensor's lag as well.
+
+        And the magnitude behind all, where no measured output is below zero and
+        simulated ones are.
+        """
         for place in places_in_sensor(simulation):
             largest = simulation.largest(place)
             unit = {"quadratic": 1e-3 / largest, "cubic": 1e-3 / largest**2}
@@ -33,11 +42,33 @@ class SensorNonlinearity(Effect):
                 )
                 yield replace(found, charge=CHARGE)
 
+        if hides_the_sign(simulation):
+            end = len(simulation.chain)
+            yield self.inserted(
+                simulation,
+                end,
+                lambda given: {"scale": 1.0},
+                law=UNSIGNED,
+                form="magnitude",
+            )
+
     def inside(self, moved: Moved) -> Iterator[Law]:
         """Offer it behind the mechanism with both terms, the cube of either sign."""
         for sign in (1.0, -1.0):
             quadratic, cubic = 0.03 / moved.shown, sign * 0.03 / moved.shown**2
             yield self.curve("behind", "both", quadratic=quadratic, cubic=cubic)
+
+
+BELOW = 0.05
+"""Of the largest output: what is further below zero is not noise."""
+
+
+def hides_the_sign(simulation: Simulation) -> bool:
+    """Tell whether outputs are simulated below zero where none is measured there."""
+    size = max(float(np.max(np.abs(record.y))) for record in simulation.records)
+    simulated = min(float(np.min(y)) for y in simulation.output)
+    measured = min(float(np.min(record.y)) for record in simulation.records)
+    return simulated < -BELOW * size <= measured
 
 
 CHARGE = 2.0
