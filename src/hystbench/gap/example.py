@@ -19,7 +19,7 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
 from hystbench.files import write_csv, write_text
 from hystbench.model import Model
-from hystbench.record import Channel, FloatArray, Record
+from hystbench.record import Channel, FloatArray, Record, column_name
 
 NAME = "twin"
 WRITTEN = ("base.yaml", "dataset/dataset.yaml", "dataset/*.csv")
@@ -48,7 +48,10 @@ def write_example(
     import yaml  # late: kept out of jobs that write no YAML
 
     first = fit[0]
-    columns = ["time_s", *(_column(item) for item in (first.input, first.output))]
+    columns = [
+        "time_s",
+        *(column_name(item.name, item.unit) for item in (first.input, first.output)),
+    ]
     entries = []
     for use, records in (("fit", fit), ("hold-out", hold_out)):
         for record in records:
@@ -115,7 +118,3 @@ def slow_loop_model(
     if identified["offset"]:
         chain.append(Gain(value=1.0, offset=identified["offset"]))
     return Model("gpi-of-the-slow-loop", given, measured, tuple(chain))
-
-
-def _column(channel: Channel) -> str:
-    return f"{channel.name.replace(' ', '_')}_{channel.unit.replace('/', '_per_')}"

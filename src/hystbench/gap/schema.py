@@ -126,8 +126,8 @@ FIT = _object(
 # the power of the gap.
 UNNAMED = _object(
     {
-        # As the user allows it: more of `structured`, or a fifth of it of `changing`,
-        # withdraws the names.
+        # As the user allows it: more of `structured` withdraws the names; `changing`
+        # decides nothing.
         "allowed": NUMBER,
         # What follows known signals; what goes if the effects may change in time (null
         # where none acts on the input); what follows no known signal.

@@ -21,6 +21,7 @@ from hystbench.device_kinds import (
 from hystbench.errors import InputError, nearest
 from hystbench.gap.progress import Say
 from hystbench.quantities import Quantities
+from hystbench.sentences import listed
 
 
 @dataclass(frozen=True)
@@ -92,13 +93,13 @@ class Vocabulary:
         """Say what the user asked for and the device leaves out, a sentence each."""
         said = []
         if self.fixed:
-            said.append(f"you put in {_listed(self.fixed)}: it is not a finding")
+            said.append(f"you put in {listed(self.fixed)}: it is not a finding")
         if self.without:
-            said.append(f"you left out {_listed(self.without)}: it was not tried")
+            said.append(f"you left out {listed(self.without)}: it was not tried")
         if self.impossible:
             said.append(
                 f"the device is {self.kind}, as dataset.yaml says, and cannot have "
-                f"{_listed(self.impossible)}: it was not tried"
+                f"{listed(self.impossible)}: it was not tried"
             )
         return said
 
@@ -114,11 +115,6 @@ class Vocabulary:
 
 EVERYTHING = Vocabulary()
 """All effects may be named, and none is put in."""
-
-
-def _listed(names: tuple[str, ...]) -> str:
-    *first, last = names
-    return f"{', '.join(first)} and {last}" if first else last
 
 
 _NAMED_BY_A_CAUSE = re.compile(rf"(?<![\w-])({'|'.join(BEHAVIOURS)})(?![\w-])")

@@ -7,9 +7,9 @@ from typing import Any
 
 from matplotlib.ticker import MaxNLocator
 
-from hystbench.figures.style import BLUE, GREY, VERMILION, unit_text
+from hystbench.figures.style import BLUE, GREY, VERMILION, axis_label, unit_text
 from hystbench.gap.report.pictures import TICKS, hull
-from hystbench.record import Channel, FloatArray, Record
+from hystbench.record import FloatArray, Record
 
 MEASURED: dict[str, Any] = {"color": GREY, "linewidth": 2.2, "label": "measured"}
 BEFORE: dict[str, Any] = {"color": VERMILION, "linestyle": "--", "label": "before"}
@@ -29,10 +29,10 @@ def records(axes: Any, shown: Sequence[Record]) -> None:
         given.set_title(f"{record.name} ({record.use})")
         for panel in (given, got):
             panel.set_xlabel("time (s)")
-        given.set_ylabel(_label(record.input))
-        got.set_ylabel(_label(record.output))
-        loop.set_xlabel(_label(record.input))
-        loop.set_ylabel(_label(record.output))
+        given.set_ylabel(axis_label(record.input))
+        got.set_ylabel(axis_label(record.output))
+        loop.set_xlabel(axis_label(record.input))
+        loop.set_ylabel(axis_label(record.output))
         _few_ticks(row)
 
 
@@ -45,8 +45,8 @@ def gap(
         for values, line in ((record.y, MEASURED), (before, BEFORE), (after, AFTER)):
             loop.plot(record.u, values, **line)
         loop.set_title(record.name)
-        loop.set_xlabel(_label(record.input))
-        loop.set_ylabel(_label(record.output))
+        loop.set_xlabel(axis_label(record.input))
+        loop.set_ylabel(axis_label(record.output))
         for values, line in ((before, BEFORE), (after, AFTER)):
             own = {**line, "linewidth": 0.9}
             left.plot(*hull(record.time, record.y - values), **own)
@@ -57,10 +57,6 @@ def gap(
         _few_ticks(row)
     lines = axes[0][0].get_legend_handles_labels()[0]
     axes[0][0].figure.legend(handles=lines, loc="outside upper center", ncols=3)
-
-
-def _label(channel: Channel) -> str:
-    return f"{channel.name} ({unit_text(channel.unit)})"
 
 
 def _few_ticks(panels: Any) -> None:

@@ -16,12 +16,13 @@ from hystbench.gap.schema import LEFT_OUT
 from hystbench.gap.vocabulary import for_readers
 from hystbench.record import column_name
 from hystbench.report.markup import one_micro
+from hystbench.sentences import listed
 
 TEMPLATE = "report.html.j2"
 #: Functions of ``words`` that the template uses.
 FILTERS = (
     *("number", "size", "with_error", "percent", "explained", "p_value", "bound"),
-    *("unit", "listed"),
+    "unit",
 )
 #: Of the parts of gap.json with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))
@@ -33,6 +34,7 @@ def page(content: Content) -> str:
 
     environment = page_environment("hystbench.gap.report")
     environment.filters |= {name: getattr(words, name) for name in FILTERS}
+    environment.filters["listed"] = listed
     named = with_optional(content.gap)  # as the vocabulary has it
     gap = with_optional(for_readers(content.gap))
     drawn, missing = pictures_of(content.curves)
@@ -168,7 +170,7 @@ def _looks(gap: dict[str, Any]) -> list[dict[str, Any]]:
     for _, group in groupby(seconds, key=lambda item: (item["round"], item["look"])):
         rows = list(group)
         taken = [item["name"] for item in rows if item["taken"]]
-        gone, beside = rows[0]["instead_of"], words.listed(rows[0]["beside"])
+        gone, beside = rows[0]["instead_of"], listed(rows[0]["beside"])
         own = next(item for item in rows if item["name"] == gone)
         if not taken:
             came = f"could not be judged again ({_why_not(own)}) and stays"

@@ -11,6 +11,7 @@ from markupsafe import Markup
 from hystbench.device_kinds import behaviour_of
 from hystbench.figures.style import unit_text
 from hystbench.gap.vocabulary import in_words
+from hystbench.sentences import listed
 
 #: A narrow space that does not break.
 NARROW = "\u202f"
@@ -176,13 +177,6 @@ def _withdrawn_sentence(taken: dict[str, Any]) -> str:
         f"No name stands. {what} {were} withdrawn: {they} the gap on the hold-out "
         "records wider."
     )
-
-
-def listed(names: list[str]) -> str:
-    """Join names as in a sentence."""
-    if len(names) < 2:
-        return "".join(names)
-    return ", ".join(names[:-1]) + " and " + names[-1]
 
 
 def number(value: float | None, digits: int = 3) -> Markup:

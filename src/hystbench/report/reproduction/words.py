@@ -10,6 +10,7 @@ from hystbench.compare.summary import nearness
 from hystbench.figures.style import look
 from hystbench.report.reproduction.errors import filter_cells, within
 from hystbench.report.reproduction.read import Measured, Reproduction, Row
+from hystbench.sentences import listed
 
 FREE_RUN = "free-run simulation"
 
@@ -156,10 +157,3 @@ def _not_run(cells: Sequence[ComparedCell]) -> list[str]:
     if len(absent) == len(cells):
         said.append("No model was run on a signal of the paper's tables.")
     return said
-
-
-def listed(names: Sequence[str]) -> str:
-    """Join names as in a sentence."""
-    if len(names) < 2:
-        return "".join(names)
-    return ", ".join(names[:-1]) + " and " + names[-1]
