@@ -100,6 +100,8 @@ CAUSES: Mapping[str, Mapping[str, Sequence[DeviceKind]]] = {
         "unequal areas of the piston": ("hydraulic",),
         "cooling that is not heating reversed": ("thermal",),
         "even-order distortion of the circuit": ("electronic",),
+        "a diode's exponential curve": ("electronic",),
+        "a valve of equal percentage": ("hydraulic", "thermal"),
         "preload or gravity": ("mechanical",),
     },
     "saturation": {

@@ -55,6 +55,11 @@ static double hb_polynomial(int count, const double *coefficients, double z)
     return y;
 }
 
+static double hb_exponential(double curvature, double z)
+{
+    return curvature == 0 ? z : expm1(curvature * z) / curvature;
+}
+
 static double hb_magnitude(double scale, double z)
 {
     return scale * fabs(z);

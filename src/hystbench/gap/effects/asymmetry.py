@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from hystbench.blocks import registry
 from hystbench.blocks.base import Block
+from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.gap.effects.base import (
     Effect,
     Values,
@@ -17,15 +18,20 @@ from hystbench.gap.effects.base import (
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
+EXPONENTIAL = "exponential-curve"
+
 
 class Asymmetry(Effect):
-    """An even term behind the hysteresis, before it or beside it, or a field bias."""
+    """An even term behind the hysteresis, before it or beside it, or a field bias.
+
+    Or an exponential curve before a base that holds no hysteresis.
+    """
 
     name = "asymmetry"
     shows = "amplitude"
     place = "material"
     offsets: ClassVar = {"bias": (("bias", "U"), ("zero", "Y"))}
-    laws: ClassVar = ("butterfly",)
+    laws: ClassVar = ("butterfly", EXPONENTIAL)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the square behind the hysteresis, and three laws of the field.
@@ -39,15 +45,35 @@ class Asymmetry(Effect):
             yield self._bias(simulation, simulation.hysteresis)
             yield self._square(simulation, simulation.hysteresis, "square of the field")
             yield self._butterfly(simulation, simulation.hysteresis)
+        if simulation.loop is None:
+            yield from self._exponential(simulation)
 
     def inside(self, moved: Moved) -> Iterator[Law]:
-        """Offer the square before the mechanism: a force by the square of a current."""
+        """Offer two curves before the mechanism.
+
+        The square, as of a force by the square of a current, and an exponential curve.
+        """
         for sign in (1.0, -1.0):
             yield self.curve("before", "square", coefficient=sign * 0.1 / moved.given)
+        for size in (1.0, -1.0):
+            block = ExponentialCurve(curvature=size / moved.given)
+            yield Law("exponential", block, ("curvature",), "before")
 
     def _square(self, simulation: Simulation, place: int, form: str) -> Variant:
         unit = {"coefficient": 1e-3 / simulation.largest(place)}
         return self.inserted(simulation, place, form=form, unit=unit)
+
+    def _exponential(self, simulation: Simulation) -> Iterator[Variant]:
+        """Offer a curve that grows steeper, and one that grows flatter."""
+        largest = simulation.largest(0)
+        for form, sign in (("exponential", 1.0), ("exponential, flatter", -1.0)):
+            yield self.inserted(
+                simulation,
+                0,
+                law=EXPONENTIAL,
+                form=form,
+                grids={"curvature": sign * logarithmic(0.3, 10.0, 4) / largest},
+            )
 
     def _butterfly(self, simulation: Simulation, start: int) -> Variant:
         """The square of a play operator of the field."""

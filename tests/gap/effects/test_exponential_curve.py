@@ -1,0 +1,47 @@
+"""A drive that grows by the same factor each step: asymmetry, by its own law."""
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.exponential_curve import ExponentialCurve
+from hystbench.blocks.transfer_function import TransferFunction
+from hystbench.gap.decision import search
+from hystbench.model import Model
+from hystbench.record import Channel, Record
+
+DT, COUNT, NOISE = 0.1, 800, 0.003
+OPENING, FLOW = Channel("opening", "1"), Channel("flow", "1")
+PIPE = TransferFunction(
+    numerator=(1.0,), denominator=(0.75, 2.0, 1.0), hold="zero-order"
+)
+
+
+def records(curvature):
+    random = np.random.default_rng(8)
+    found = []
+    for k in range(2):
+        u = np.repeat(random.uniform(0.0, 1.0, COUNT // 40), 40)
+        bent = np.expm1(curvature * u) / curvature  # by hand, not by the block
+        y = PIPE.simulate(bent, bent, DT) + NOISE * random.standard_normal(COUNT)
+        found.append(Record(f"run-{k}", DT, u, y, OPENING, FLOW, "measured", "fit"))
+    return tuple(found)
+
+
+@pytest.mark.parametrize("curvature", [2.0, -2.0])
+def test_it_is_named_with_its_curvature(curvature):
+    base = Model("pipe", OPENING, FLOW, (PIPE,))
+    answer = search("valve", records(curvature), base, "zero-order")
+    (effect,) = answer.content["effects"]
+    assert (effect["name"], effect["place"]) == ("asymmetry", "material")
+    assert effect["blocks"] == ["exponential-curve"]
+    found = effect["parameters"]["curvature"]
+    assert found["value"] == pytest.approx(curvature, rel=0.03)
+    assert abs(found["value"] - curvature) < 4 * found["standard_error"]
+
+
+def test_without_curvature_it_is_a_straight_line():
+    z = np.linspace(-3.0, 3.0, 7)
+    straight = ExponentialCurve(curvature=0.0).simulate(z, z, 1.0)
+    nearly = ExponentialCurve(curvature=1e-9).simulate(z, z, 1.0)
+    np.testing.assert_array_equal(straight, z)
+    np.testing.assert_allclose(nearly, z, rtol=1e-8)
