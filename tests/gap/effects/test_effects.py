@@ -426,6 +426,7 @@ SCALES = {
     "damping_ratio": 1.0,
     "half_width": LARGER,
     "limit": LARGER,
+    "curvature": 1 / LARGER,
     "level": LARGER,
     "sharpness": 1.0,
     "rate": LARGER / SLOWER,

@@ -65,15 +65,13 @@ class Asymmetry(Effect):
 
     def _exponential(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer a curve that grows steeper, and one that grows flatter."""
-        largest = simulation.largest(0)
-        for form, sign in (("exponential", 1.0), ("exponential, flatter", -1.0)):
-            yield self.inserted(
-                simulation,
-                0,
-                law=EXPONENTIAL,
-                form=form,
-                grids={"curvature": sign * logarithmic(0.3, 10.0, 4) / largest},
-            )
+        steeper = logarithmic(0.3, 10.0, 4) / simulation.largest(0)
+        for form, axis in (
+            ("exponential", steeper),
+            ("exponential, flatter", -steeper[::-1]),
+        ):
+            grids = {"curvature": axis}
+            yield self.inserted(simulation, 0, law=EXPONENTIAL, form=form, grids=grids)
 
     def _butterfly(self, simulation: Simulation, start: int) -> Variant:
         """The square of a play operator of the field."""
