@@ -53,8 +53,8 @@ class Asymmetry(Effect):
 
         The square, as of a force by the square of a current, and an exponential curve.
         """
-        for sign in (1.0, -1.0):
-            yield self.curve("before", "square", coefficient=sign * 0.1 / moved.given)
+        for size in (0.1, -0.1, 10.0, -10.0):  # a little of a square, hardly else
+            yield self.curve("before", "square", coefficient=size / moved.given)
         for size in (1.0, -1.0):
             block = ExponentialCurve(curvature=size / moved.given)
             yield Law("exponential", block, ("curvature",), "before")

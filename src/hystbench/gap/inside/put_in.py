@@ -76,6 +76,8 @@ def evened(state: ModelState) -> ModelState:
     law, chain = state.chain[place], list(state.chain)
     number = host_of(state)
     host = chain[number]
+    if isinstance(host, Mechanism) and place < number:
+        return _as_strong(state, place, number, host)
     if not (isinstance(law, Force) and isinstance(host, Mechanism)):
         return state
     own = chain[number + 1 :]
@@ -98,6 +100,26 @@ def evened(state: ModelState) -> ModelState:
         host,
         stiffness=max(host.stiffness - spring, REMAINS * host.stiffness),
         damping=max(host.damping - damper, REMAINS * host.damping),
+    )
+    return state.with_chain(tuple(chain))
+
+
+def _as_strong(
+    state: ModelState, place: int, number: int, host: Mechanism
+) -> ModelState:
+    """Let a mass be driven as strongly as without the curve before it."""
+    pairs = zip(state.simulation.at(place), state.simulation.at(place + 1), strict=True)
+    powers = np.array([[np.var(one), np.var(other)] for one, other in pairs])
+    before, behind = np.sum(powers / np.maximum(powers[:, :1], 1.0 / HUGE), axis=0)
+    times = float(np.sqrt(behind / before)) if before > 0 else 1.0
+    if not (np.isfinite(times) and times > 0):
+        return state
+    chain = list(state.chain)
+    chain[number] = replace(
+        host,
+        mass=times * host.mass,
+        damping=times * host.damping,
+        stiffness=times * host.stiffness,
     )
     return state.with_chain(tuple(chain))
 
