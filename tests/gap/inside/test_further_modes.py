@@ -10,6 +10,7 @@ from hystbench.blocks.iwan_force import IwanForce
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_mechanism import OtherMechanism
 from hystbench.blocks.other_modes import OtherModes
+from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.further_modes import (
@@ -19,7 +20,6 @@ from hystbench.gap.inside.further_modes import (
     with_another_mode,
     with_modes,
 )
-from hystbench.gap.inside.least_squares import fitted
 from hystbench.gap.inside.modes import NUMBERS, sum_of
 from hystbench.gap.inside.search import Hypothesis, laws_for, may_gain
 from hystbench.gap.records.sample import Sample

@@ -9,15 +9,18 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Moved
+from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import best_host, is_seen_moving, one_coordinate
 from hystbench.gap.inside.name import chosen
+from hystbench.gap.inside.put_in import with_law
 from hystbench.gap.inside.search import (
     Hypothesis,
     how_it_moves,
     laws_for,
     starts,
+    with_one_fewer,
 )
 from hystbench.gap.records.evidence import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
@@ -306,3 +309,28 @@ def test_a_mass_that_is_faster_than_the_samples_is_not_seen_moving(
     records = (record("run", np.zeros(len(TIME)), np.zeros(len(TIME)), ("N", "m")),)
     state = ModelState((block,), records, Sample.of(records))
     assert is_seen_moving(state) is seen
+
+
+def test_an_effect_that_stood_for_another_goes_when_that_comes():
+    """Of a car's drag and dry friction a delay was found first, and kept."""
+    random = np.random.default_rng(11)
+    u = 3.0 * np.repeat(random.uniform(-1, 1, 160), 10)
+    moved = pushed(u) + 1e-4 * random.standard_normal(1600)
+    host, score = hosted([record("run", u, moved, ("N", "m"))], 1e-4)
+    names, state, known = ("friction", "input-delay", "drag"), host.state, []
+    for count, name in enumerate(names, 1):
+        law = laws_for(host)[name][0]
+        state = with_law(state, name, law)
+        known.append(Hypothesis(names[:count], ("",) * count, Fitted(state, 0.0)))
+    known.append(Hypothesis(("drag",), ("",), Fitted(state, 0.0)))
+    fewer = with_one_fewer(known[2], known, score)
+    assert {frozenset(item.effects) for item in fewer} == {
+        frozenset(("friction", "drag")),
+        frozenset(("input-delay", "drag")),
+    }
+    for item in fewer:
+        assert tuple(x.effect for x in item.fitted.state.added) == item.effects
+        assert np.isfinite(item.score)
+    apart = [known[2], known[1], known[0]]  # no single of input-delay and drag
+    (only,) = with_one_fewer(known[2], apart, score)
+    assert only.effects == ("friction", "drag")

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from hystbench.gap.inside.least_squares import Fitted
+from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.inside.name import _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
 

@@ -6,8 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from hystbench.blocks.base import Block
 from hystbench.blocks.gain import Gain
-from hystbench.gap.effects.base import Effect, Variant, logarithmic, places_inside
+from hystbench.blocks.saturation import Saturation as Limit
+from hystbench.gap.effects.base import (
+    Effect,
+    Values,
+    Variant,
+    logarithmic,
+    places_inside,
+)
 from hystbench.gap.simulation.simulation import Simulation
 
 SOFTEST, SHARPEST = 1.0, 20.0
@@ -34,7 +42,8 @@ class Saturation(Effect):
         """
         places = {simulation.behind_hysteresis, *places_inside(simulation)}
         if simulation.loop is None and not _is_static(simulation):
-            places.add(simulation.behind_mechanics)
+            places |= {simulation.behind_mechanics, _before_the_offset(simulation)}
+            yield self._about_a_point(simulation, _before_the_offset(simulation))
         for place in sorted(places):
             yield from self._at(simulation, place)
         if simulation.hysteresis is not None:
@@ -62,6 +71,37 @@ class Saturation(Effect):
             # The field is the drive's: a corner there is the drive's limit.
             refused={"sharpness": "upper"} if of else {},
         )
+
+    def _about_a_point(self, simulation: Simulation, place: int) -> Variant:
+        """Offer a limit that is nearer on one side: an offset before it."""
+        rest, largest = simulation.chain[place:], simulation.largest(place)
+
+        def build(given: Values) -> tuple[Block, ...]:
+            moved = Gain(value=1.0, offset=given["offset"])
+            return (moved, Limit(level=given["level"]), *rest)
+
+        return Variant(
+            self.name,
+            self.place,
+            "about a point",
+            place,
+            build,
+            (0, 1),
+            grids={"level": logarithmic(STRONGEST * largest, 30 * largest, 5)},
+            unit={"offset": 1e-3 * largest},
+            free=("level", "offset"),
+        )
+
+
+def _before_the_offset(simulation: Simulation) -> int:
+    """Give the place behind the last block that is no gain: there zero is the input's.
+
+    Behind it an offset may follow, as of a sensor.
+    """
+    place = simulation.behind_mechanics
+    while place and isinstance(simulation.chain[place - 1], Gain):
+        place -= 1
+    return place
 
 
 def _is_static(simulation: Simulation) -> bool:

@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.blocks.other_modes import OtherModes
+from hystbench.gap.fitting.least_squares import at_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.least_squares import at_values
 from hystbench.gap.records.sample import Sample
 from hystbench.record import Record
 

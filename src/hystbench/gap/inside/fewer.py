@@ -11,9 +11,9 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction, possible_starts
+from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.least_squares import Fitted, fitted, judged
 from hystbench.gap.inside.search import FEW, Hypothesis
 from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.sample import Sample

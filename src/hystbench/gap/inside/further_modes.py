@@ -12,10 +12,10 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_mechanism import OtherMechanism
 from hystbench.blocks.other_modes import OtherModes
+from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.least_squares import fitted
 from hystbench.gap.inside.modes import (
     NONE,
     NUMBERS,

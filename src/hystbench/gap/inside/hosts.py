@@ -22,9 +22,9 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction, possible_starts
 from hystbench.gap.bases.orders import HIGHEST
+from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.inside.modes import modes
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.records.sample import Sample, rms

@@ -14,10 +14,8 @@ from hystbench.blocks.parameter import HUGE
 from hystbench.blocks.store import Store
 from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.law import Changed, Law, Moved
-from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
-from hystbench.gap.inside.least_squares import (
+from hystbench.gap.fitting.edit_chain import without_effect
+from hystbench.gap.fitting.least_squares import (
     QUICK,
     Fitted,
     by_record,
@@ -25,6 +23,9 @@ from hystbench.gap.inside.least_squares import (
     fitted_to_the_end,
     judged,
 )
+from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
 from hystbench.gap.inside.put_in import evened, host_of, with_law
 from hystbench.gap.inside.stores import how_it_fills, with_changed
 from hystbench.gap.progress import Say, silent
@@ -125,7 +126,35 @@ def together(
             carried = [item for item in carried if item.score < alone]
         carried = _one_more(carried, offer, score, keep, alone, say)
         every += carried
+    best = min(every, key=lambda item: item.score)
+    if not of_stores(best.fitted):
+        every += with_one_fewer(best, every, score)
     return best_of_each(every)
+
+
+def with_one_fewer(
+    best: Hypothesis, found: Sequence[Hypothesis], score: Score
+) -> list[Hypothesis]:
+    """Take each effect of a hypothesis out, where the others together were not tried.
+
+    An effect that stood for another one before that came may be needless beside it. The
+    others have to come one after the other: one fewer of them was tried as well.
+    """
+    if len(best.effects) < 2:
+        return []
+    tried = {frozenset(item.effects) for item in found}
+    left = []
+    for number, effect in enumerate(best.effects):
+        others = tuple(x for k, x in enumerate(best.effects) if k != number)
+        ways = (frozenset(others) - {one} for one in others)
+        if frozenset(others) in tried or not any(way in tried for way in ways):
+            continue
+        state = best.fitted.state
+        place = [item.effect for item in state.added].index(effect)
+        forms = tuple(x for k, x in enumerate(best.forms) if k != number)
+        begun = without_effect(state, place)
+        left.append(Hypothesis(others, forms, Fitted(begun, np.inf)))
+    return _to_the_end(left, score)
 
 
 def of_stores(item: Fitted) -> bool:

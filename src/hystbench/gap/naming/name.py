@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
-from hystbench.gap.fitting.refit import finished, ready
+from hystbench.gap.fitting.least_squares import fitted_to_the_end
+from hystbench.gap.fitting.refit import finished, ready, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.step_error import above_floor
@@ -218,7 +221,7 @@ def advance(
     state = progress.state
     if taken:
         assert first.state is not None  # noqa: S101  (for the type checker)
-        state = first.state
+        state = to_the_end(first.state, floor)
         if len(state.added) > 1:
             rounds = (*progress.rounds, one)
             state, looks = reconsidered(state, rounds, floor_rms, say)
@@ -226,6 +229,20 @@ def advance(
     return replace(
         progress, state=state, rounds=(*progress.rounds, one), deferred=deferred
     )
+
+
+def to_the_end(state: ModelState, floor: float) -> ModelState:
+    """Fit all numbers of a model without hysteresis together, if all may go anywhere.
+
+    A linear base was fitted with the gap in it: what an effect bends much may take its
+    numbers far, farther than steps from a linear fit lead.
+    """
+    bound = any(free.tolerance is not None for free in state.free)
+    if bound or state.beside or not state.free or state.simulation.loop is not None:
+        return state
+    score = Score(state.sample, np.zeros((len(state.sample), 0)), floor)
+    best = fitted_to_the_end(state, score)
+    return best.state if best.score < score_of(state, score) else state
 
 
 def _before_a_round(
