@@ -63,6 +63,29 @@ def test_friction_of_a_device_that_is_moved_is_found_with_its_numbers(found):
     assert rms == pytest.approx(NOISE, rel=0.1)
 
 
+def test_smooth_friction_may_fall_with_the_speed():
+    """Stribeck's curve of a device that is moved, written without a block."""
+    given = []
+    for seed, size in enumerate((2.0, 5.0)):
+        x = size * np.sin(2 * np.pi * 0.7 * TIME) + 0.2 * size * np.sin(9.1 * TIME)
+        v = np.gradient(x, DT)
+        level = 2.0 + 1.5 * np.exp(-((v / 4.0) ** 2))
+        noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
+        given.append(record(f"{seed}", x, 0.03 * v + level * np.tanh(v / 2) + noise))
+    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
+    sample = Sample.of(tuple(given))
+    score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
+    found = search(best_host(list(begun), score), score, offered=["friction", "drag"])
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("friction",)
+    law = next(x for x in best.fitted.state.chain if x.name == "smooth-friction")
+    assert law.coulomb == pytest.approx(2.0, rel=0.1)
+    assert law.static_excess == pytest.approx(1.5, rel=0.1)
+    assert law.stribeck_velocity == pytest.approx(4.0, rel=0.1)
+    rms = np.sqrt(np.mean(best.fitted.state.residual**2))
+    assert rms == pytest.approx(NOISE, rel=0.1)
+
+
 def test_a_host_without_a_force_stands_first(found):
     assert found[0].effects == ()
     assert found[0].score > min(item.score for item in found) + 100

@@ -77,3 +77,12 @@ class Friction(Effect):
                 "velocity_scale": share * moved.speed,
             }
             yield Law("smooth", SmoothFriction(**smooth), tuple(smooth))
+        # It hardly grows near rest: a motion that stands is then not held.
+        for share, fades in ((1e-3, 0.03), (1e-2, 0.1)):
+            own = {
+                "coulomb": 0.1 * moved.force,
+                "velocity_scale": share * moved.speed,
+                "static_excess": 0.05 * moved.force,
+                "stribeck_velocity": fades * moved.speed,
+            }
+            yield Law("smooth Stribeck", SmoothFriction(**own), tuple(own))
