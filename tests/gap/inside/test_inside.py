@@ -6,12 +6,18 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.hosts import best_host, is_seen_moving, one_coordinate
+from hystbench.gap.inside.hosts import (
+    best_host,
+    hosts,
+    is_seen_moving,
+    one_coordinate,
+)
 from hystbench.gap.inside.name import chosen
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -140,6 +146,21 @@ def test_a_mass_without_a_spring_is_known_by_its_records():
     assert decay_of_free_mass([mass(30.0)], MOVES) is None
     assert decay_of_free_mass([mass(0.0)], Quantities("position", "force")) is None
     assert decay_of_free_mass([replace(mass(0.0), use="hold-out")], MOVES) is None
+
+
+def test_forces_are_tried_with_the_timing_of_the_base_and_without():
+    """What a linear model takes for timing may be the phase that a force turns."""
+    host, score = hosted([mass(30.0)], 1e-3)
+    state = host.state
+    early = InputDelay(delay_s=0.0, lead_s=DT / 2, hold=state.hold)
+    free = tuple(item._replace(block=item.block + 1) for item in state.free)
+    start = replace(state, chain=(early, *state.chain), free=free).settled()
+    chains = [item.fitted.state.chain for item in hosts(start, MOVES, True, score)]
+    firsts = [chain[0] for chain in chains]
+    assert firsts[0] == early
+    assert isinstance(firsts[-1], Mechanism)
+    alone = [item.alone.chain[0].name for item in hosts(start, MOVES, True, score)]
+    assert alone == [block.name for block in firsts]
 
 
 def test_windows_begin_at_rest_and_at_zero():

@@ -90,6 +90,8 @@ def hosts(
             state = _in_front(delay, start, host.fitted.state)
             alone = _in_front(delay, start, host.alone)
             yield replace(host, alone=alone, fitted=replace(host.fitted, state=state))
+        # A force that is not linear turns the phase: it may be what looked like timing.
+        yield from hosts(_without_timing(start), quantities, identified, score)
         return
     if identified and quantities.causality in ("storage", "unknown"):
         noise = float(np.sqrt(score.floor))
@@ -129,15 +131,18 @@ def hosts(
 
 def _behind(start: ModelState) -> ModelState:
     """Give a base without the timing of its input, on records that have it in time."""
-    delay, *behind = start.chain
-    free = (item._replace(block=item.block - 1) for item in start.free if item.block)
+    delay = start.chain[0]
     records = tuple(
         replace(item, u=delay.simulate(item.u, item.u, item.dt))
         for item in start.records
     )
-    return replace(
-        start, chain=tuple(behind), records=records, free=tuple(free)
-    ).settled()
+    return replace(_without_timing(start), records=records).settled()
+
+
+def _without_timing(start: ModelState) -> ModelState:
+    """Give a base without the timing of its input, on the records as they are."""
+    free = (item._replace(block=item.block - 1) for item in start.free if item.block)
+    return replace(start, chain=start.chain[1:], free=tuple(free)).settled()
 
 
 def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
