@@ -8,6 +8,7 @@ import pytest
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.score import Score
@@ -132,6 +133,12 @@ def mass(spring):
 MOVES = Quantities("force", "position")
 
 
+def transfer(records):
+    """A linear base of first order, as one is identified."""
+    first = TransferFunction(numerator=(1.0, 0.0), denominator=(1.0, 1.0))
+    return ModelState((first,), records, Sample.of(records), hold="zero-order")
+
+
 def hosted(records, noise):
     """A mass that fits the records best, and the score of such noise."""
     begun = one_coordinate(tuple(records), MOVES, "zero-order")
@@ -161,6 +168,28 @@ def test_forces_are_tried_with_the_timing_of_the_base_and_without():
     assert isinstance(firsts[-1], Mechanism)
     alone = [item.alone.chain[0].name for item in hosts(start, MOVES, True, score)]
     assert alone == [block.name for block in firsts]
+
+
+def test_drag_of_a_loose_mass_whose_acceleration_is_measured():
+    """By small steps of Euler: linear, it looks like a mass on a soft spring."""
+    given, fine = [], 20
+    for seed, size in enumerate((1.0, 2.0, 4.0)):
+        u = size * (np.sin(2.1 * TIME) + 0.7 * np.sin(5.3 * TIME + seed))
+        v, out = 0.0, []
+        for force in u:
+            out.append((force - 0.3 * v - 0.4 * v * abs(v)) / 0.5)
+            for _ in range(fine):
+                v += DT / fine * (force - 0.3 * v - 0.4 * v * abs(v)) / 0.5
+        noise = NOISE * np.random.default_rng(seed).standard_normal(len(u))
+        given.append(record(f"{seed}", u, np.array(out) + noise, ("N", "m/s^2")))
+    start = transfer(tuple(given))
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
+    host = next(hosts(start, Quantities("force", "acceleration"), True, score))
+    assert host.fitted.state.chain[0].stiffness == 0.0
+    found = search(host.fitted, score)
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("drag",)
+    assert best.fitted.state.chain[1].coefficient == pytest.approx(0.4, rel=0.03)
 
 
 def test_windows_begin_at_rest_and_at_zero():

@@ -109,6 +109,7 @@ def hosts(
         best = best_host(list(begun), score)
         if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
+            yield from _loose(best.state, score, words)
             yield Host(best.state, best, words)
     if not identified:
         same = same_as(start, quantities)
@@ -127,6 +128,21 @@ def hosts(
         frequency = np.sqrt(block.stiffness / block.mass) / (2 * np.pi)
         words = f"the base's mode at {frequency:.3g} Hz is a mechanism of its own"
         yield Host(best.state if identified else mode, best, words)
+
+
+def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
+    """Give a mass without a spring, where another mass was fitted to its acceleration.
+
+    A loose mass under a drag or a friction looks like one on a soft spring whose output
+    has a share of the velocity: a force begins far from itself there. It has fewer
+    numbers and laws, so it comes first.
+    """
+    block = state.chain[0]
+    if not (isinstance(block, Mechanism) and block.output == "acceleration"):
+        return
+    for begun in free_masses(state.records, block.output, state.hold):
+        alone = fitted(begun, score)
+        yield Host(alone.state, alone, words)
 
 
 def _behind(start: ModelState) -> ModelState:
