@@ -54,6 +54,15 @@ LAWS = {
         lambda q, v: np.where(q < 0.2, 7 * (q - 0.2), 0.0),
     ),
     "drag": ({"coefficient": 0.3}, lambda q, v: 0.3 * v * np.abs(v)),
+    "smooth-friction": (
+        {
+            "coulomb": 2.0,
+            "velocity_scale": 0.5,
+            "static_excess": 1.5,
+            "stribeck_velocity": 1.2,
+        },
+        lambda q, v: (2 + 1.5 * np.exp(-((v / 1.2) ** 2))) * np.tanh(v / 0.5),
+    ),
     "gravity": (
         {"amplitude": 2.0, "angle": 0.4},
         lambda q, v: 2 * (np.sin(q + 0.4) - np.sin(0.4)),
@@ -99,6 +108,12 @@ def test_without_a_stribeck_velocity_there_is_no_excess():
         "friction-force", coulomb=2.0, presliding_distance=0.5, static_excess=1.0
     )
     assert against(block, [0.0, 0.25, 3.0]) == pytest.approx([0, 1, 2])
+    own = {"coulomb": 2.0, "velocity_scale": 0.1}
+    plain, same = (
+        against(force("smooth-friction", **own, static_excess=excess), motion())
+        for excess in (0.0, 1.0)
+    )
+    np.testing.assert_array_equal(same, plain)
 
 
 def test_a_slider_behind_a_gap_lets_go_is_free_climbs_and_slides():

@@ -24,7 +24,12 @@ LAWS = {
     "exponential-stiffness": {"coefficient": 80.0, "reach": 0.3},
     "stop": {"contact_stiffness": 300.0, "gap": 0.2, "centre": 0.05},
     "friction-force": {"coulomb": 20.0, "presliding_distance": 0.02},
-    "smooth-friction": {"coulomb": 20.0, "velocity_scale": 0.3},
+    "smooth-friction": {
+        "coulomb": 20.0,
+        "velocity_scale": 0.3,
+        "static_excess": 8.0,
+        "stribeck_velocity": 0.9,
+    },
     "drag": {"coefficient": 0.8},
     "hysteretic-force": {"largest": 30.0, "yield_distance": 0.1, "sharing": 0.3},
     "gravity": {"amplitude": 50.0, "angle": 0.5},

@@ -11,16 +11,21 @@ from hystbench.blocks.parameter import HUGE, TINY, number
 
 @dataclass(frozen=True)
 class SmoothFriction(Force):
-    """Coulomb friction that grows with the velocity, ``F = coulomb tanh(q' / scale)``.
+    """Friction that grows with the velocity, ``F = level tanh(q' / velocity_scale)``.
 
     A lubricated or magnetorheological fluid yields like that. It creeps at rest, where
-    ``friction-force`` holds.
+    ``friction-force`` holds. The level is ``coulomb + static_excess
+    exp(-(q' / stribeck_velocity)^2)`` (Stribeck's curve); with a Stribeck velocity of
+    zero there is no excess.
 
     References
     ----------
     .. [1] B. F. Spencer, S. J. Dyke, M. K. Sain, J. D. Carlson, "Phenomenological model
        for magnetorheological dampers", Journal of Engineering Mechanics 123 (1997)
        230-238.
+    .. [2] B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, "A survey of models,
+       analysis tools and compensation methods for the control of machines with
+       friction", Automatica 30 (1994) 1083-1138.
     """
 
     name: ClassVar = "smooth-friction"
@@ -29,7 +34,18 @@ class SmoothFriction(Force):
     velocity_scale: float = number(
         "Q/s", "velocity at which 76 % of it are there", TINY, HUGE
     )
+    static_excess: float = number(
+        "U", "by how much the force near rest exceeds it", 0.0, HUGE, 0.0
+    )
+    stribeck_velocity: float = number(
+        "Q/s", "velocity at which the excess has faded", 0.0, HUGE, 0.0
+    )
 
     def law(self) -> tuple[str, tuple[float, ...]]:
-        """Give the force and the velocity."""
-        return "smooth", (self.coulomb, self.velocity_scale)
+        """Give the force and its velocity, the excess and its own."""
+        return "smooth", (
+            self.coulomb,
+            self.velocity_scale,
+            self.static_excess,
+            self.stribeck_velocity,
+        )

@@ -138,11 +138,9 @@ def search(
         inside = look(start)
         if not _leaves_little(inside, floor) and own_offsets(records, quantities):
             start, inside, own = apart_inside(start, inside, floor.rms, look, say)
-    if inside is not None and inside.named.state.power(floor.rms**2) < floor.rms**2:
-        say(
-            "inside: less than the noise's own power is left above it, so no chain of "
-            "effects is tried"
-        )
+    enough = inside is not None and _why_enough(inside, floor, unnamed_share)
+    if enough:
+        say(f"inside: {enough}, so no chain of effects is tried")
     else:
         named, theirs = name(start, floor.rms, say, unnamed_share), own
         if inside is not None and not beats(inside, named, floor.rms, say):
@@ -169,10 +167,28 @@ def _leaves_little(inside: Inside | None, floor: Floor) -> bool:
     """Tell whether forces leave so little that no record needs numbers of its own."""
     if inside is None:
         return False
-    before, after = (
-        state.power(floor.rms**2) for state in (inside.start, inside.named.state)
-    )
+    before, after = _powers(inside, floor)
     return after <= LOOSE * before
+
+
+def _why_enough(inside: Inside, floor: Floor, unnamed_share: float) -> str:
+    """Say why no effect in a chain could gain what matters beside forces; or nothing.
+
+    It is what ends a search in a chain as well: an effect has to take more than may
+    stay unnamed, and more than noise.
+    """
+    before, after = _powers(inside, floor)
+    if after < floor.rms**2:
+        return "less than the noise's own power is left above it"
+    if after <= unnamed_share * before:
+        return "no more is left than may stay unnamed"
+    return ""
+
+
+def _powers(inside: Inside, floor: Floor) -> tuple[float, float]:
+    """Give the power of the gap above the floor, without forces inside and with."""
+    square = floor.rms**2
+    return inside.start.power(square), inside.named.state.power(square)
 
 
 def judge_and_tell(

@@ -84,10 +84,16 @@ static double hb_bouc_wen(double x, double way, double softens, double stiffens,
     return sign * x;
 }
 
+/* Stribeck's curve: an excess over the force of sliding that fades with the velocity. */
+static double hb_level(double sliding, double excess, double fades, double v)
+{
+    return sliding + (fades > 0 ? excess * exp(-(v / fades) * (v / fades)) : 0);
+}
+
 /* The largest force of friction at a velocity, the largest at all being f[1] + f[2]. */
 static double hb_sliding(const double *f, double v)
 {
-    return f[1] + (f[3] > 0 ? f[2] * exp(-(v / f[3]) * (v / f[3])) : 0);
+    return hb_level(f[1], f[2], f[3], v);
 }
 
 /* How far friction gives way; its stiffness is that of the largest force at rest. */
@@ -131,7 +137,7 @@ static double hb_force(const double *f, double q, double v, double memory)
     case 3: /* friction */
         return hb_sliding(f, 0) * memory / f[4];
     case 8: /* smooth */
-        return f[1] * tanh(v / f[2]);
+        return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
     case 4: /* drag */
         return f[1] * v * fabs(v);
     case 5: /* hysteretic */
@@ -174,7 +180,7 @@ static double hb_mean_force(const double *f, double q, double way, double h,
         return hb_sliding(f, 0) / f[4] *
                hb_mean_held(memory, way, hb_friction_reach(f, v), 0);
     case 8: /* smooth */
-        return f[1] * tanh(v / f[2]);
+        return hb_level(f[1], f[3], f[4], v) * tanh(v / f[2]);
     case 4: /* drag */
         return f[1] * v * fabs(v);
     case 5: /* hysteretic */ {
@@ -248,8 +254,11 @@ static double hb_way_near(int count, const double *forces, const double *memory,
  * fulfil a step, and the way that begins at rest is the first. */
 static int hb_falls(int count, const double *forces)
 {
-    for (int i = 0; i < count; i++)
-        if ((int)forces[6 * i] == 3 && forces[6 * i + 2] > 0) return 1;
+    for (int i = 0; i < count; i++) {
+        const double *f = forces + 6 * i;
+        if ((int)f[0] == 3 && f[2] > 0) return 1;
+        if ((int)f[0] == 8 && f[3] > 0 && f[4] > 0) return 1;
+    }
     return 0;
 }
 

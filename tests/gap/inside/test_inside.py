@@ -6,13 +6,20 @@ import numpy as np
 import pytest
 
 from hystbench.blocks.gain import Gain
+from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.law import Moved
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.hosts import best_host, is_seen_moving, one_coordinate
+from hystbench.gap.inside.hosts import (
+    best_host,
+    hosts,
+    is_seen_moving,
+    one_coordinate,
+)
 from hystbench.gap.inside.name import chosen
 from hystbench.gap.inside.put_in import with_law
 from hystbench.gap.inside.search import (
@@ -66,6 +73,29 @@ def test_friction_of_a_device_that_is_moved_is_found_with_its_numbers(found):
     assert rms == pytest.approx(NOISE, rel=0.1)
 
 
+def test_smooth_friction_may_fall_with_the_speed():
+    """Stribeck's curve of a device that is moved, written without a block."""
+    given = []
+    for seed, size in enumerate((2.0, 5.0)):
+        x = size * np.sin(2 * np.pi * 0.7 * TIME) + 0.2 * size * np.sin(9.1 * TIME)
+        v = np.gradient(x, DT)
+        level = 2.0 + 1.5 * np.exp(-((v / 4.0) ** 2))
+        noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
+        given.append(record(f"{seed}", x, 0.03 * v + level * np.tanh(v / 2) + noise))
+    begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
+    sample = Sample.of(tuple(given))
+    score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
+    found = search(best_host(list(begun), score), score, offered=["friction", "drag"])
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("friction",)
+    law = next(x for x in best.fitted.state.chain if x.name == "smooth-friction")
+    assert law.coulomb == pytest.approx(2.0, rel=0.1)
+    assert law.static_excess == pytest.approx(1.5, rel=0.1)
+    assert law.stribeck_velocity == pytest.approx(4.0, rel=0.1)
+    rms = np.sqrt(np.mean(best.fitted.state.residual**2))
+    assert rms == pytest.approx(NOISE, rel=0.1)
+
+
 def test_a_host_without_a_force_stands_first(found):
     assert found[0].effects == ()
     assert found[0].score > min(item.score for item in found) + 100
@@ -106,6 +136,12 @@ def mass(spring):
 MOVES = Quantities("force", "position")
 
 
+def transfer(records):
+    """A linear base of first order, as one is identified."""
+    first = TransferFunction(numerator=(1.0, 0.0), denominator=(1.0, 1.0))
+    return ModelState((first,), records, Sample.of(records), hold="zero-order")
+
+
 def hosted(records, noise):
     """A mass that fits the records best, and the score of such noise."""
     begun = one_coordinate(tuple(records), MOVES, "zero-order")
@@ -120,6 +156,43 @@ def test_a_mass_without_a_spring_is_known_by_its_records():
     assert decay_of_free_mass([mass(30.0)], MOVES) is None
     assert decay_of_free_mass([mass(0.0)], Quantities("position", "force")) is None
     assert decay_of_free_mass([replace(mass(0.0), use="hold-out")], MOVES) is None
+
+
+def test_forces_are_tried_with_the_timing_of_the_base_and_without():
+    """What a linear model takes for timing may be the phase that a force turns."""
+    host, score = hosted([mass(30.0)], 1e-3)
+    state = host.state
+    early = InputDelay(delay_s=0.0, lead_s=DT / 2, hold=state.hold)
+    free = tuple(item._replace(block=item.block + 1) for item in state.free)
+    start = replace(state, chain=(early, *state.chain), free=free).settled()
+    chains = [item.fitted.state.chain for item in hosts(start, MOVES, True, score)]
+    firsts = [chain[0] for chain in chains]
+    assert firsts[0] == early
+    assert isinstance(firsts[-1], Mechanism)
+    alone = [item.alone.chain[0].name for item in hosts(start, MOVES, True, score)]
+    assert alone == [block.name for block in firsts]
+
+
+def test_drag_of_a_loose_mass_whose_acceleration_is_measured():
+    """By small steps of Euler: linear, it looks like a mass on a soft spring."""
+    given, fine = [], 20
+    for seed, size in enumerate((1.0, 2.0, 4.0)):
+        u = size * (np.sin(2.1 * TIME) + 0.7 * np.sin(5.3 * TIME + seed))
+        v, out = 0.0, []
+        for force in u:
+            out.append((force - 0.3 * v - 0.4 * v * abs(v)) / 0.5)
+            for _ in range(fine):
+                v += DT / fine * (force - 0.3 * v - 0.4 * v * abs(v)) / 0.5
+        noise = NOISE * np.random.default_rng(seed).standard_normal(len(u))
+        given.append(record(f"{seed}", u, np.array(out) + noise, ("N", "m/s^2")))
+    start = transfer(tuple(given))
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
+    host = next(hosts(start, Quantities("force", "acceleration"), True, score))
+    assert host.fitted.state.chain[0].stiffness == 0.0
+    found = search(host.fitted, score)
+    best = min(found, key=lambda item: item.score)
+    assert best.effects == ("drag",)
+    assert best.fitted.state.chain[1].coefficient == pytest.approx(0.4, rel=0.03)
 
 
 def test_windows_begin_at_rest_and_at_zero():

@@ -2,11 +2,18 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from hystbench.gap import decision
+from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.inside.name import _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
+from hystbench.gap.naming.name import name
+from hystbench.gap.records.evidence import Evidence
+from hystbench.quantities import Quantities
+from hystbench.record import Channel, Record
 
 
 def tried(score, *effects):
@@ -86,3 +93,39 @@ def test_of_a_tie_a_weight_that_turns_is_likelier_than_a_softer_spring(behind, n
         measured(-900.0 + behind, 0.1, "gravity"),
     ]
     assert chosen(found, 0.0).effects == (name,)
+
+
+@pytest.mark.parametrize(("share", "chain"), [(0.01, False), (1e-6, True)])
+def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
+    share, chain, monkeypatch
+):
+    """Friction whose law has another form: it leaves far more than the noise."""
+    t = 0.005 * np.arange(600)
+    given = []
+    for size in (2.0, 5.0):
+        x = size * (np.sin(4.0 * t) + 0.2 * np.sin(9.1 * t))
+        v = np.gradient(x, 0.005)
+        y = 0.03 * v + 0.4 * x + 8.0 / np.pi * np.arctan(v / 1.5)
+        channels = Channel("way", "mm"), Channel("force", "N")
+        given.append(Record(f"{size}", 0.005, x, y, *channels, "measured", "fit"))
+    kinds = Quantities("position", "force")
+    base, _ = load_base("linear", Evidence("made", tuple(given), (), quantities=kinds))
+    calls = []
+
+    def counted(*args, **kwargs):
+        calls.append(args)
+        return name(*args, **kwargs)
+
+    monkeypatch.setattr(decision, "name", counted)
+    found = decision.search(
+        "made",
+        tuple(given),
+        base,
+        declared=1e-4,
+        unnamed_share=share,
+        offered=("friction",),
+        quantities=kinds,
+    )
+    assert bool(calls) == chain
+    assert found.left.after > 1e-4**2
+    assert [item["name"] for item in found.content["effects"]] == ["friction"]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.hysteretic_force import HystereticForce
 from hystbench.blocks.smooth_friction import SmoothFriction
@@ -16,6 +18,9 @@ HOLDS = 1e-7
 so little."""
 SOON = 1e-3
 """The same where it gives way along a curve."""
+FADES = 0.02
+"""Share of the largest speed below which no excess fades that friction without a hold
+at rest has: so slow a motion is one that turns, and the excess would be any."""
 
 
 class Friction(Effect):
@@ -77,3 +82,17 @@ class Friction(Effect):
                 "velocity_scale": share * moved.speed,
             }
             yield Law("smooth", SmoothFriction(**smooth), tuple(smooth))
+        # It hardly grows near rest: a motion that stands is then not held.
+        for share, fades in ((1e-3, 0.03), (1e-2, 0.1)):
+            own = {
+                "coulomb": 0.1 * moved.force,
+                "velocity_scale": share * moved.speed,
+                "static_excess": 0.05 * moved.force,
+                "stribeck_velocity": fades * moved.speed,
+            }
+            yield Law(
+                "smooth Stribeck",
+                SmoothFriction(**own),
+                tuple(own),
+                ranges={"stribeck_velocity": (FADES * moved.speed, np.inf)},
+            )

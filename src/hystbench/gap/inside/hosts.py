@@ -90,6 +90,8 @@ def hosts(
             state = _in_front(delay, start, host.fitted.state)
             alone = _in_front(delay, start, host.alone)
             yield replace(host, alone=alone, fitted=replace(host.fitted, state=state))
+        # A force that is not linear turns the phase: it may be what looked like timing.
+        yield from hosts(_without_timing(start), quantities, identified, score)
         return
     if identified and quantities.causality in ("storage", "unknown"):
         noise = float(np.sqrt(score.floor))
@@ -107,6 +109,7 @@ def hosts(
         best = best_host(list(begun), score)
         if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
+            yield from _loose(best.state, score, words)
             yield Host(best.state, best, words)
     if not identified:
         same = same_as(start, quantities)
@@ -127,17 +130,35 @@ def hosts(
         yield Host(best.state if identified else mode, best, words)
 
 
+def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
+    """Give a mass without a spring, where another mass was fitted to its acceleration.
+
+    A loose mass under a drag or a friction looks like one on a soft spring whose output
+    has a share of the velocity: a force begins far from itself there. It has fewer
+    numbers and laws, so it comes first.
+    """
+    block = state.chain[0]
+    if not (isinstance(block, Mechanism) and block.output == "acceleration"):
+        return
+    for begun in free_masses(state.records, block.output, state.hold):
+        alone = fitted(begun, score)
+        yield Host(alone.state, alone, words)
+
+
 def _behind(start: ModelState) -> ModelState:
     """Give a base without the timing of its input, on records that have it in time."""
-    delay, *behind = start.chain
-    free = (item._replace(block=item.block - 1) for item in start.free if item.block)
+    delay = start.chain[0]
     records = tuple(
         replace(item, u=delay.simulate(item.u, item.u, item.dt))
         for item in start.records
     )
-    return replace(
-        start, chain=tuple(behind), records=records, free=tuple(free)
-    ).settled()
+    return replace(_without_timing(start), records=records).settled()
+
+
+def _without_timing(start: ModelState) -> ModelState:
+    """Give a base without the timing of its input, on the records as they are."""
+    free = (item._replace(block=item.block - 1) for item in start.free if item.block)
+    return replace(start, chain=start.chain[1:], free=tuple(free)).settled()
 
 
 def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
