@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from hystbench.blocks.friction_force import FrictionForce
 from hystbench.blocks.hysteretic_force import HystereticForce
 from hystbench.blocks.smooth_friction import SmoothFriction
@@ -18,9 +16,6 @@ HOLDS = 1e-7
 so little."""
 SOON = 1e-3
 """The same where it gives way along a curve."""
-FADES = 0.02
-"""Share of the largest speed below which no excess fades that friction without a hold
-at rest has: so slow a motion is one that turns, and the excess would be any."""
 
 
 class Friction(Effect):
@@ -90,9 +85,4 @@ class Friction(Effect):
                 "static_excess": 0.05 * moved.force,
                 "stribeck_velocity": fades * moved.speed,
             }
-            yield Law(
-                "smooth Stribeck",
-                SmoothFriction(**own),
-                tuple(own),
-                ranges={"stribeck_velocity": (FADES * moved.speed, np.inf)},
-            )
+            yield Law("smooth Stribeck", SmoothFriction(**own), tuple(own))
