@@ -90,6 +90,7 @@ class Saturation(Effect):
             grids={"level": logarithmic(STRONGEST * largest, 30 * largest, 5)},
             unit={"offset": 1e-3 * largest},
             free=("level", "offset"),
+            neutral=False,
         )
 
 
