@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from hystbench.gap.effects.drift import FORMS
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import Products
-from hystbench.gap.judging.known_signals import PATH, generic_groups, halves
+from hystbench.gap.judging.known_signals import PATH, generic_groups, halves, paths
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.record import FloatArray
@@ -152,11 +153,13 @@ def what_is_unnamed(
     increment = base.residual - state.residual
     if any(item.blocks for item in state.added):
         changing = {"changing": halves(state, _numbers(state, increment))}
-    integrates = any(record.decay_s is not None for record in state.records)
-    if integrates or any(beside.effect == PATH for beside, _ in state.beside):
-        # A path owns all that is slow, the input's slow power too. A free mass makes a
-        # path in each of its windows of any small error of a force.
-        own["path"] = generic.pop("path")
+    drifts = any(beside.effect == PATH for beside, _ in state.beside)
+    if drifts or any(record.decay_s is not None for record in state.records):
+        # A path owns all that is slow, the input's slow power too, in every form that a
+        # drift has. A free mass makes a path in each of its windows of any small error
+        # of a force.
+        path = generic.pop("path")
+        own["path"] = paths(state, max(FORMS.values())) if drifts else path
         del generic["slow power"]
     groups = own | generic | changing
     ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
