@@ -16,7 +16,7 @@ OPERATORS = 8
 BEND = 0.5
 """Argument of the hyperbolic tangent at the largest input, where the search starts."""
 PLAYS = "prandtl-ishlinskii"
-FORM = "plays"
+FORM, BENDING = "plays", "generalized plays"
 """Of plain plays beside a linear path; the other form is of generalized ones."""
 
 
@@ -32,6 +32,7 @@ class Hysteresis(Effect):
     shows = "branch"
     place = "material"
     laws: ClassVar = (PLAYS,)
+    free_forms = (BENDING,)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer operators over the range of the input."""
@@ -86,10 +87,10 @@ class Hysteresis(Effect):
             simulation,
             0,
             values,
-            form="generalized plays",
+            form=BENDING,
             unit=dict.fromkeys(names, 1e-3),
             positive=tuple(names),
             free=("weights", "envelope"),
             neutral=False,
         )
-        return replace(found, charge=float(OPERATORS + len(envelope)))
+        return replace(found, charge=float(OPERATORS + len(envelope)), begun=True)

@@ -133,6 +133,17 @@ def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
     )
 
 
+def best_forms(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """Keep the best form of each effect; one that declined only where all did."""
+    best: dict[str, Candidate] = {}
+    for item in candidates:
+        other = best.setdefault(item.effect, item)
+        better = other.declined or item.score < other.score
+        if better and not item.declined:
+            best[item.effect] = item
+    return list(best.values())
+
+
 def in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
     """Put finalists first, and what scores least first among them."""
     return sorted(candidates, key=lambda item: (item.state is None, item.score))
