@@ -7,6 +7,7 @@ follows known signals speaks against it, however small beside the gap.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -86,9 +87,14 @@ class Unnamed:
         """Tell whether so much stays that its sort is said."""
         return self.too_much(share) or self.stays > LOOSE
 
-    def trust(self, share: float = UNNAMED_SHARE) -> float:
-        """Give the factor on a name's confidence: one where no more stays than may."""
-        return 1.0 if self.structured <= share else share / self.structured
+    def trust(self, share: float = UNNAMED_SHARE, of_base: bool = False) -> float:
+        """Give the factor on a name's confidence: one where no more stays than may.
+
+        Else it is the allowed over the actual share. Where the base may have left that
+        as well, it is halfway between that and one: the square root.
+        """
+        factor = 1.0 if self.structured <= share else share / self.structured
+        return math.sqrt(factor) if of_base else factor
 
     def sort(self, share: float = UNNAMED_SHARE) -> str:
         """Give the sort of what stays: a key of :data:`SORTS`."""
