@@ -16,7 +16,7 @@ OPERATORS = 8
 BEND = 0.5
 """Argument of the hyperbolic tangent at the largest input, where the search starts."""
 PLAYS = "prandtl-ishlinskii"
-FORM, BENDING = "plays", "generalized plays"
+FORM = "plays"
 """Of plain plays beside a linear path; the other form is of generalized ones."""
 
 
@@ -32,7 +32,6 @@ class Hysteresis(Effect):
     shows = "branch"
     place = "material"
     laws: ClassVar = (PLAYS,)
-    free_forms = (BENDING,)
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer operators over the range of the input."""
@@ -87,7 +86,7 @@ class Hysteresis(Effect):
             simulation,
             0,
             values,
-            form=BENDING,
+            form="generalized plays",
             unit=dict.fromkeys(names, 1e-3),
             positive=tuple(names),
             free=("weights", "envelope"),
