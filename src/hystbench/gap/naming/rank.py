@@ -138,7 +138,11 @@ def rank(
         and not any(trial is item for item in likely)
         and (not state.added or trial.variant.effect in shown)
     ]
-    judged = best_forms(_judged(trial, state, score, now) for trial in likely)
+    # A form that bends far on all records may still foretell none of them.
+    judged = best_forms(
+        (_judged(trial, state, score, now) for trial in likely),
+        lambda item: on_folds(item, state, score).score,
+    )
     judged += [
         _candidate(trial, now)
         for trial in of_effect.values()

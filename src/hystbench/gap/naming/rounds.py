@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -133,15 +133,18 @@ def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
     )
 
 
-def best_forms(candidates: Iterable[Candidate]) -> list[Candidate]:
-    """Keep the best form of each effect; one that declined only where all did."""
-    best: dict[str, Candidate] = {}
+def best_forms(
+    candidates: Iterable[Candidate], value: Callable[[Candidate], float]
+) -> list[Candidate]:
+    """Keep the form of each effect whose value is least, if it has several.
+
+    One that declined stays only where all did.
+    """
+    forms: dict[str, list[Candidate]] = {}
     for item in candidates:
-        other = best.setdefault(item.effect, item)
-        better = other.declined or item.score < other.score
-        if better and not item.declined:
-            best[item.effect] = item
-    return list(best.values())
+        forms.setdefault(item.effect, []).append(item)
+    standing = [[x for x in each if not x.declined] or each for each in forms.values()]
+    return [min(each, key=value) if len(each) > 1 else each[0] for each in standing]
 
 
 def in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
