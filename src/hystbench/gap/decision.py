@@ -38,7 +38,13 @@ from hystbench.gap.judging.gap_json import (
     simulator_mapping,
 )
 from hystbench.gap.judging.unnamed import what_is_unnamed
-from hystbench.gap.judging.verdict import Left, judge, what_is_left, what_mends
+from hystbench.gap.judging.verdict import (
+    Left,
+    judge,
+    may_be_of_base,
+    what_is_left,
+    what_mends,
+)
 from hystbench.gap.locate import locate
 from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.naming.name import LITTLE, Named, name
@@ -246,6 +252,7 @@ def judge_and_tell(
         unnamed_share,
         what_mends(start.records),
     )
+    trust = unnamed.trust(unnamed_share, may_be_of_base(left, lone, differs))
     untried = not_tried(named)
     reason += _untried(untried) if state.added else ""
     ends = at_ends(state)
@@ -282,7 +289,7 @@ def judge_and_tell(
                 by_effect.get(item.effect, ()),
                 left,
                 size_error(finer, floor.rms, number),
-                unnamed.trust(unnamed_share),
+                trust,
             )
             | {"blocks": blocks_of(item, state, model)}
             for number, item in enumerate(state.added)

@@ -172,6 +172,23 @@ def test_a_path_that_is_named_owns_slow_paths():
     assert what_is_unnamed(cut, cut, NOISE).structured < 0.1
 
 
+def test_a_path_that_is_named_owns_what_its_most_winding_form_could_do():
+    # Seven half waves in a record, of which the path that is named has degree four.
+    given = with_output(
+        lambda k, one: 0.5 * np.cos(7 * np.pi * np.arange(len(one)) / len(one) + k)
+    )
+    start = state_of((GAIN,), given, count=800)
+    variants = list(effects()["drift"].variants(Simulation((GAIN,), given)))
+    plain = next(x.beside for x in variants if x.form == "path")
+    added = Added("drift", "sensor", "path", (), {}, 1)
+    state = state_of((GAIN,), given, count=800, added=(added,), beside=((plain, {}),))
+    found = what_is_unnamed(start, state, NOISE)
+    assert not found.too_much()
+    assert found.stays < 0.05
+    # Without its name such a path stays what follows no known signal.
+    assert what_is_unnamed(start, start, NOISE).stays > 0.5
+
+
 def test_one_number_sets_both_limits():
     for share in (0.01, 0.05):
         assert Unnamed(1.01 * share).too_much(share)

@@ -1,5 +1,7 @@
 """The word of the verdict and the confidence of a name, at and around their limits."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -138,12 +140,34 @@ def test_what_stays_unnamed_decides_whether_a_name_holds(follows, changes, rest,
 
 @pytest.mark.parametrize(("stays", "less"), [(0.05, False), (0.3, True)])
 def test_a_withdrawal_is_less_sure_beside_a_base_that_may_be_wrong(stays, less):
-    found = Left(100.0, 2.0, 100.0, 100.0 * stays, 1e6)
+    found = Left(100.0, 2.0, 100.0, 100.0 * stays, 1e3)
     word, reason = judge(found, True, unnamed=Unnamed(0.02))
     assert word == "unnamed"
     assert ("less sure" in reason) == less
     # What is structured is none of that.
     assert "less sure" not in judge(found, True, unnamed=Unnamed(0.28))[1]
+
+
+def test_what_would_be_no_gap_does_not_speak_against_a_name():
+    """Of a gap of 100 floors 15 stay, most of it what reshaping the base could do."""
+    output = 8.0 / (0.9 * SLIGHT) ** 2
+    found = Left(100.0, 8.0, 100.0, 15.0, output)
+    assert judge(replace(found, before=8.0, all_before=15.0), False)[0] == "no-gap"
+    structure = Unnamed(0.03)
+    word, reason = judge(found, True, unnamed=structure)
+    assert word == "named"
+    assert "less sure" in reason
+    # more of the output, what no reshaping could do, lone samples, and other periods
+    large = replace(found, output=0.5 * output)
+    alien = replace(found, after=14.0)
+    for other in (large, alien):
+        assert judge(other, True, unnamed=structure)[0] == "unnamed"
+    for more in ({"lone": 0.9}, {"unrepeated": 10.0}):
+        assert judge(found, True, unnamed=structure, **more)[0] == "unnamed"
+    # Nor does a name stand where most of the gap is left.
+    assert judge(found, True, unnamed=Unnamed(0.03, 0.0, 0.3))[0] == "unnamed"
+    assert structure.trust() < structure.trust(of_base=True) < 1
+    assert Unnamed(0.005).trust(of_base=True) == 1
 
 
 @given(st.lists(st.floats(0, 200), min_size=1, max_size=6), st.floats(0, 100))

@@ -97,6 +97,9 @@ class Variant:
     zero : dict of str to float, optional
         Values at which the chain is as before, but simulated in another way: only the
         difference to them is the effect's.
+    begun : bool
+        Whether a trial only begins it: the refit frees numbers that no trial has, so
+        that the score of its trial says little.
     """
 
     effect: str
@@ -116,6 +119,7 @@ class Variant:
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
     neutral: bool = True
     zero: dict[str, float] | None = None
+    begun: bool = False
 
     def ends(self, name: str) -> tuple[float, float]:
         """Give the ends of a searched parameter's range."""

@@ -92,4 +92,4 @@ class Hysteresis(Effect):
             free=("weights", "envelope"),
             neutral=False,
         )
-        return replace(found, charge=float(OPERATORS + len(envelope)))
+        return replace(found, charge=float(OPERATORS + len(envelope)), begun=True)

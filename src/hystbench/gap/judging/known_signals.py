@@ -57,12 +57,12 @@ def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]
     """
     before, after = base.simulation.output, state.simulation.output
     increments = [b - a for a, b in zip(before, after, strict=True)]
-    over_time = _cosines(state, SLOW_COSINES)
+    over_time = paths(state, SLOW_COSINES)
     groups = {}
     if any(x.any() for x in increments):
         groups["strength"] = state.sample.take(increments)[:, None] * over_time
     groups["gain"] = state.sample.take(before)[:, None] * over_time
-    groups["path"] = _cosines(state, PATH_COSINES)
+    groups["path"] = paths(state)
     largest = max(float(np.abs(record.u).max()) for record in state.records) or 1.0
     size = max(float(np.abs(y).max()) for y in after) or 1.0
     step = min(record.dt for record in state.records)
@@ -108,8 +108,19 @@ def halves(state: ModelState, signals: FloatArray) -> FloatArray:
     return np.hstack(columns)
 
 
-def _cosines(state: ModelState, count: int) -> FloatArray:
-    """Give every record cosines of its own, zero in the others; the first is one."""
+def paths(state: ModelState, count: int = PATH_COSINES) -> FloatArray:
+    """Give every record a constant and cosines of its own, zero in the others.
+
+    Parameters
+    ----------
+    state : ModelState
+    count : int
+        Cosines over a record.
+
+    Returns
+    -------
+    ndarray, shape (scored samples, (count + 1) records)
+    """
     sample, each = state.sample, count + 1
     columns = np.zeros((len(sample), each * len(state.records)))
     for k, (record, rows, positions) in enumerate(

@@ -7,15 +7,17 @@ follows known signals speaks against it, however small beside the gap.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from hystbench.gap.effects.drift import FORMS
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import Products
-from hystbench.gap.judging.known_signals import PATH, generic_groups, halves
+from hystbench.gap.judging.known_signals import PATH, generic_groups, halves, paths
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
 from hystbench.record import FloatArray
@@ -85,9 +87,14 @@ class Unnamed:
         """Tell whether so much stays that its sort is said."""
         return self.too_much(share) or self.stays > LOOSE
 
-    def trust(self, share: float = UNNAMED_SHARE) -> float:
-        """Give the factor on a name's confidence: one where no more stays than may."""
-        return 1.0 if self.structured <= share else share / self.structured
+    def trust(self, share: float = UNNAMED_SHARE, of_base: bool = False) -> float:
+        """Give the factor on a name's confidence: one where no more stays than may.
+
+        Else it is the allowed over the actual share. Where the base may have left that
+        as well, it is halfway between that and one: the square root.
+        """
+        factor = 1.0 if self.structured <= share else share / self.structured
+        return math.sqrt(factor) if of_base else factor
 
     def sort(self, share: float = UNNAMED_SHARE) -> str:
         """Give the sort of what stays: a key of :data:`SORTS`."""
@@ -152,11 +159,13 @@ def what_is_unnamed(
     increment = base.residual - state.residual
     if any(item.blocks for item in state.added):
         changing = {"changing": halves(state, _numbers(state, increment))}
-    integrates = any(record.decay_s is not None for record in state.records)
-    if integrates or any(beside.effect == PATH for beside, _ in state.beside):
-        # A path owns all that is slow, the input's slow power too. A free mass makes a
-        # path in each of its windows of any small error of a force.
-        own["path"] = generic.pop("path")
+    drifts = any(beside.effect == PATH for beside, _ in state.beside)
+    if drifts or any(record.decay_s is not None for record in state.records):
+        # A path owns all that is slow, the input's slow power too, in every form that a
+        # drift has. A free mass makes a path in each of its windows of any small error
+        # of a force.
+        path = generic.pop("path")
+        own["path"] = paths(state, max(FORMS.values())) if drifts else path
         del generic["slow power"]
     groups = own | generic | changing
     ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])

@@ -217,7 +217,9 @@ def judge(
             "there and no effect of the vocabulary pays; "
             f"{_box_words(explained_by_box, 'it')}"
         )
-    if unnamed.too_much(unnamed_share):
+    much = unnamed.too_much(unnamed_share)
+    of_base = may_be_of_base(left, lone, unrepeated)
+    if much and not of_base:
         why = unnamed.reason(unnamed_share)
         if left.whole - unnamed.structured > OFF:
             why += (
@@ -230,7 +232,30 @@ def judge(
             f"too much stays for a name: {left.stays}, and most of it follows no known "
             "signal"
         )
+    if much:
+        return "named", (
+            f"{left.stays}; this is less sure, as {unnamed.reason(unnamed_share)}, "
+            "though all that is left is no more than a slightly wrong shape of the "
+            "base could leave"
+        )
     return "named", left.stays
+
+
+def may_be_of_base(left: Left, lone: float = 0.0, differs: float | None = None) -> bool:
+    """Tell whether what names leave may all be the base's own error.
+
+    With nothing named it would be no gap, so it cannot speak against a name.
+
+    Parameters
+    ----------
+    left : Left
+    lone : float
+        Share of the power of what is left that stands in samples far off.
+    differs : float or None
+        Power of what is left that differs between periods of the same input, above the
+        floor and in floors; none where no record repeats.
+    """
+    return left.slight and not _foreign(left, lone, differs)
 
 
 def _foreign(left: Left, lone: float, unrepeated: float | None) -> str:

@@ -19,7 +19,12 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.search import Trial
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming import cached
-from hystbench.gap.naming.rounds import Candidate, TriedVariant, in_order
+from hystbench.gap.naming.rounds import (
+    Candidate,
+    TriedVariant,
+    best_forms,
+    in_order,
+)
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.thresholds import (
     CERTAIN,
@@ -125,11 +130,23 @@ def rank(
         if (number < FINALISTS and trial.score < now - (now - best) * (1 - BEHIND))
         or (trial.variant.effect == SHAPE and now - trial.score > PAYS)
     ]
-    judged = [_judged(trial, state, score, now) for trial in likely]
+    shown = {trial.variant.effect for trial in likely}
+    likely += [
+        trial
+        for trial in refined
+        if trial.variant.begun
+        and not any(trial is item for item in likely)
+        and (not state.added or trial.variant.effect in shown)
+    ]
+    # A form that bends far on all records may still foretell none of them.
+    judged = best_forms(
+        (_judged(trial, state, score, now) for trial in likely),
+        lambda item: on_folds(item, state, score).score,
+    )
     judged += [
         _candidate(trial, now)
         for trial in of_effect.values()
-        if not any(trial is item for item in likely)
+        if trial.variant.effect not in {x.variant.effect for x in likely}
     ]
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
     judged = [_not_cut_short(item, state) for item in judged]
@@ -246,7 +263,7 @@ def _judged(trial: Trial, state: ModelState, score: Score, now: float) -> Candid
     """Add an effect that gains anything, refit all together, and say what is wrong."""
     variant = trial.variant
     item = _candidate(trial, now)
-    if item.gain <= 0:
+    if item.gain <= 0 and not variant.begun:
         return item
 
     def declined(why: str) -> Candidate:

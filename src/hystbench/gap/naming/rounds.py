@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -131,6 +131,20 @@ def near(first: Candidate, ranking: Sequence[Candidate]) -> tuple[str, ...]:
         and item.state is not None
         and item.score < first.score + SCALE
     )
+
+
+def best_forms(
+    candidates: Iterable[Candidate], value: Callable[[Candidate], float]
+) -> list[Candidate]:
+    """Keep the form of each effect whose value is least, if it has several.
+
+    One that declined stays only where all did.
+    """
+    forms: dict[str, list[Candidate]] = {}
+    for item in candidates:
+        forms.setdefault(item.effect, []).append(item)
+    standing = [[x for x in each if not x.declined] or each for each in forms.values()]
+    return [min(each, key=value) if len(each) > 1 else each[0] for each in standing]
 
 
 def in_order(candidates: Iterable[Candidate]) -> list[Candidate]:
