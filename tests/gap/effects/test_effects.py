@@ -224,6 +224,7 @@ def test_nothing_of_an_effect_is_the_chain(chain, variant):
     """Otherwise how it is computed would be taken for what it is."""
     simulation = Simulation(chains()[chain], records())
     there = {key: NOTHING[variant.effect][key] for key in variant.grids}
+    there |= dict.fromkeys(variant.unit, 0.0)
     outputs = simulation.tail(variant.start, variant.build(there))
     size = simulation.largest(len(simulation.chain))
     for one, other in zip(outputs, simulation.output, strict=True):

@@ -77,7 +77,7 @@ class Saturation(Effect):
         rest, largest = simulation.chain[place:], simulation.largest(place)
 
         def build(given: Values) -> tuple[Block, ...]:
-            moved = Gain(value=1.0, offset=given["offset"])
+            moved = Gain(value=1.0, offset=given.get("offset", 0.0))
             return (moved, Limit(level=given["level"]), *rest)
 
         return Variant(

@@ -232,13 +232,15 @@ def advance(
 
 
 def to_the_end(state: ModelState, floor: float) -> ModelState:
-    """Fit all numbers of a model without hysteresis together, if all may go anywhere.
+    """Fit all numbers of a model without hysteresis together, the base's own as well.
 
     A linear base was fitted with the gap in it: what an effect bends much may take its
     numbers far, farther than steps from a linear fit lead.
     """
-    bound = any(free.tolerance is not None for free in state.free)
-    if bound or state.beside or not state.free or state.simulation.loop is not None:
+    own = {place for item in state.added for place in item.blocks}
+    re_tuned = [free for free in state.free if free.block not in own]
+    bound = any(free.tolerance is not None for free in re_tuned)
+    if bound or not re_tuned or state.beside or state.simulation.loop is not None:
         return state
     score = Score(state.sample, np.zeros((len(state.sample), 0)), floor)
     best = fitted_to_the_end(state, score)
