@@ -18,9 +18,9 @@ from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import run_base, start_state
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
 from hystbench.gap.holdout.show import FitResult
-from hystbench.gap.inside.name import inside_of
+from hystbench.gap.inside.name import quantities_if_linear
 from hystbench.gap.judging.black_box import black_box
-from hystbench.gap.naming.built_in import BuiltIn, put_in
+from hystbench.gap.naming.built_in import BuiltIn, build_in
 from hystbench.gap.naming.forecast_calls import keep_back
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.progress import Say, silent
@@ -154,7 +154,7 @@ def found_on_fit(
     Parameters are those of :func:`closed_gap`, and of the vocabulary what the device
     can have.
     """
-    base, built_in = put_in(base, evidence, vocabulary.fixed, say)
+    base, built_in = build_in(base, evidence, vocabulary.fixed, say)
     decision = search(
         evidence.name,
         evidence.fit,
@@ -165,7 +165,7 @@ def found_on_fit(
         say,
         unnamed_share,
         vocabulary.offered,
-        inside_of(base, evidence),
+        quantities_if_linear(base, evidence),
     )
     return decision, built_in
 

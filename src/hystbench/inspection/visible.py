@@ -17,11 +17,12 @@ from scipy.optimize import brentq
 
 from hystbench.blocks import registry
 from hystbench.errors import InputError
+from hystbench.gap.fitting.score import record_weight
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.sample import Sample
 from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, PAYS, RECORD_WEIGHT
+from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.inspection.shapes import Shape, shapes_of
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -194,7 +195,7 @@ class _Judge:
     ) -> None:
         self.state, self.own, self.floor, self.reach = state, own, floor, reach
         self.slices = state.sample.slices
-        self.weight = max(RECORD_WEIGHT, LEAST_WEIGHT / len(self.slices))
+        self.weight = record_weight(len(self.slices))
 
     def measured(self, shape: Shape) -> _Measured:
         """Take off what the base could do, and see how much of the rest it takes."""

@@ -14,13 +14,12 @@ from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.further_modes import (
-    frequency_of,
     further_words,
     in_further_modes,
     with_another_mode,
     with_modes,
 )
-from hystbench.gap.inside.modes import NUMBERS, sum_of
+from hystbench.gap.inside.modes import NUMBERS, frequency_of, sum_of
 from hystbench.gap.inside.search import Hypothesis, laws_for, may_gain
 from hystbench.gap.records.sample import Sample
 from hystbench.record import Channel, Record

@@ -19,7 +19,7 @@ CHANGE = 1e-3
 """Relative change of a parameter in a refit; of 0 an absolute one."""
 
 
-class Simulator(Protocol):
+class Runnable(Protocol):
     """What runs from an input: a model."""
 
     def simulate_near(
@@ -42,13 +42,13 @@ class Rival:
 
     Parameters
     ----------
-    model : Simulator
-    neighbours : tuple of Simulator
+    model : Runnable
+    neighbours : tuple of Runnable
         What a refit of it may move towards, besides another gain and offset.
     """
 
-    model: Simulator
-    neighbours: tuple[Simulator, ...] = ()
+    model: Runnable
+    neighbours: tuple[Runnable, ...] = ()
 
     @classmethod
     def of(cls, model: Model, names: Sequence[str]) -> Rival:

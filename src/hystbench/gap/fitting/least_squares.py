@@ -71,7 +71,7 @@ def fitted(
     steps = np.where(values == 0.0, NOTHING, STEP * np.abs(values))
     tangents = _tangents(state, steps)
     sizes = np.where(logs, values, _sizes(state, values, tangents))
-    weights = by_record(state)
+    weights = record_weights(state)
     most = OUT * weights * float(np.max(np.abs(state.measured)))
 
     def values_at(point: FloatArray) -> FloatArray:
@@ -163,7 +163,7 @@ def _positive(state: ModelState, free: Free) -> bool:
     return about.low >= 0.0 and state.value(free) > 0.0
 
 
-def by_record(state: ModelState) -> FloatArray:
+def record_weights(state: ModelState) -> FloatArray:
     """Give one over the rms of the residual of each record, for all its samples."""
     weights = np.empty(len(state.measured))
     residual = np.where(np.isfinite(state.residual), state.residual, state.measured)

@@ -23,8 +23,9 @@ from scipy import fft
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.input_delay import InputDelay, later
+from hystbench.gap.fitting.score import record_weight
 from hystbench.gap.records.nuisance import FIRST
-from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, PAYS, RECORD_WEIGHT, SCALE
+from hystbench.gap.thresholds import PARAMETER, PAYS, RECORD_WEIGHT, SCALE
 from hystbench.record import FloatArray, Record
 
 KEYS = {"delay": "delay_s", "gain": "gain", "offset": "offset"}
@@ -199,7 +200,7 @@ def own_values(
         Those that may differ.
     """
     pairs = list(zip(records, simulated, strict=True))
-    weight = max(RECORD_WEIGHT, LEAST_WEIGHT / len(pairs))
+    weight = record_weight(len(pairs))
 
     def costs(owns: Sequence[Own]) -> FloatArray:
         rests = (

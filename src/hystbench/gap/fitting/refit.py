@@ -68,7 +68,7 @@ def refit(
                 state.residual,
                 state.tangents,
                 state.freedom,
-                state.stiffness + damping / size**2,
+                state.change_charge + damping / size**2,
                 beside=beside,
             )
             change = dict(enumerate(found.values.tolist()))
@@ -136,7 +136,7 @@ def tuned(state: ModelState, score: Score) -> ModelState:
             beside, values = state.beside[number]
             slope = beside_slope(state, beside, values, key, _own(state, number))
             columns = np.column_stack([state.tangents, state.beside_columns, slope])
-            stiffness = state.stiffness_of(columns.shape[1])
+            stiffness = state.change_charges(columns.shape[1])
             step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]
             items = list(state.beside)
             items[number] = (beside, {**values, key: values[key] + float(step)})

@@ -74,6 +74,11 @@ class Products(NamedTuple):
     within: FloatArray
 
 
+def record_weight(records: int) -> float:
+    """Give the independent samples that each of so many records counts as."""
+    return max(RECORD_WEIGHT, LEAST_WEIGHT / records)
+
+
 @dataclass(frozen=True, eq=False)
 class Score:
     """What is held fixed while candidates are scored.
@@ -111,10 +116,15 @@ class Score:
             whole.update(used.tobytes())
         return whole.hexdigest()
 
+    @classmethod
+    def plain(cls, sample: Sample, floor: float) -> Score:
+        """Give a score of residuals as they are, with no direction to spare."""
+        return cls(sample, np.zeros((len(sample), 0)), floor)
+
     @property
     def weight(self) -> float:
         """Independent samples that each record counts as."""
-        return max(RECORD_WEIGHT, LEAST_WEIGHT / len(self.sample.positions))
+        return record_weight(len(self.sample.positions))
 
     def split(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Split signals into the rest and the amplitudes of the directions.

@@ -211,7 +211,7 @@ class Attempt:
 def _retuned(state: ModelState, score: Score) -> Products:
     """Give the products of what a model may re-tune, which all its attempts share."""
     columns = np.hstack([state.tangents, state.beside_columns])
-    return score.shared(columns, state.stiffness_of(columns.shape[1]))
+    return score.shared(columns, state.change_charges(columns.shape[1]))
 
 
 def coarse(attempt: Attempt, glance: Attempt | None = None) -> Trial:

@@ -190,15 +190,15 @@ class ModelState:
         return orthonormal(self.reshapings)
 
     @cached_property
-    def stiffness(self) -> FloatArray:
+    def change_charge(self) -> FloatArray:
         """Charge for the square of a change of each free number."""
         return np.array(
             [0.0 if f.tolerance is None else f.tolerance**-2.0 for f in self.free]
         )
 
-    def stiffness_of(self, columns: int) -> FloatArray:
+    def change_charges(self, columns: int) -> FloatArray:
         """Give the charge of so many columns: the free numbers', then none."""
-        return np.pad(self.stiffness, (0, columns - len(self.free)))
+        return np.pad(self.change_charge, (0, columns - len(self.free)))
 
     @cached_property
     def beside_columns(self) -> FloatArray:

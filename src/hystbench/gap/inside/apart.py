@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.refit import score_of
 from hystbench.gap.fitting.score import Score
@@ -47,7 +45,7 @@ def apart_inside(
     own : OwnValues
     """
     square = floor_rms**2
-    score = Score(start.sample, np.zeros((len(start.sample), 0)), square)
+    score = Score.plain(start.sample, square)
     state = start if inside is None else inside.named.state
     found, least = (start, inside, NONE), score_of(state, score) - PAYS
     for _ in range(ROUNDS):

@@ -21,6 +21,7 @@ from hystbench.gap.inside.modes import (
     NUMBERS,
     direct_of,
     explained_by_levels,
+    frequency_of,
     mode_of,
     numbers_of,
     poles_of,
@@ -76,11 +77,6 @@ def with_modes(state: ModelState, modes: tuple[int, ...]) -> ModelState:
     for number in modes:
         state = list(with_another_mode(state))[number]
     return state
-
-
-def frequency_of(mode: Mechanism) -> float:
-    """Give the natural frequency of a mode in Hz."""
-    return float(np.sqrt(mode.stiffness / mode.mass) / (2 * np.pi))
 
 
 def further_words(state: ModelState) -> str:

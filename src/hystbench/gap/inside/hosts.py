@@ -25,7 +25,7 @@ from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.modes import modes
+from hystbench.gap.inside.modes import frequency_of, modes
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.records.sample import Sample, rms
 from hystbench.gap.simulation.simulation import Simulation
@@ -125,8 +125,9 @@ def hosts(
     for mode in itertools.islice(split, TRIED):
         best, block = fitted(mode, score), mode.chain[0]
         assert isinstance(block, Mechanism)  # noqa: S101  (for the type checker)
-        frequency = np.sqrt(block.stiffness / block.mass) / (2 * np.pi)
-        words = f"the base's mode at {frequency:.3g} Hz is a mechanism of its own"
+        words = (
+            f"the base's mode at {frequency_of(block):.3g} Hz is a mechanism of its own"
+        )
         yield Host(best.state if identified else mode, best, words)
 
 

@@ -70,6 +70,11 @@ def modes(
             yield with_others_free(state) if others_too else state
 
 
+def frequency_of(mode: Mechanism) -> float:
+    """Give the natural frequency of a mode in Hz."""
+    return float(np.sqrt(mode.stiffness / mode.mass) / (2 * np.pi))
+
+
 def with_others_free(state: ModelState) -> ModelState:
     """Write the other modes beside a mechanism as a block each, all numbers free."""
     mode, others, *behind = state.chain

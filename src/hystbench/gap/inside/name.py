@@ -35,7 +35,7 @@ from hystbench.gap.naming.name import Named
 from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.simulation.simulation import may_hold
+from hystbench.gap.simulation.simulation import may_have_hysteresis
 from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
@@ -88,10 +88,7 @@ def named_inside(
         Told a line of progress at a time.
     """
     fewer = on_fewer(start, quantities)
-    score, score_of_all = (
-        Score(x.sample, np.zeros((len(x.sample), 0)), floor_rms**2)
-        for x in (fewer, start)
-    )
+    score, score_of_all = (Score.plain(x.sample, floor_rms**2) for x in (fewer, start))
     turns = start.records[0].output.unit.startswith("rad")
     offer = partial(laws_for, turns=turns, offered=start.offered)
     tried = []
@@ -150,10 +147,8 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
     They have to lower the score of records held back by as much as any effect.
     """
     state = inside.named.state
-    nothing = np.zeros((len(state.sample), 0))
-    gain = gain_held_back(
-        named.state, state, Score(state.sample, nothing, floor_rms**2)
-    )
+    score = Score.plain(state.sample, floor_rms**2)
+    gain = gain_held_back(named.state, state, score)
     say(f"inside: gain {gain:.1f} on records held back")
     return gain >= PAYS
 
@@ -245,7 +240,7 @@ def _candidate(item: Hypothesis, already: frozenset[str], now: float) -> Candida
     )
 
 
-def inside_of(base: Model, evidence: Evidence) -> Quantities | None:
+def quantities_if_linear(base: Model, evidence: Evidence) -> Quantities | None:
     """Give what the device takes and gives, where forces may be tried inside the base.
 
     That is where the base may be linear: nothing in it remembers a way, nor holds a
@@ -254,6 +249,6 @@ def inside_of(base: Model, evidence: Evidence) -> Quantities | None:
     for block in base.chain:
         if isinstance(block, AttachedBlock) or block.hysteretic:
             return None
-        if may_hold(block, evidence.fit):
+        if may_have_hysteresis(block, evidence.fit):
             return None
     return evidence.quantities

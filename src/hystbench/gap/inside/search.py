@@ -18,10 +18,10 @@ from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
     QUICK,
     Fitted,
-    by_record,
     fitted,
     fitted_to_the_end,
     judged,
+    record_weights,
 )
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -221,7 +221,7 @@ def starts(
     and by what changes of all other numbers do, by least squares.
     """
     state = before.fitted.state
-    tangents, weights = state.tangents, by_record(state)
+    tangents, weights = state.tangents, record_weights(state)
     for law in laws:
         begun = (
             with_changed(state, effect, law)

@@ -11,8 +11,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
@@ -63,7 +61,7 @@ class BuiltIn:
         return cls(alone, tuple(content["effects"]))
 
 
-def put_in(
+def build_in(
     base: Model, evidence: Evidence, names: Sequence[str], say: Say = silent
 ) -> tuple[Model, BuiltIn | None]:
     """Put effects into a simulator and fit them to the fit records, one by one.
@@ -99,7 +97,7 @@ def put_in(
     state, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
     # Without directions: a wrong shape of the hysteresis is no excuse here. Numbers are
     # those with which the simulator fits the records best.
-    score = Score(state.sample, np.zeros((len(state.sample), 0)), floor.rms**2)
+    score = Score.plain(state.sample, floor.rms**2)
     if state.free:
         state, _ = finished(state, score)
     for name in names:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.refit import finished, ready, score_of
@@ -242,7 +240,7 @@ def to_the_end(state: ModelState, floor: float) -> ModelState:
     bound = any(free.tolerance is not None for free in re_tuned)
     if bound or not re_tuned or state.beside or state.simulation.loop is not None:
         return state
-    score = Score(state.sample, np.zeros((len(state.sample), 0)), floor)
+    score = Score.plain(state.sample, floor)
     best = fitted_to_the_end(state, score)
     return best.state if best.score < score_of(state, score) else state
 

@@ -156,7 +156,9 @@ class Simulation:
     def loop(self) -> int | None:
         """Place of what makes the loop: the hysteresis, or what may hold one unseen."""
         held = [
-            k for k, block in enumerate(self.chain) if may_hold(block, self.records)
+            k
+            for k, block in enumerate(self.chain)
+            if may_have_hysteresis(block, self.records)
         ]
         if self.hysteresis is not None:
             held.append(self.hysteresis)
@@ -304,7 +306,7 @@ STAYS = 0.5
 """Of that difference, in the first half of the rest, that must be left in the other."""
 
 
-def may_hold(block: Block, records: Sequence[Record]) -> bool:
+def may_have_hysteresis(block: Block, records: Sequence[Record]) -> bool:
     """Tell whether a block is a simulator that may hold a hysteresis.
 
     Of a stored output it is not known, nor of a function that refuses to be asked. Any
