@@ -8,7 +8,7 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.outcome import with_what_was_asked
-from hystbench.gap.naming.built_in import put_in
+from hystbench.gap.naming.built_in import build_in
 from hystbench.gap.naming.rank import make_score, rank
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.words import rerun_commands, verdict_sentence
@@ -88,7 +88,7 @@ def test_what_is_put_in_is_fitted_and_is_no_finding(tiny):
 def test_of_what_is_put_in_the_effects_own_numbers_stay_free(tiny, name, free):
     """A field bias is two plain gains, whose value is one and stays so."""
     data, base = tiny
-    model, built_in = put_in(load_model(base), load_evidence(data), [name])
+    model, built_in = build_in(load_model(base), load_evidence(data), [name])
     assert {*model.free} == free
     assert built_in.names == (name,)
 

@@ -30,8 +30,11 @@ OPERATORS = 10
 OPERATOR_POWERS = 3
 MIXED = 6
 """Play operators, the input among them, of which products are taken."""
-SLOPES = (1, 5)
-"""Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input."""
+SLOPES, HEIGHTS, LEVELS = (1, 5), (0, 4), (0, 3, 4, 7)
+"""Of the envelope functions' numbers a0 to a7 (Eqs. 5 and 6): per unit of input, how
+high they are, and what is in the unit of their output."""
+LEAST = 0.1
+"""Of its unit, that a number counts as at least."""
 SMALL = 1e-3
 """Size of a change beside the signal that it changes."""
 SMALLEST = 1e-3
@@ -174,10 +177,11 @@ def _own(
     ways: list[Signals] = [tuple(z[:, k] for z in sums) for k in range(len(groups))]
     now = simulation.run((block,), v)
     slope = 1.0 / (max(float(np.abs(z).max()) for z in v) or 1.0)
+    height = max(abs(block.envelope[k]) for k in HEIGHTS) or 1.0
+    units = [slope if k in SLOPES else height if k in LEVELS else 1.0 for k in range(8)]
     for k, value in enumerate(block.envelope):
         moved = list(block.envelope)
-        least = 0.1 * (slope if k in SLOPES else 1.0)
-        moved[k] = value + SMALL * max(abs(value), least)
+        moved[k] = value + SMALL * max(abs(value), LEAST * units[k])
         other = simulation.run((replace(block, envelope=tuple(moved)),), v)
         ways.append(tuple(a - b for a, b in zip(other, now, strict=True)))
     return ways
