@@ -269,7 +269,8 @@ def test_the_command_writes_it_with_its_limits(tmp_path):
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
 
 
-def test_modes_beside_a_mechanism_cannot_be_undone():
-    beside = ("other-modes", {"numerator": [1], "denominator": [1, 2, 900]})
+@pytest.mark.parametrize("name", ["other-modes", "other-mechanism"])
+def test_modes_beside_a_mechanism_cannot_be_undone(name):
+    beside = (name, EXAMPLES[name])
     with pytest.raises(InputError, match=r"^chain: block 2: mechanism: no inverse"):
         inverted((GPI, MECHANISM, beside))

@@ -82,3 +82,10 @@ def test_records_of_one_sign_alone_are_as_they_were():
     found, _ = evidence(np.abs, (0.2, 0.7, 1.0))
     below = replace(found.fit[0], u=-found.fit[0].u)
     assert with_signs(replace(found, fit=(below,))) is None
+
+
+@pytest.mark.parametrize("dt", [1e-9, 3600.0])
+def test_records_of_any_rate_have_their_sign(dt):
+    found, _ = evidence(np.abs)
+    fit = tuple(replace(record, dt=dt) for record in found.fit)
+    assert with_signs(replace(found, fit=fit)) is not None

@@ -5,12 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.blocks import registry
+from hystbench.blocks.exponential_curve import ExponentialCurve
 from hystbench.blocks.gain import Gain
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.law import Moved
+from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -21,7 +24,7 @@ from hystbench.gap.inside.hosts import (
     one_coordinate,
 )
 from hystbench.gap.inside.name import chosen
-from hystbench.gap.inside.put_in import with_law
+from hystbench.gap.inside.put_in import evened, with_law
 from hystbench.gap.inside.search import (
     Hypothesis,
     how_it_moves,
@@ -407,3 +410,20 @@ def test_an_effect_that_stood_for_another_goes_when_that_comes():
     apart = [known[2], known[1], known[0]]  # no single of input-delay and drag
     (only,) = with_one_fewer(known[2], apart, score)
     assert only.effects == ("friction", "drag")
+
+
+def test_a_curve_before_a_mass_leaves_what_drives_all_as_strong():
+    """A force inside and another mode beside are driven as the mass is."""
+    random = np.random.default_rng(12)
+    u = 3.0 * np.repeat(random.uniform(-1, 1, 160), 10)
+    host = Mechanism(mass=1.0, damping=1.5, stiffness=60.0, hold="linear")
+    force = registry()["friction-force"](coulomb=1.0, presliding_distance=1e-4)
+    beside = OtherModes(numerator=(0.5,), denominator=(1.0, 1.0, 400.0), hold="linear")
+    records = (record("run", u, np.zeros(1600), ("N", "m")),)
+    state = ModelState((host, force, beside), records, Sample.of(records))
+    strong = ExponentialCurve(curvature=0.8)
+    law = Law("exponential", strong, ("curvature",), "before")
+    before = state.residual.std()
+    assert with_law(state, "asymmetry", law).residual.std() > 1.5 * before
+    even = evened(with_law(state, "asymmetry", law)).residual.std()
+    assert even == pytest.approx(before, rel=0.25)

@@ -13,10 +13,16 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import numbers_of
 from hystbench.gap.fitting.state import Added
 from hystbench.gap.judging.known_signals import halves, low_pass
-from hystbench.gap.judging.unnamed import SORTS, Unnamed, what_is_unnamed
+from hystbench.gap.judging.unnamed import (
+    SORTS,
+    Unnamed,
+    what_is_unnamed,
+    winding,
+)
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.record import Channel, Record
 from tests.gap.made import record
 from tests.gap.small import block, measured, state_of
 
@@ -242,3 +248,14 @@ def test_the_command_and_the_workflow_allow_the_same_share():
     assert command["unnamed_share"].default == UNNAMED_SHARE
     config = yaml.safe_load(Path("config.yaml").read_text())
     assert config["gap"]["unnamed_share"] == UNNAMED_SHARE
+
+
+def test_a_drift_owns_no_more_cosines_than_a_record_has_periods():
+    """What goes to and fro as fast as the input may be anything that follows it."""
+    t = np.arange(2000) * 1e-3
+    given = [np.sin(2 * np.pi * periods * t / 2.0) for periods in (3, 40)]
+    records = [
+        Record("r", 1e-3, u, u, Channel("u", "V"), Channel("y", "V"), "measured", "fit")
+        for u in given
+    ]
+    assert [winding(one) for one in records] == [3, 10]

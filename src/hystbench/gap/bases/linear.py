@@ -72,8 +72,8 @@ class Linear(NamedTuple):
 def identified_linear(evidence: Evidence) -> Linear:
     """Find the linear model that simulates the fit records best.
 
-    Of their output, or where this is never below zero and that does better on folds, of
-    an output with a sign that the sensor may not show.
+    The model is of the output. If the output is never below zero, one of an output with
+    a sign is tried too; the model that does better on folds is taken.
 
     Parameters
     ----------

@@ -78,7 +78,9 @@ def _beginnings(evidence: Evidence) -> Iterator[tuple[FloatArray, ...]]:
     """Give the signs of the inputs behind lags."""
     step = min(x.dt for x in evidence.fit)
     long = min(x.dt * len(x) for x in evidence.fit) / 10
-    for lag in np.geomspace(step, max(long, 2 * step), LAGS).tolist():
+    able = DriveLag.parameters()["time_constant_s"]
+    lags = np.geomspace(step, max(long, 2 * step), LAGS)
+    for lag in np.clip(lags, able.low, able.high).tolist():
         block = DriveLag(time_constant_s=lag, hold="linear")
         late = (block.simulate(x.u, x.u, x.dt) for x in evidence.fit)
         yield tuple(np.where(z < 0.0, -1.0, 1.0) for z in late)

@@ -88,7 +88,8 @@ def parameters_of(
             if key in SETTINGS or value == () or (numbers and key not in numbers):
                 continue
             error = _errors_of(place, key, value, state, errors)
-            label = key if key not in found else f"{key}#2"
+            count = 1 + sum(name.partition("#")[0] == key for name in found)
+            label = key if count == 1 else f"{key}#{count}"
             found[label] = _number(value, error, _unit(about.unit, place, state))
     return found
 

@@ -12,6 +12,7 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_mechanism import OtherMechanism
 from hystbench.blocks.other_modes import OtherModes
+from hystbench.errors import InputError
 from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -41,7 +42,7 @@ from hystbench.gap.thresholds import CERTAIN, FURTHER, UNNAMED_SHARE
 
 def in_further_modes(
     found: Hypothesis, offer: Offer, score: Score, say: Say = silent
-) -> tuple[Hypothesis, tuple[int, ...]]:
+) -> tuple[Hypothesis, tuple[float, ...]]:
     """Let a force act in other modes too, one after the other, while that pays.
 
     A joint that slips is in every mode that moves it. It is one effect, with numbers of
@@ -59,24 +60,34 @@ def in_further_modes(
     Returns
     -------
     found : Hypothesis
-    modes : tuple of int
-        Which of :func:`with_another_mode` was taken, each time.
+    frequencies : tuple of float
+        Natural frequencies, in Hz, of the modes that were taken, as they were before.
     """
-    modes: list[int] = []
+    modes: list[float] = []
     while may_gain(found, score) and (more := _in_one_more(found, offer, score)):
-        found, mode = more
-        modes.append(mode)
+        found, frequency = more
+        modes.append(frequency)
         host = found.fitted.state.chain[host_of(found.fitted.state)]
         assert isinstance(host, Mechanism)  # noqa: S101  (for the type checker)
         say(f"inside: also in the mode at {frequency_of(host):.3g} Hz")
     return found, tuple(modes)
 
 
-def with_modes(state: ModelState, modes: tuple[int, ...]) -> ModelState:
-    """Write the same modes of a model as mechanisms; it does what it did."""
-    for number in modes:
-        state = list(with_another_mode(state))[number]
+def with_modes(state: ModelState, frequencies: tuple[float, ...]) -> ModelState:
+    """Write the modes nearest to frequencies as mechanisms; it does what it did."""
+    for wanted in frequencies:
+        split = list(with_another_mode(state))
+        if not split:
+            break  # its other poles are real
+        state = min(split, key=lambda one: abs(np.log(_frequency(one) / wanted)))
     return state
+
+
+def _frequency(state: ModelState) -> float:
+    """Give the natural frequency of the mode that was taken out last, in Hz."""
+    mode = state.chain[state.free[-1].block]
+    assert isinstance(mode, Mechanism)  # noqa: S101  (for the type checker)
+    return frequency_of(mode)
 
 
 def further_words(state: ModelState) -> str:
@@ -87,7 +98,7 @@ def further_words(state: ModelState) -> str:
 
 def _in_one_more(
     found: Hypothesis, offer: Offer, score: Score
-) -> tuple[Hypothesis, int] | None:
+) -> tuple[Hypothesis, float] | None:
     """Put the force into the mode that needs it most; None if it does not pay there."""
     state = found.fitted.state
     acting = [
@@ -98,9 +109,8 @@ def _in_one_more(
     split = list(with_another_mode(state))
     if not split or not acting:
         return None
-    needs = [_needs(one) for one in split]
-    mode = int(np.argmax(needs))
-    linear = fitted(split[mode], score)
+    chosen = max(split, key=_needs)
+    linear = fitted(chosen, score)
     alone = replace(found, fitted=linear)
     laws = offer(linear)
     begun = [
@@ -125,7 +135,7 @@ def _in_one_more(
     joined = replace(
         also.fitted.state, added=_joined(also.fitted.state.added, also.effects[-1])
     )
-    return replace(found, fitted=replace(also.fitted, state=joined)), mode
+    return replace(found, fitted=replace(also.fitted, state=joined)), _frequency(chosen)
 
 
 def _joined(added: tuple[Added, ...], effect: str) -> tuple[Added, ...]:
@@ -163,7 +173,10 @@ def with_another_mode(state: ModelState) -> Iterator[ModelState]:
             if not np.any(others):
                 chain = _passing(state.chain, place, direct, abs(through))
             else:
-                rest = sum_of(block, poles[others], residues[others], direct)
+                try:
+                    rest = sum_of(block, poles[others], residues[others], direct)
+                except InputError:
+                    continue  # so little damped that rounding makes it unstable
                 chain = (*state.chain[:place], rest, *state.chain[place + 1 :])
             if chain is not None:
                 yield _with_mode(state, chain, place, mode, bool(np.any(others)))

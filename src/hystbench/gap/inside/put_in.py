@@ -11,6 +11,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force, against
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
+from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.parameter import HUGE
 from hystbench.gap.effects.law import Law
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -77,7 +78,7 @@ def evened(state: ModelState) -> ModelState:
     number = host_of(state)
     host = chain[number]
     if isinstance(host, Mechanism) and place < number:
-        return _as_strong(state, place, number, host)
+        return _as_strong(state, place)
     if not (isinstance(law, Force) and isinstance(host, Mechanism)):
         return state
     own = chain[number + 1 :]
@@ -104,10 +105,8 @@ def evened(state: ModelState) -> ModelState:
     return state.with_chain(tuple(chain))
 
 
-def _as_strong(
-    state: ModelState, place: int, number: int, host: Mechanism
-) -> ModelState:
-    """Let a mass be driven as strongly as without the curve before it."""
+def _as_strong(state: ModelState, place: int) -> ModelState:
+    """Let a mass, and what is beside it, be driven as strongly as without the curve."""
     pairs = zip(state.simulation.at(place), state.simulation.at(place + 1), strict=True)
     powers = np.array([[np.var(one), np.var(other)] for one, other in pairs])
     before, behind = np.sum(powers / np.maximum(powers[:, :1], 1.0 / HUGE), axis=0)
@@ -115,12 +114,12 @@ def _as_strong(
     if not (np.isfinite(times) and times > 0):
         return state
     chain = list(state.chain)
-    chain[number] = replace(
-        host,
-        mass=times * host.mass,
-        damping=times * host.damping,
-        stiffness=times * host.stiffness,
-    )
+    for k, block in enumerate(chain):
+        if isinstance(block, Mechanism):
+            chain[k] = replace(block, gain=block.gain / times)
+        elif isinstance(block, OtherModes):
+            up = tuple(x / times for x in block.numerator)
+            chain[k] = replace(block, numerator=up)
     return state.with_chain(tuple(chain))
 
 

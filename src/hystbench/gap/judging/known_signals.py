@@ -108,29 +108,35 @@ def halves(state: ModelState, signals: FloatArray) -> FloatArray:
     return np.hstack(columns)
 
 
-def paths(state: ModelState, count: int = PATH_COSINES) -> FloatArray:
+def paths(
+    state: ModelState,
+    count: int = PATH_COSINES,
+    allowed: Callable[[Record], int] = lambda record: 0,
+) -> FloatArray:
     """Give every record a constant and cosines of its own, zero in the others.
 
     Parameters
     ----------
     state : ModelState
     count : int
-        Cosines over a record.
+        Cosines over a record, at least.
+    allowed : callable
+        Gives how many a record may have, where that is more.
 
     Returns
     -------
-    ndarray, shape (scored samples, (count + 1) records)
+    ndarray, shape (scored samples, cosines and constants of all records)
     """
-    sample, each = state.sample, count + 1
-    columns = np.zeros((len(sample), each * len(state.records)))
-    for k, (record, rows, positions) in enumerate(
-        zip(state.records, sample.slices, sample.positions, strict=True)
+    sample, found = state.sample, []
+    for record, rows, positions in zip(
+        state.records, sample.slices, sample.positions, strict=True
     ):
+        most = max(count, allowed(record))
         phase = np.pi * (positions + 0.5) / len(record)
-        columns[rows, k * each : (k + 1) * each] = np.cos(
-            phase[:, None] * np.arange(each)
-        )
-    return columns
+        columns = np.zeros((len(sample), most + 1))
+        columns[rows] = np.cos(phase[:, None] * np.arange(most + 1))
+        found.append(columns)
+    return np.hstack(found)
 
 
 def _slow_power(dt: float, u: FloatArray, y: FloatArray, times: FloatArray) -> Columns:

@@ -14,13 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.gap.effects.drift import FORMS
+from hystbench.gap.effects.drift import FORMS, WINDING, degree
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.grouped_evidence import Products
 from hystbench.gap.judging.known_signals import PATH, generic_groups, halves, paths
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
-from hystbench.record import FloatArray
+from hystbench.record import FloatArray, Record
 
 RELATED = 0.1
 """Share of what stays that must follow known signals, to be called by their sort."""
@@ -91,7 +91,7 @@ class Unnamed:
         """Give the factor on a name's confidence: one where no more stays than may.
 
         Else it is the allowed over the actual share. Where the base may have left that
-        as well, it is halfway between that and one: the square root.
+        as well, it is the square root: the mean of that and one, of their logarithms.
         """
         factor = 1.0 if self.structured <= share else share / self.structured
         return math.sqrt(factor) if of_base else factor
@@ -161,11 +161,11 @@ def what_is_unnamed(
         changing = {"changing": halves(state, _numbers(state, increment))}
     drifts = any(beside.effect == PATH for beside, _ in state.beside)
     if drifts or any(record.decay_s is not None for record in state.records):
-        # A path owns all that is slow, the input's slow power too, in every form that a
-        # drift has. A free mass makes a path in each of its windows of any small error
-        # of a force.
+        # A path owns all that is slow, the input's slow power too, as far as the most
+        # winding form of a drift may go in a record. A free mass makes a path in each
+        # of its windows of any small error of a force.
         path = generic.pop("path")
-        own["path"] = paths(state, max(FORMS.values())) if drifts else path
+        own["path"] = paths(state, allowed=winding) if drifts else path
         del generic["slow power"]
     groups = own | generic | changing
     ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
@@ -189,6 +189,11 @@ def what_is_unnamed(
         for name in generic
     }
     return replace(found, gains=gains)
+
+
+def winding(record: Record) -> int:
+    """Give how far the path of a drift may wind in a record."""
+    return degree(record, FORMS[WINDING])
 
 
 def owned(state: ModelState) -> dict[str, FloatArray]:

@@ -235,8 +235,7 @@ def judge(
     if much:
         return "named", (
             f"{left.stays}; this is less sure, as {unnamed.reason(unnamed_share)}, "
-            "though all that is left is no more than a slightly wrong shape of the "
-            "base could leave"
+            "though all that is left would be no gap if nothing were named"
         )
     return "named", left.stays
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
+from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.refit import finished, ready, score_of
 from hystbench.gap.fitting.score import Score
@@ -242,7 +243,8 @@ def to_the_end(state: ModelState, floor: float) -> ModelState:
         return state
     score = Score.plain(state.sample, floor)
     best = fitted_to_the_end(state, score)
-    return best.state if best.score < score_of(state, score) else state
+    better = best.score < score_of(state, score) and not at_end(best.state)
+    return best.state if better else state
 
 
 def _before_a_round(
