@@ -89,3 +89,18 @@ def test_records_of_any_rate_have_their_sign(dt):
     found, _ = evidence(np.abs)
     fit = tuple(replace(record, dt=dt) for record in found.fit)
     assert with_signs(replace(found, fit=fit)) is not None
+
+
+def test_a_level_is_no_speed_without_a_sign():
+    """Of a tank whose outflow goes with the root, a signed level does little better."""
+    random = np.random.default_rng(3)
+    records = []
+    for k in range(2):
+        u, level = steps((-0.5, 0.5, 1.0, 1.5), random), np.zeros(COUNT)
+        for i in range(COUNT - 1):
+            flow = max(u[i], 0.0) - 0.5 * np.sqrt(level[i])
+            level[i + 1] = max(level[i] + 0.1 * flow, 0.0)
+        y = level + NOISE * random.standard_normal(COUNT)
+        records.append(Record(f"r{k}", DT, u, y, VOLTAGE, SPEED, "measured", "fit"))
+    found = Evidence("tank", tuple(records), (), "zero-order")
+    assert not identified_linear(found).signed

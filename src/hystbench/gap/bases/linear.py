@@ -30,6 +30,7 @@ from hystbench.gap.bases.unsigned import with_signs
 from hystbench.gap.bases.wiener_hammerstein import HalvesError
 from hystbench.gap.records.coarser import coarser
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.thresholds import LOOSE
 from hystbench.model import Model
 
 #: Two halves are the base only if their error is within this factor of its.
@@ -73,7 +74,8 @@ def identified_linear(evidence: Evidence) -> Linear:
     """Find the linear model that simulates the fit records best.
 
     The model is of the output. If the output is never below zero, one of an output with
-    a sign is tried too; the model that does better on folds is taken.
+    a sign is tried too. It is taken if it leaves less than a quarter of the power on
+    folds.
 
     Parameters
     ----------
@@ -90,7 +92,7 @@ def identified_linear(evidence: Evidence) -> Linear:
     signed = with_signs(evidence)
     if signed is not None:
         other = linear_of(signed)
-        if other.fold_rms < (1 - PAYS) * best.fold_rms:
+        if other.fold_rms**2 < LOOSE * best.fold_rms**2:
             note = (
                 f"{other.note}, of an output with a sign that the sensor may not show "
                 f"(without a sign {best.fold_rms:.4g} {unit} on folds)"

@@ -109,8 +109,8 @@ def hosts(
         best = best_host(list(begun), score)
         if best is not None and is_seen_moving(best.state):
             words = "a model of one coordinate stands in place of the linear base"
-            yield from _loose(best.state, score, words)
             yield Host(best.state, best, words)
+            yield from _loose(best.state, score, words)
     if not identified:
         same = same_as(start, quantities)
         if same is not None:
@@ -135,8 +135,8 @@ def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
     """Give a mass without a spring, where another mass was fitted to its acceleration.
 
     A loose mass under a drag or a friction looks like one on a soft spring whose output
-    has a share of the velocity: a force begins far from itself there. It has fewer
-    numbers and laws, so it comes first.
+    has a share of the velocity: a force begins far from itself there. It comes last, as
+    a friction that gives way before it slides is a spring to it.
     """
     block = state.chain[0]
     if not (isinstance(block, Mechanism) and block.output == "acceleration"):
