@@ -97,8 +97,8 @@ def identified_linear(evidence: Evidence) -> Linear:
                 f"{other.note}, of an output with a sign that the sensor may not show "
                 f"(without a sign {best.fold_rms:.4g} {unit} on folds)"
             )
-            still = best.constant_rms
-            best = other._replace(note=note, constant_rms=still, signed=True)
+            constant = best.constant_rms
+            best = other._replace(note=note, constant_rms=constant, signed=True)
     fold, still = best.fold_rms, best.constant_rms
     if fold > (1 - PAYS) * still:
         raise InputError(

@@ -12,7 +12,6 @@ from hystbench.blocks.force import Force
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.other_mechanism import OtherMechanism
 from hystbench.blocks.other_modes import OtherModes
-from hystbench.errors import InputError
 from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -20,13 +19,10 @@ from hystbench.gap.inside.beginnings import Beginnings
 from hystbench.gap.inside.modes import (
     NONE,
     NUMBERS,
-    direct_of,
     explained_by_levels,
     frequency_of,
-    mode_of,
     numbers_of,
-    poles_of,
-    sum_of,
+    taken_out,
 )
 from hystbench.gap.inside.put_in import host_of
 from hystbench.gap.inside.search import (
@@ -126,7 +122,7 @@ def _in_one_more(
     best = fitted_likely(begun, Beginnings.of(linear.state, score), score, 1)
     if not best:
         return None
-    (also,) = best[:1]
+    also = best[0]
     gap = max(state.power(score.floor), score.floor)
     share = also.fitted.state.share(linear.state, score.floor, gap)
     pays = FURTHER if share > UNNAMED_SHARE else CERTAIN
@@ -162,24 +158,14 @@ def with_another_mode(state: ModelState) -> Iterator[ModelState]:
     for place, block in enumerate(state.chain):
         if not isinstance(block, OtherModes):
             continue
-        poles, residues = poles_of(block)
-        for k in np.flatnonzero(poles.imag > 0):
-            one = mode_of(block, poles[k], residues[k], first.output)
-            if one is None:
-                continue
-            mode, through = one
-            others = ~np.isin(poles, (poles[k], poles[k].conj()))
-            direct = direct_of(block) - through
-            if not np.any(others):
-                chain = _passing(state.chain, place, direct, abs(through))
+        for one in taken_out(block, first.output):
+            chain: tuple[Block, ...] | None
+            if one.rest is None:
+                chain = _passing(state.chain, place, one.direct, abs(one.through))
             else:
-                try:
-                    rest = sum_of(block, poles[others], residues[others], direct)
-                except InputError:
-                    continue  # so little damped that rounding makes it unstable
-                chain = (*state.chain[:place], rest, *state.chain[place + 1 :])
+                chain = (*state.chain[:place], one.rest, *state.chain[place + 1 :])
             if chain is not None:
-                yield _with_mode(state, chain, place, mode, bool(np.any(others)))
+                yield _with_mode(state, chain, place, one.mode, one.rest is not None)
 
 
 def _passing(

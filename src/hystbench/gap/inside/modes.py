@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -134,25 +135,55 @@ def split_modes(block: TransferFunction, output: str) -> list[tuple[Block, Block
     list of (Mechanism, OtherModes)
         By frequency; empty if fewer than two modes oscillate, or two poles coincide.
     """
-    poles, residues = poles_of(block)
+    poles, _ = poles_of(block)
     away = np.abs(poles[:, None] - poles) + np.diag(np.abs(poles))
-    pairs = [int(k) for k in np.argsort(np.abs(poles)) if poles[k].imag > 0]
-    if len(pairs) < 2 or np.any(away < APART * np.abs(poles)):
+    if np.sum(poles.imag > 0) < 2 or np.any(away < APART * np.abs(poles)):
         return []
-    direct = direct_of(block)
-    found: list[tuple[Block, Block]] = []
-    for k in pairs:
+    return [(one.mode, one.rest) for one in taken_out(block, output) if one.rest]
+
+
+class TakenOut(NamedTuple):
+    """A mode that was taken out of a transfer function.
+
+    Parameters
+    ----------
+    mode : Mechanism
+    rest : OtherModes or None
+        All other poles; None without any.
+    direct : float
+        What passes at once beside the mode.
+    through : float
+        What passes the mode at once.
+    """
+
+    mode: Mechanism
+    rest: OtherModes | None
+    direct: float
+    through: float
+
+
+def taken_out(block: TransferFunction, output: str) -> Iterator[TakenOut]:
+    """Take each oscillating mode out of a transfer function in turn, by frequency.
+
+    Left out are those that are none of the motion, and those beside which the rest is
+    so little damped that rounding its numbers makes it unstable.
+    """
+    poles, residues = poles_of(block)
+    for k in np.argsort(np.abs(poles)):
+        if poles[k].imag <= 0:
+            continue
         one = mode_of(block, poles[k], residues[k], output)
         if one is None:
             continue
         mode, through = one
+        direct, rest = direct_of(block) - through, None
         others = ~np.isin(poles, (poles[k], poles[k].conj()))
-        try:
-            rest = sum_of(block, poles[others], residues[others], direct - through)
-        except InputError:
-            continue  # so little damped that rounding its numbers makes it unstable
-        found.append((mode, rest))
-    return found
+        if np.any(others):
+            try:
+                rest = sum_of(block, poles[others], residues[others], direct)
+            except InputError:
+                continue
+        yield TakenOut(mode, rest, direct, through)
 
 
 def direct_of(block: TransferFunction) -> float:

@@ -19,12 +19,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.search import Trial
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming import cached
-from hystbench.gap.naming.rounds import (
-    Candidate,
-    TriedVariant,
-    best_forms,
-    in_order,
-)
+from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.thresholds import (
     CERTAIN,
@@ -143,10 +138,11 @@ def rank(
         (_judged(trial, state, score, now) for trial in likely),
         lambda item: on_folds(item, state, score).score,
     )
+    finalists = {trial.variant.effect for trial in likely}
     judged += [
         _candidate(trial, now)
-        for trial in of_effect.values()
-        if trial.variant.effect not in {x.variant.effect for x in likely}
+        for effect, trial in of_effect.items()
+        if effect not in finalists
     ]
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
     judged = [_not_cut_short(item, state) for item in judged]
