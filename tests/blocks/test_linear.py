@@ -12,7 +12,7 @@ from hystbench.blocks.creep import Creep
 from hystbench.blocks.curve import finer
 from hystbench.blocks.drive_lag import DriveLag
 from hystbench.blocks.eddy_diffusion import EddyDiffusion
-from hystbench.blocks.linear import LinearBlock, respond
+from hystbench.blocks.linear import LinearBlock, respond, states_of
 from hystbench.blocks.logarithmic_creep import LogarithmicCreep
 from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.resonance import Resonance
@@ -294,3 +294,14 @@ def test_a_system_that_runs_away_within_an_interval_warns_of_nothing(recwarn):
     phi, _, _ = discretise(system, 1.0, "linear")
     assert np.isnan(phi).all()
     assert not recwarn.list
+
+
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+@pytest.mark.parametrize("name", ["resonance", "creep", "drive-lag"])
+def test_states_make_the_response(name, hold):
+    system = CASES[name][0].continuous()
+    v = np.random.default_rng(3).standard_normal(200).cumsum()
+    states = states_of(system, v, DT, hold)
+    expected = respond(system, v, DT, hold)
+    size = np.abs(expected).max()
+    assert states @ system.c + system.d * v == pytest.approx(expected, abs=1e-12 * size)

@@ -120,6 +120,10 @@ def models(x):
     yield "growing Prandtl-Ishlinskii", (growing,)
     yield "state space", o.state_space(a, few, some, 0.1, x)
     yield "modes", (o.modes(few, some, some, 0.1, x, np.zeros(11)),)
+    columns = np.zeros((2 * kernels.WIDTH, 2 * kernels.WIDTH))
+    columns[:11, :11], states = a.T, np.outer(x, kernels.pad(few))
+    kernels.call("hb_states", len(x), 2, columns, states)
+    yield "states", (states,)
     plays = Plays(1.0, (), few, np.vstack([some, 0.1 * some, 0.1 * some]), False)
     yield "inverse of plays", (plays.invert(x)[0],)
 

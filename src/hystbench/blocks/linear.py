@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from hystbench import kernels, operators
 from hystbench.blocks.curve import AHEAD, POINTS, continued
@@ -97,6 +98,46 @@ def respond(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatAr
     sizes = (n, POINTS, AHEAD + 1, states)
     kernels.call(name, *sizes, phi, drive, c, float(system.d), path, y)
     return y
+
+
+def states_of(system: StateSpace, v: FloatArray, dt: float, hold: Hold) -> FloatArray:
+    """Compute the states of a linear system from rest, as :func:`respond` has them.
+
+    Parameters
+    ----------
+    system : StateSpace
+        Its output is not used.
+    v : ndarray, shape (n,)
+    dt : float
+    hold : {"zero-order", "linear", "band-limited"}
+
+    Returns
+    -------
+    ndarray, shape (n, m)
+    """
+    size = len(system.b)
+    out = np.zeros((len(v), kernels.padded(size)))
+    if hold == "band-limited" and len(v) >= 3:
+        phi, drive = _curve_steps(*_bytes(system), dt)
+        out[1:] = sliding_window_view(continued(v), POINTS)[1:] @ drive
+        behind = np.zeros((len(v), size))
+    else:
+        phi, b, _, _, following = _steps(*_bytes(system), dt, hold)
+        out[0, :size] = -following * v[0]
+        out[1:, :size] = np.outer(v[:-1], b)
+        phi = _padded_columns(phi if phi.ndim == 2 else np.diag(phi))
+        behind = np.outer(v, following)
+    columns = phi if phi.ndim == 2 else np.diag(phi)
+    kernels.call("hb_states", len(v), len(columns) // kernels.WIDTH, columns, out)
+    return out[:, :size] + behind
+
+
+def _padded_columns(phi: FloatArray) -> FloatArray:
+    """Give the columns of a matrix as the kernels read them, filled up with zeros."""
+    size, wide = len(phi), kernels.padded(len(phi))
+    columns = np.zeros((wide, wide))
+    columns[:size, :size] = phi.T
+    return columns
 
 
 def linear_step(
@@ -205,9 +246,7 @@ def _curve_steps(
     drive[:, :size] = newest_first[::-1]
     if system.is_diagonal:
         return kernels.pad(np.diagonal(phi)), drive
-    columns = np.zeros((drive.shape[1], drive.shape[1]))
-    columns[:size, :size] = phi.T
-    return columns, drive
+    return _padded_columns(phi), drive
 
 
 def _step_by_step(

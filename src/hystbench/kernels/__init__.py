@@ -42,6 +42,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
     "hb_lms_volterra": (_SIZE, "iiiaaffffaaaaa"),
     "hb_state_space": (None, "iiiaaafaaa"),
     "hb_modes": (_SIZE, "iiaaafaaa"),
+    "hb_states": (_SIZE, "iiaa"),
     "hb_weighed": (None, "iiiaaa"),
     "hb_decimated": (None, "iiiaaa"),
     "hb_curve_modes": (_SIZE, "iiiiaaafaa"),

@@ -111,3 +111,32 @@ EXPORT index_t hb_modes(index_t n, index_t wide, const double *factors,
     FOR_SIZES(wide, CALL)
 #undef CALL
 }
+
+INLINE index_t states(index_t n, const double *a, double *out, index_t vectors)
+{
+    const index_t size = vectors * LANES;
+    for (index_t k = 1; k < n; k++) {
+        const double *x = out + (k - 1) * size;
+        double *next = out + k * size;
+        UNROLL
+        for (index_t j = 0; j < size; j += LANES) {
+            lanes even = load(next + j), odd = {0};
+            UNROLL
+            for (index_t i = 0; i < size; i += 2) {
+                even += load(a + j + i * size) * x[i];
+                odd += load(a + j + (i + 1) * size) * x[i + 1];
+            }
+            store(next + j, even + odd);
+        }
+    }
+    return n;
+}
+
+/* x(k) = A x(k-1) + drive(k), every state of every sample: out holds the drives, and
+ * then the states. The first sample stays; a holds the columns of A, padded. */
+EXPORT index_t hb_states(index_t n, index_t wide, const double *a, double *out)
+{
+#define CALL(size) states(n, a, out, size)
+    FOR_SIZES(wide, CALL)
+#undef CALL
+}

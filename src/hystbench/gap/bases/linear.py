@@ -18,8 +18,9 @@ from hystbench.gap.bases.orders import (
     PAYS,
     ROUNDS,
     Found,
-    Least,
+    Judged,
     Orders,
+    as_good,
     fewest,
     plainest,
 )
@@ -139,20 +140,20 @@ def linear_of(evidence: Evidence) -> Linear:
     gain = static(orders.evidence, orders.whole, orders.folds)
     found = orders.searched(gain)
     moved = impedance(orders.evidence, orders.whole, orders.folds)
-    best = Least.of([gain, *found] if moved is None else [gain, moved[0], *found])
+    tried: list[Judged] = [gain, *found] if moved is None else [gain, moved[0], *found]
     chain: tuple[Block, ...]
-    if best.met_by(gain):
+    if as_good(gain, tried):
         gain = static(evidence, everything.whole, everything.folds)
         value, offset = gain.numbers
         chain = (Gain(value=value, offset=offset),)
         fit, fold, what = gain.fit, gain.folds, "order 0 (a gain and an offset)"
-    elif moved is not None and best.met_by(moved[0]):
+    elif moved is not None and as_good(moved[0], tried):
         (fit, fold, _), block = moved
         chain, what = (block,), "the impedance of a mass on a spring"
     else:
-        chosen = next(item for item in found if best.met_by(item))
+        chosen = next(item for item in found if as_good(item, tried))
         steps = {item.dt for item in evidence.fit}
-        chosen = fewest(chosen, best, min(steps) if len(steps) == 1 else None)
+        chosen = fewest(chosen, tried, min(steps) if len(steps) == 1 else None)
         if chosen.orders.late:
             orders, found = chosen.orders, [chosen]
             spared = len(orders.evidence.fit[0]) < len(evidence.fit[0])

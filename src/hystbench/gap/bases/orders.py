@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Protocol
@@ -12,7 +12,14 @@ import numpy as np
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.transfer_function import possible_starts
 from hystbench.gap.bases.output_error import OutputError
-from hystbench.gap.bases.spectral import Ratio, Spectra, Stretch, fit_ratio, with_a_mode
+from hystbench.gap.bases.spectral import (
+    Ratio,
+    Spectra,
+    Stretch,
+    fit_ratio,
+    with_a_mode,
+    with_poles,
+)
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.records.folds import Fold, make_folds
 from hystbench.record import Mask, Record
@@ -20,6 +27,8 @@ from hystbench.record import Mask, Record
 #: Highest order that is tried, of all poles at once, and with modes added one by one.
 HIGHEST = 6
 MOST_ORDERS = 12
+#: Static stiffness of a free mass over what brakes it: none, in windows of any length.
+UNHELD = 1e-9
 #: Order from which on a further mode is looked for: two modes and a lag do not do.
 MANY = 5
 #: Damping ratio at which a further mode is begun.
@@ -59,21 +68,15 @@ class Judged(Protocol):
         """Error on the folds."""
 
 
-class Least(NamedTuple):
-    """The least error on all records, and on the folds."""
+def lowers(better: Judged, item: Judged, share: float = PAYS) -> bool:
+    """Tell whether one model lowers both errors of another by more than a share."""
+    most = 1 - share
+    return better.fit < most * item.fit and better.folds < most * item.folds
 
-    fit: float
-    folds: float
 
-    @classmethod
-    def of(cls, found: Sequence[Judged]) -> Least:
-        """Give the least errors of some models."""
-        return cls(min(x.fit for x in found), min(x.folds for x in found))
-
-    def met_by(self, item: Judged, share: float = PAYS) -> bool:
-        """Tell whether no more than a needless number would lower a model's errors."""
-        most = 1 - share
-        return not (self.fit < most * item.fit and self.folds < most * item.folds)
+def as_good(item: Judged, others: Iterable[Judged]) -> bool:
+    """Tell whether no other model lowers both errors of one by what a number pays."""
+    return not any(lowers(other, item) for other in others)
 
 
 class Found(NamedTuple):
@@ -121,15 +124,28 @@ class Orders:
             each = ((u - u.mean(), y - y.mean(), dt) for u, y, dt in each)
         return Spectra.of([Stretch(*item) for item in each], self.evidence.hold)
 
+    @cached_property
+    def decay_s(self) -> float | None:
+        """Time constant of a mass that nothing holds, if the records are of one."""
+        return next((x.decay_s for x in self.evidence.fit if x.decay_s), None)
+
     def of(self, order: int, zeros: int) -> Found:
-        """Fit one order to all records, and from there to each fold's."""
-        first = fit_ratio(self.spectra, order, zeros)
+        """Fit one order to all records, and from there to each fold's.
+
+        Of a mass that nothing holds one pole stays at zero.
+        """
+        if self.decay_s is None:
+            first = fit_ratio(self.spectra, order, zeros)
+        else:
+            brake = 1 / (self.decay_s * self.spectra.scale)
+            first = with_poles(self.spectra, brake * np.array([UNHELD, 1.0]), zeros)
         evidence = self.evidence
         task = OutputError(
             evidence.fit,
             evidence.hold,
             self.spectra.scale,
             own_offsets=evidence.own_offsets,
+            held=int(self.decay_s is not None),
         )
         return self.judged(plainest(task, first), first)
 
@@ -147,20 +163,21 @@ class Orders:
     def searched(self, without: Judged) -> list[Found]:
         """Fit orders from one on, while they matter beside a model without any pole.
 
-        With many, one mode more at a time.
+        With many, one mode more at a time. A mass that nothing holds has two poles.
         """
+        if self.decay_s is not None:
+            return [self.of(2, 2)]
         found: list[Found] = []
-        best, in_vain = Least.of([without]), 0
+        plain: Judged = without
+        in_vain = 0
         for order in range(1, HIGHEST + 1):
             found.append(self.of(order, order))
-            least = Least.of([best, found[-1]])
-            in_vain = 0 if not least.met_by(best) else in_vain + 1
-            best = least
+            in_vain = 0 if lowers(found[-1], plain) else in_vain + 1
+            plain = next(x for x in (without, *found) if as_good(x, found))
             if in_vain > IN_VAIN:
                 break
-        likely = next((item for item in found if best.met_by(item)), None)
-        if likely is not None and len(likely.ratio.a) >= MANY:
-            found += self._further_modes(likely)
+        if isinstance(plain, Found) and len(plain.ratio.a) >= MANY:
+            found += self._further_modes(plain)
         return found
 
     def _further_modes(self, last: Found) -> list[Found]:
@@ -179,7 +196,7 @@ class Orders:
             ]
             best = min(begun, key=lambda ratio: ratio.cost)
             further = self.judged(last.task, best)
-            if Least.of([further]).met_by(last, MODE_PAYS):
+            if not lowers(further, last, MODE_PAYS):
                 break
             found.append(further)
             last = further
@@ -195,7 +212,7 @@ class Orders:
         return Orders(replace(self.evidence, fit=fit), late)
 
 
-def fewest(found: Found, best: Least, step: float | None) -> Found:
+def fewest(found: Found, others: Sequence[Judged], step: float | None) -> Found:
     """Leave out zeros that a ratio does not need, and take its input in time.
 
     A sample between input and output looks like a zero, or like a pole and some.
@@ -204,49 +221,49 @@ def fewest(found: Found, best: Least, step: float | None) -> Found:
     ----------
     found : Found
         As many zeros as poles.
-    best : Least
-        Errors of the best model.
+    others : sequence of Judged
+        Models that none of its numbers may be missed beside.
     step : float, optional
         Sampling interval of the records as they were measured; without one no timing
         is tried.
     """
-    tried = _shorter(found, best)
+    tried = _shorter(found, others)
     motion = found.orders.evidence.quantities.causality == "force to motion"
     for plain in tried[-2:]:
         timed = None if step is None else in_time(plain, step)
-        if timed is None or not best.met_by(timed):
+        if timed is None or not as_good(timed, others):
             continue
-        simpler = _simpler(timed, Least.of([best, timed]))
+        simpler = _simpler(timed, [*others, timed])
         # What grows with the frequency, as the force on a mass that is moved, asks for
         # poles that would have to come early: no timing makes up for that.
         if motion or len(simpler.ratio.b) <= len(simpler.ratio.a):
             return simpler
-    return _last_met(tried, best)
+    return _last_good(tried, others)
 
 
-def _simpler(timed: Found, best: Least) -> Found:
+def _simpler(timed: Found, others: Sequence[Judged]) -> Found:
     """Leave out the poles and zeros that stood for the sample."""
     order, zeros = len(timed.ratio.a), len(timed.ratio.b) - 1
     lower = (
         timed.orders.of(k, min(k, zeros)) for k in range(1, min(order, HIGHEST + 1))
     )
-    found = next((item for item in lower if best.met_by(item)), timed)
-    return _last_met(_shorter(found, best), best)
+    found = next((item for item in lower if as_good(item, others)), timed)
+    return _last_good(_shorter(found, others), others)
 
 
-def _shorter(found: Found, best: Least) -> list[Found]:
+def _shorter(found: Found, others: Sequence[Judged]) -> list[Found]:
     """Leave out one zero after the other, up to the first that is needed."""
     order, tried = len(found.ratio.a), [found]
     fewer = reversed(range(len(found.ratio.b) - 1)) if order <= HIGHEST else ()
     for zeros in fewer:
         tried.append(found.orders.of(order, zeros))
-        if not best.met_by(tried[-1]):
+        if not as_good(tried[-1], others):
             break
     return tried
 
 
-def _last_met(tried: Sequence[Found], best: Least) -> Found:
-    return next(item for item in reversed(tried) if best.met_by(item))
+def _last_good(tried: Sequence[Found], others: Sequence[Judged]) -> Found:
+    return next(item for item in reversed(tried) if as_good(item, others))
 
 
 def in_time(plain: Found, step: float) -> Found | None:

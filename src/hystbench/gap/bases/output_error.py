@@ -8,10 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from hystbench.blocks.held import Hold
+from hystbench.blocks.linear import states_of
+from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.transfer_function import TransferFunction, path_from
 from hystbench.errors import InputError
 from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
-from hystbench.record import ComplexArray, FloatArray, Mask, Record
+from hystbench.record import FloatArray, Mask, Record
 
 #: Share of the sum that a step must win for another to follow.
 LEAST_GAIN = 1e-4
@@ -34,6 +36,8 @@ class OutputError:
     own_offsets : bool
         Whether each record has a constant of its own, as where a sensor's zero is
         another one every time; a ratio has their mean.
+    held : int
+        So many of the lowest coefficients of the denominator stay as they are.
     """
 
     records: tuple[Record, ...]
@@ -41,6 +45,7 @@ class OutputError:
     scale: float
     start: str = "rest"
     own_offsets: bool = False
+    held: int = 0
 
     def block(self, ratio: Ratio) -> TransferFunction:
         """Give the block of a ratio; its constant is left out."""
@@ -83,8 +88,7 @@ class OutputError:
     def refined(self, ratio: Ratio, masks: Sequence[Mask], rounds: int) -> Ratio:
         """Go down the sum of squares of the masked samples.
 
-        Steps of Levenberg and Marquardt [1]_. The derivatives are those of a response
-        from rest to the input followed by zeros.
+        Steps of Levenberg and Marquardt [1]_.
 
         Parameters
         ----------
@@ -133,35 +137,57 @@ class OutputError:
     def _moved(self, ratio: Ratio, step: FloatArray) -> Ratio:
         k = len(ratio.a)
         a = stable(ratio.a + step[:k])
+        a[: self.held] = ratio.a[: self.held]  # not what its pole's margin makes of it
         return Ratio(a, ratio.b + step[k:-1], ratio.offset + step[-1], 0.0)
 
     def _triangle(self, ratio: Ratio, masks: Sequence[Mask]) -> FloatArray:
         """Triangle of the derivatives, and of the error as its last column."""
         columns = [
-            np.column_stack([*self._derivatives(ratio, record), rest])
+            np.column_stack([self._derivatives(ratio, record), rest])
             for record, rest in zip(self.records, self.left(ratio), strict=True)
         ]
+        for part in columns:
+            part[:, : self.held] = 0.0
         own = [triangle_of(part) for part in self._masked(columns, masks)]
         return triangle_of(np.vstack(own))
 
-    def _derivatives(self, ratio: Ratio, record: Record) -> list[FloatArray]:
-        """Change of the output with each a, each b and the constant."""
+    def _derivatives(self, ratio: Ratio, record: Record) -> FloatArray:
+        """Change of the output with each a, each b and the constant, column by column.
+
+        With ``x_k = s^k u / A`` the output is ``y = sum b_k x_k``, which changes by
+        ``x_k`` with b_k and by ``-s^k y / A`` with a_k.
+        """
         a, b = ratio.a, ratio.b
         path, before = path_from(record.u, self.start)
-        n, own = len(path), slice(len(path) - len(record), None)
-        s = 2j * np.pi * np.fft.rfftfreq(2 * n, record.dt) / self.scale
-        weight = 1 / np.polyval(np.append(a, 1.0)[::-1], s)
-        by_b = np.fft.rfft(path - before, 2 * n) * weight
-        by_a = -np.polyval(b[::-1], s) * weight * by_b
+        own, k = slice(len(path) - len(record), None), len(a)
+        system = _with_its_derivatives(ratio, self.scale)
+        states = states_of(system, path - before, record.dt, self.hold)[own]
+        by_b, by_a = states[:, :k], -states[:, k:]
+        by_b[:, 0] += before / a[0]
+        by_a[:, 0] -= before * b[0] / a[0] ** 2
+        if len(b) > k:
+            by_b = np.column_stack([by_b, record.u - by_b @ a])
+        return np.column_stack([by_a, by_b[:, : len(b)], np.ones(len(record))])
 
-        def moves(spectrum: ComplexArray, power: int) -> FloatArray:
-            return np.fft.irfft(spectrum * s**power, 2 * n)[:n][own]
 
-        columns = [moves(by_a, power) for power in range(len(a))]
-        columns[0] = columns[0] - before * b[0] / a[0] ** 2
-        numerator = [moves(by_b, power) for power in range(len(b))]
-        numerator[0] = numerator[0] + before / a[0]
-        return [*columns, *numerator, np.ones(len(record))]
+def _with_its_derivatives(ratio: Ratio, scale: float) -> StateSpace:
+    """Give the system whose states are ``s^k u / A``, and ``s^k B u / A^2`` after them.
+
+    Both halves are in controller canonical form; the second has the output of the first
+    as its input.
+    """
+    a, b = ratio.a, ratio.b
+    k = len(a)
+    direct = b[k] if len(b) > k else 0.0
+    matrix = np.zeros((2 * k, 2 * k))
+    for half in (slice(0, k), slice(k, 2 * k)):
+        matrix[half, half] = np.eye(k, k=1)
+        matrix[half.stop - 1, half] = -a
+    matrix[-1, : len(b[:k])] = b[:k]
+    matrix[-1, :k] -= direct * a
+    drive = np.zeros(2 * k)
+    drive[k - 1], drive[-1] = 1.0, direct
+    return StateSpace(scale * matrix, scale * drive, np.zeros(2 * k), 0.0)
 
 
 def without_mean(x: FloatArray) -> FloatArray:

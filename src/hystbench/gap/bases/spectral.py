@@ -164,6 +164,11 @@ def fit_ratio(spectra: Spectra, order: int, zeros: int) -> Ratio:
     return best
 
 
+def with_poles(spectra: Spectra, a: FloatArray, zeros: int) -> Ratio:
+    """Find the numerator and the constant of a ratio whose denominator is given."""
+    return _Problem(spectra, len(a), zeros).solved(a)
+
+
 def with_a_mode(
     spectra: Spectra,
     ratio: Ratio,

@@ -78,9 +78,8 @@ def headline(gap: dict[str, Any], content: Content) -> list[Picture]:
     """Draw the headline: a stretch of a hold-out record, and the sizes of the gap."""
     after = "with effects" if gap["effects"] else "re-tuned"
     found = []
-    table = pictures.worst(content.hold_out)
     same = gap["gap"]["after"] == gap["gap"]["before"]
-    if table is not None:
+    for table in pictures.worst(content.hold_out, 1):
         with_it = "" if same else f", and {after}"
         found.append(
             draw(
@@ -222,7 +221,7 @@ def _ladder(gap: dict[str, Any]) -> Picture | None:
 
 
 def _series(content: Content) -> Picture | None:
-    tables = content.hold_out[: pictures.RECORDS]
+    tables = pictures.worst(content.hold_out, pictures.RECORDS)
     if not tables:
         return None
 

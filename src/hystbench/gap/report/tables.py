@@ -217,9 +217,9 @@ def write_sentences(contents: Sequence[Told], path: Path) -> None:
 
 
 def _residual(content: Content, place: Path) -> Figure:
-    table = pictures.worst(content.hold_out)
-    if table is None:
+    if not content.hold_out:
         raise InputError(f"{place / 'holdout'}: no tables; expected one a record")
+    (table,) = pictures.worst(content.hold_out, 1)
     figure = Figure(figsize=(style.PAGE, 2.3))
     gap = content.gap
     pictures.residual(

@@ -1,0 +1,40 @@
+"""The derivatives of a ratio's output are those of what it simulates."""
+
+import numpy as np
+import pytest
+
+from hystbench.blocks.transfer_function import STARTS
+from hystbench.gap.bases.output_error import OutputError
+from hystbench.gap.bases.spectral import Ratio
+from tests.gap.made import record
+
+# Poles at 0.003, 0.4 and 5 rad/s: the slowest outlasts the record a dozen times.
+SLOW = Ratio(
+    np.poly([-0.003, -0.4, -5.0])[:0:-1], np.array([1.0, 0.3, 0.02, 0.1]), 0.5, 0.0
+)
+
+
+@pytest.mark.parametrize("start", STARTS)
+@pytest.mark.parametrize("hold", ["zero-order", "linear", "band-limited"])
+def test_derivatives_are_those_of_the_simulation(start, hold):
+    t = 0.1 * np.arange(300)
+    u = 1.0 + np.sin(0.7 * t) + 0.5 * np.cos(2.1 * t)
+    task = OutputError((record(u, dt=0.1),), hold, 1.0, start)
+    for ratio in (SLOW, Ratio(SLOW.a, SLOW.b[:2], 0.5, 0.0)):
+        numbers = np.concatenate([ratio.a, ratio.b, [ratio.offset]])
+
+        def simulated(numbers):
+            a, b = numbers[:3], numbers[3:-1]
+            return task.simulate(Ratio(a, b, numbers[-1], 0.0))[0]
+
+        steps = 1e-5 * np.diag(numbers)
+        expected = np.column_stack(
+            [
+                (simulated(numbers + step) - simulated(numbers - step)) / 2 / sum(step)
+                for step in steps
+            ]
+        )
+        found = task._derivatives(ratio, task.records[0])
+        assert found == pytest.approx(
+            expected, rel=1e-5, abs=1e-6 * abs(expected).max()
+        )
