@@ -225,20 +225,29 @@ PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None}
 
 @pytest.mark.parametrize("sort", SORTS)
 def test_the_page_says_what_it_is_like_and_of_what_sort(sort):
-    told = PLAIN | {"unnamed": {"sentence": SORTS[sort]}}
-    like = verdict_sentence(
-        told | {"effects": [{"name": "drive-lag"}, {"name": "creep"}]}
-    )
-    assert like.endswith(
-        f"It looks like drive lag and creep, but is not that: {SORTS[sort]}."
+    shares = {"structured": 0.013, "unrelated": 0.013, "sort": sort}
+    told = PLAIN | {"unnamed": shares | {"sentence": SORTS[sort]}}
+    names = {"effects": [{"name": "drive-lag"}, {"name": "creep"}]}
+    assert verdict_sentence(told | names) == (
+        "The simulator lacks something like drive lag and creep, but not only that: "
+        f"1.3 % of the gap's power stays, and {SORTS[sort]}."
     )
     assert verdict_sentence(told | {"effects": []}).endswith(f" {SORTS[sort]}.")
+
+
+def test_names_that_leave_more_than_a_quarter_are_only_the_nearest():
+    shares = {"structured": 0.4, "unrelated": 0.01, "sort": "curve"}
+    told = PLAIN | {"unnamed": shares | {"sentence": SORTS["curve"]}}
+    assert verdict_sentence(told | {"effects": [{"name": "creep"}]}) == (
+        "No effect of the vocabulary accounts for what differs. Nearest comes creep: "
+        f"40 % of the gap's power stays, and {SORTS['curve']}."
+    )
 
 
 def test_an_older_result_without_the_shares_has_its_sentence_too():
     told = PLAIN | {"unnamed": None}
     assert verdict_sentence(told | {"effects": [{"name": "creep"}]}).endswith(
-        "not that."
+        "not only that: too much of the gap stays."
     )
     assert verdict_sentence(told | {"effects": []}).endswith("what differs.")
 

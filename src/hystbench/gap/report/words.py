@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from hystbench.device_kinds import behaviour_of
 from hystbench.figures.style import unit_text
+from hystbench.gap.thresholds import LOOSE
 from hystbench.gap.vocabulary import in_words
 from hystbench.sentences import listed
 
@@ -21,8 +22,8 @@ VERDICTS = {
     "parameters": "The simulator lacks no effect: other values of its parameters, "
     "within their tolerances, close the gap.",
     "no-gap": "There is no gap: {reason}.",
-    "unnamed": "No effect of the vocabulary accounts for what differs.",
 }
+NO_NAME = "No effect of the vocabulary accounts for what differs."
 
 FLOORS = {
     "repeats": "measured from repeated periods",
@@ -107,16 +108,25 @@ def _verdict(gap: dict[str, Any]) -> str:
     if gap["withdrawn"] and gap["verdict"] == "unnamed":
         return _withdrawn_sentence(gap["withdrawn"])
     names = [behaviour_of(effect["name"]) for effect in gap["effects"]]
-    sentence = VERDICTS[gap["verdict"]].format(
+    if gap["verdict"] == "unnamed":
+        return _unnamed(names, gap["unnamed"] or {"sentence": None})
+    return VERDICTS[gap["verdict"]].format(
         effects=listed(names), reason=gap["reason"].rstrip(".")
     )
-    if gap["verdict"] != "unnamed":
-        return sentence
-    stays = (gap["unnamed"] or {"sentence": None})["sentence"]
-    if names:
-        sentence += f" It looks like {listed(names)}, but is not that"
-        return sentence + (f": {stays}." if stays else ".")
-    return sentence + (f" On the fit records {stays}." if stays else "")
+
+
+def _unnamed(names: list[str], unnamed: dict[str, Any]) -> str:
+    """Say what a gap without a right name is like, and what is against the names."""
+    stays = unnamed["sentence"]
+    if not names:
+        return NO_NAME + (f" On the fit records {stays}." if stays else "")
+    like = f"The simulator lacks something like {listed(names)}, but not only that"
+    if not stays:
+        return f"{like}: too much of the gap stays."
+    share = unnamed["unrelated" if unnamed["sort"] == "unrelated" else "structured"]
+    if share > LOOSE:
+        like = f"{NO_NAME} Nearest comes {listed(names)}"
+    return f"{like}: {100 * share:.2g} % of the gap's power stays, and {stays}."
 
 
 def causes(gap: dict[str, Any]) -> list[str]:
