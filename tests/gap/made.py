@@ -3,7 +3,7 @@
 import numpy as np
 import yaml
 
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.record import Channel, Record
 
 CURRENT = Channel("current", "A")

@@ -8,7 +8,7 @@ import numpy as np
 from hystbench.blocks import registry
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT, record, write_folder
@@ -106,7 +106,9 @@ def write_lagging(folder):
 def state_of(chain, given=None, count=300, **more):
     """Start from a chain, few samples scored."""
     given = records() if given is None else given
-    return ModelState(tuple(chain), given, Sample.of(given, count), **more).settled()
+    return ModelState(
+        tuple(chain), given, ScoredSamples.of(given, count), **more
+    ).settled()
 
 
 def plain_score(state, floor=1e-6):

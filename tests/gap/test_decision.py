@@ -19,7 +19,7 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.judging.verdict import Left
-from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT
@@ -120,7 +120,8 @@ def test_the_next_experiment_keeps_within_the_limits_that_were_asked(alike):
 
 def test_limits_that_no_input_fits_are_refused_before_the_search(alike, monkeypatch):
     base, start, _, _ = alike
-    monkeypatch.setattr(decision_module, "name", lambda *given: pytest.fail("searched"))
+    searched = lambda *given: pytest.fail("searched")  # noqa: E731
+    monkeypatch.setattr(decision_module, "add_effects", searched)
     with pytest.raises(InputError, match="expected low < high"):
         search("made", start.records, base, asked={"low": 1.0, "high": 0.5})
 

@@ -14,14 +14,15 @@ from hystbench.challenge.plant.effects import VOCABULARY
 from hystbench.challenge.spec import CaseSpec
 from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.judging.unnamed import what_is_unnamed
 from hystbench.gap.judging.verdict import judge, what_is_left
 from hystbench.gap.locate import locate
-from hystbench.gap.naming import name as naming
-from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.naming import add_effects as naming
+from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.floor import lone_share, noise_floor
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import FOREIGN, PAYS, SCALE, SHAPE
 from tests.gap.halved import first_halves
 
@@ -81,7 +82,7 @@ def verdict(names, family):
     """What the search says, round after round: the word, and the effects by name."""
     records, base = hidden(names, family)
     start, floor = start_state(records, base)
-    state = naming.name(start, floor.rms).state
+    state = naming.add_effects(start, floor.rms).state
     left = what_is_left(start, state, floor.rms)
     bound = floor.method == "upper-bound"
     unnamed = what_is_unnamed(start, state, floor.rms)

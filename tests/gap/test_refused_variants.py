@@ -7,7 +7,7 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
-from hystbench.gap.fitting.search import Attempt, coarse
+from hystbench.gap.fitting.variant_search import Attempt, coarse
 from hystbench.gap.naming.cached import tried
 from hystbench.gap.naming.rank import rank
 from tests.gap.small import block, measured, plain_score, state_of

@@ -6,10 +6,11 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.outcome import with_what_was_asked
 from hystbench.gap.naming.built_in import build_in
-from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.words import rerun_commands, verdict_sentence
 from hystbench.gap.vocabulary import EVERYTHING, Vocabulary

@@ -16,6 +16,7 @@ from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
 from hystbench.gap.fitting.compare import compare
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.start import start_state
@@ -29,7 +30,7 @@ from hystbench.gap.fitting.uncertainty import (
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.inside.apart import apart_inside
-from hystbench.gap.inside.name import Inside, beats, named_inside
+from hystbench.gap.inside.named_inside import Inside, beats, named_inside
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.judging.gap_json import (
     effect_mapping,
@@ -46,9 +47,8 @@ from hystbench.gap.judging.verdict import (
     what_mends,
 )
 from hystbench.gap.locate import locate
+from hystbench.gap.naming.add_effects import LITTLE, Named, add_effects
 from hystbench.gap.naming.ladder import contributions, rungs
-from hystbench.gap.naming.name import LITTLE, Named, name
-from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.with_own_values import named_apart
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import own_offsets
@@ -148,7 +148,7 @@ def search(
     if enough:
         say(f"inside: {enough}, so no chain of effects is tried")
     else:
-        named, theirs = name(start, floor.rms, say, unnamed_share), own
+        named, theirs = add_effects(start, floor.rms, say, unnamed_share), own
         if inside is not None and not beats(inside, named, floor.rms, say):
             inside = None
         if not (own.records or _leaves_little(inside, floor)):

@@ -14,7 +14,7 @@ from hystbench.dataset import Dataset
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap.records.floor import Floor, noise_floor
-from hystbench.gap.records.sample import Compared, rms
+from hystbench.gap.records.scored_samples import Compared, rms
 from hystbench.inspection.base import loop_of_plays
 from hystbench.inspection.facts import Facts, facts_of, late
 from hystbench.inspection.flat import flats

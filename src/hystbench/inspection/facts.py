@@ -11,7 +11,7 @@ import numpy as np
 from hystbench.dataset import Dataset
 from hystbench.errors import InputError
 from hystbench.formats import read_table
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.records.usable import REAL, check_usable
 from hystbench.inspection.excitation import Excitation, excitation_of
 from hystbench.inspection.missing import cannot_be_bridged

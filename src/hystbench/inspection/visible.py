@@ -19,7 +19,7 @@ from hystbench.blocks import registry
 from hystbench.errors import InputError
 from hystbench.gap.fitting.score import record_weight
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import PARAMETER, PAYS
@@ -107,7 +107,7 @@ def seen_effects(
     InputError
         If the base does not run on the records.
     """
-    sample = Sample.of(records)
+    sample = ScoredSamples.of(records)
     state = ModelState(base.chain, tuple(records), sample, hold=hold)  # type: ignore[arg-type]
     shapes, declined = shapes_of(state)
     own = _own(state)

@@ -12,9 +12,9 @@ from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined, logarithmic
 from hystbench.gap.effects.drift import FORMS, WINDING, path
 from hystbench.gap.fitting.edit_chain import removable, with_effect, without_effect
-from hystbench.gap.fitting.refit import score_of
-from hystbench.gap.fitting.search import Attempt
+from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.state import Free
+from hystbench.gap.fitting.variant_search import Attempt
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model

@@ -10,11 +10,12 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting import cross_validation as held_back
 from hystbench.gap.fitting import score as scores
 from hystbench.gap.fitting.cross_validation import gain_held_back
-from hystbench.gap.fitting.refit import refit, score_of
+from hystbench.gap.fitting.model_score import make_score, score_of
+from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.state import Free
 from hystbench.gap.naming import cached as work
 from hystbench.gap.naming import rank as ranked
-from hystbench.gap.naming.rank import make_score, on_folds, rank
+from hystbench.gap.naming.rank import on_folds, rank
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.records.folds import make_folds
 from hystbench.gap.thresholds import CERTAIN, PAYS, SCALE

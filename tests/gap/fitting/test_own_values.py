@@ -11,7 +11,13 @@ from scipy.signal import lfilter
 from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.own_values import NONE, Own, OwnValues, fitted, own_values
+from hystbench.gap.fitting.own_values import (
+    NONE,
+    Own,
+    OwnValues,
+    own_values,
+    values_of_record,
+)
 from hystbench.gap.naming.with_own_values import without_shared
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.run import decide_in, show_in
@@ -110,7 +116,7 @@ def test_what_is_taken_off_leaves_what_the_simulator_gives(late, gain, offset, s
 
 def test_a_part_of_a_record_tells_its_own():
     (item,) = made([(0.002, 1.5, 0.3)])
-    own = fitted(item, GAIN * item.u, ("delay", "gain", "offset"), 300)
+    own = values_of_record(item, GAIN * item.u, ("delay", "gain", "offset"), 300)
     assert tuple(own) == pytest.approx((0.002, 1.5, 0.3), abs=0.02)
 
 

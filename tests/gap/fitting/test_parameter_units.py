@@ -8,10 +8,11 @@ import pytest
 from hystbench.blocks import registry
 from hystbench.gap.effects.base import Variant
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.parameter_units import unit_at, unit_behind
 from hystbench.gap.judging.gap_json import effect_mapping
 from hystbench.gap.judging.verdict import Left
-from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.naming.rank import rank
 from tests.gap.small import ENVELOPE, GPI, block, hysteresis, measured, state_of
 
 INPUT, OUTPUT = 2.0**10, 2.0**-20

@@ -12,10 +12,11 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.refit import FAR, added, finished, refit, score_of, sizes
-from hystbench.gap.fitting.search import Attempt, coarse, fine
+from hystbench.gap.fitting.model_score import make_score, score_of
+from hystbench.gap.fitting.refit import FAR, added, finished, refit, sizes
 from hystbench.gap.fitting.state import Free
-from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.fitting.variant_search import Attempt, coarse, fine
+from hystbench.gap.naming.rank import rank
 from tests.gap.small import (
     ENVELOPE,
     block,

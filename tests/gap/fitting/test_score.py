@@ -11,14 +11,14 @@ from scipy import optimize
 
 from hystbench.gap.fitting import score as scores
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from tests.gap.made import record
 
 SEEDS = st.integers(0, 2**32 - 1)
 
 
 def sample_of(lengths):
-    return Sample(tuple(np.arange(n) for n in lengths))
+    return ScoredSamples(tuple(np.arange(n) for n in lengths))
 
 
 def formula(residual, lengths, directions, floor, freedom):
@@ -236,7 +236,7 @@ def test_columns_that_are_nothing_or_run_away():
 def test_a_sample_takes_one_of_each_equal_stretch(lengths, count):
     assume(all(n > 1 for n in lengths))
     given_records = [record(np.arange(n, dtype=float)) for n in lengths]
-    sample = Sample.of(given_records, count)
+    sample = ScoredSamples.of(given_records, count)
     assert len(sample) == sum(min(count, n) for n in lengths)
     taken = sample.take([one.u for one in given_records])
     for part, places, n in zip(sample.slices, sample.positions, lengths, strict=True):

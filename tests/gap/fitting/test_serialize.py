@@ -11,10 +11,10 @@ import pytest
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.search import Attempt, coarse
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import start_state
-from hystbench.gap.naming.rank import make_score
+from hystbench.gap.fitting.variant_search import Attempt, coarse
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
 from tests.gap.tiny import write_tiny

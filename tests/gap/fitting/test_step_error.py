@@ -10,8 +10,8 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.step_error import above_floor, floor_with_steps, step_error
-from hystbench.gap.naming import name as naming
-from hystbench.gap.naming.name import Progress, advance
+from hystbench.gap.naming import add_effects as naming
+from hystbench.gap.naming.add_effects import Progress, advance
 from hystbench.gap.progress import silent
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model

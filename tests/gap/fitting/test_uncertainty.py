@@ -15,7 +15,7 @@ from hystbench.gap.fitting.uncertainty import (
     on_more_samples,
     standard_errors,
 )
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from tests.gap.made import record
 from tests.gap.small import block, chains, plain_score, state_of
 
@@ -39,7 +39,7 @@ def noisy(seed):
 
 
 def one_number(records, at=GAIN):
-    sample = Sample(tuple(np.arange(len(one)) for one in records))
+    sample = ScoredSamples(tuple(np.arange(len(one)) for one in records))
     chain = (block("gain", value=at),)
     return ModelState(chain, records, sample, free=(Free(0, "value"),)).settled()
 
@@ -129,7 +129,7 @@ def test_a_number_that_is_zero_has_an_error_like_any_other():
     made = (
         record(u, GAIN * u + level * np.random.default_rng(8).standard_normal(COUNT)),
     )
-    sample = Sample((np.arange(COUNT),))
+    sample = ScoredSamples((np.arange(COUNT),))
     found = []
     for offset in (0.0, 1e-6):
         chain = (block("gain", value=GAIN, offset=offset),)
@@ -147,7 +147,9 @@ def test_a_zero_of_which_the_records_say_nothing_has_none():
     made = (record(u, 0.1 * u),)
     chain = (block("gain", value=GAIN, offset=0.0), block("gain", value=0.0))
     free = (Free(0, "offset"), Free(1, "value"))
-    state = ModelState(chain, made, Sample((np.arange(COUNT),)), free=free).settled()
+    state = ModelState(
+        chain, made, ScoredSamples((np.arange(COUNT),)), free=free
+    ).settled()
     nothing, something = standard_errors(state, plain_score(state, 1e-9))
     assert np.isnan(nothing)
     assert np.isfinite(something)

@@ -6,7 +6,7 @@ import pytest
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from tests.gap.made import record
 from tests.gap.small import block, plain_score
 
@@ -28,7 +28,7 @@ def state_of(effect, order, values, signal, seed):
         )
         for each, level in zip(u, LEVELS, strict=True)
     )
-    sample = Sample(tuple(np.arange(COUNT) for _ in records))
+    sample = ScoredSamples(tuple(np.arange(COUNT) for _ in records))
     chain = (block("gain", value=3.0),)
     start = ModelState(chain, records, sample, free=(Free(0, "value"),)).settled()
     offered = (item.beside for item in effects()[effect].variants(start.simulation))

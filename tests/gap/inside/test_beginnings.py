@@ -10,7 +10,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record
 
 COUNT = 4000
@@ -25,7 +25,9 @@ def state(*gaps):
         Record(f"run-{k}", 1e-3, u, u + gap, *channels, "measured", "fit")
         for k, gap in enumerate(gaps)
     )
-    return ModelState((Gain(value=1.0, offset=0.0),), records, Sample.of(records))
+    return ModelState(
+        (Gain(value=1.0, offset=0.0),), records, ScoredSamples.of(records)
+    )
 
 
 def beginnings(model):

@@ -14,7 +14,7 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.put_in import evened, with_law
 from hystbench.gap.records.coarser import ENOUGH
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 
@@ -25,7 +25,7 @@ MOVED = Quantities("force", "position")
 
 def state(record, chain=(MACHINE,)):
     records = (record,)
-    return ModelState(chain, records, Sample.of(records))
+    return ModelState(chain, records, ScoredSamples.of(records))
 
 
 def periodic(start, periods=2):

@@ -21,7 +21,7 @@ from hystbench.gap.inside.further_modes import (
 )
 from hystbench.gap.inside.modes import NUMBERS, frequency_of, sum_of
 from hystbench.gap.inside.search import Hypothesis, laws_for, may_gain
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Channel, Record
 
 DT, NOISE = 0.01, 1e-6
@@ -66,7 +66,7 @@ def state_of(truth, chain, free, added):
         )
     records = tuple(records)
     return ModelState(
-        chain, records, Sample.of(records), tuple(free), added, hold="linear"
+        chain, records, ScoredSamples.of(records), tuple(free), added, hold="linear"
     )
 
 

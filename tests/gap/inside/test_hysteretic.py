@@ -5,7 +5,7 @@ import pytest
 
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.inside.hosts import best_host, one_coordinate
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import SCALE
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -52,7 +52,7 @@ def tried(held, spring, offered, noise=NOISE):
     """Put forces into a linear host that was fitted to the records."""
     records = tuple(records_of(held, spring, noise))
     begun = one_coordinate(records, Quantities("force", "position"), "zero-order")
-    sample = Sample.of(records)
+    sample = ScoredSamples.of(records)
     score = Score(sample, np.zeros((len(sample), 0)), noise**2)
     return search(best_host(list(begun), score), score, offered)
 

@@ -23,7 +23,7 @@ from hystbench.gap.inside.hosts import (
     is_seen_moving,
     one_coordinate,
 )
-from hystbench.gap.inside.name import chosen, named_inside
+from hystbench.gap.inside.named_inside import chosen, named_inside
 from hystbench.gap.inside.put_in import evened, with_law
 from hystbench.gap.inside.search import (
     Hypothesis,
@@ -34,7 +34,7 @@ from hystbench.gap.inside.search import (
 )
 from hystbench.gap.records.evidence import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -87,7 +87,7 @@ def test_smooth_friction_may_fall_with_the_speed():
         noise = NOISE * np.random.default_rng(seed).standard_normal(len(x))
         given.append(record(f"{seed}", x, 0.03 * v + level * np.tanh(v / 2) + noise))
     begun = one_coordinate(tuple(given), Quantities("position", "force"), "linear")
-    sample = Sample.of(tuple(given))
+    sample = ScoredSamples.of(tuple(given))
     score = Score(sample, np.zeros((len(sample), 0)), NOISE**2)
     found = search(best_host(list(begun), score), score, offered=["friction", "drag"])
     best = min(found, key=lambda item: item.score)
@@ -143,13 +143,13 @@ MOVES = Quantities("force", "position")
 def transfer(records):
     """A linear base of first order, as one is identified."""
     first = TransferFunction(numerator=(1.0, 0.0), denominator=(1.0, 1.0))
-    return ModelState((first,), records, Sample.of(records), hold="zero-order")
+    return ModelState((first,), records, ScoredSamples.of(records), hold="zero-order")
 
 
 def hosted(records, noise):
     """A mass that fits the records best, and the score of such noise."""
     begun = one_coordinate(tuple(records), MOVES, "zero-order")
-    sample = Sample.of(tuple(records))
+    sample = ScoredSamples.of(tuple(records))
     score = Score(sample, np.zeros((len(sample), 0)), noise**2)
     return best_host(list(begun), score), score
 
@@ -214,9 +214,9 @@ def test_what_a_velocity_at_the_first_sample_does_is_left_out():
     whole = replace(mass(0.0), decay_s=1 / 0.8)
     plain = replace(whole, decay_s=None)
     pushed = replace(whole, y=whole.y + 0.3 * whole.of_start[:, 0])
-    sample = Sample.of([whole])
+    sample = ScoredSamples.of([whole])
     assert np.abs(sample.take([whole.y]) - sample.take([pushed.y])).max() < 1e-12
-    assert np.abs(Sample.of([plain]).take([whole.y - pushed.y])).max() > 0.05
+    assert np.abs(ScoredSamples.of([plain]).take([whole.y - pushed.y])).max() > 0.05
     residual, scored = left_over(pushed, whole.y, None)
     assert scored.all()
     assert np.abs(residual).max() < 1e-12
@@ -319,7 +319,7 @@ def test_how_far_a_mass_goes_is_counted_behind_what_stands_before_it():
     given = (record("sine", u, u, ("A", "m")),)
     machine = Mechanism(mass=1.0, damping=2.0, stiffness=60.0)
     plain, tenfold = (
-        how_it_moves(ModelState(chain, given, Sample.of(given)), False)
+        how_it_moves(ModelState(chain, given, ScoredSamples.of(given)), False)
         for chain in ((machine,), (Gain(value=10.0), machine))
     )
     assert tenfold.reach == pytest.approx(10 * plain.reach)
@@ -384,7 +384,7 @@ def test_a_mass_that_is_faster_than_the_samples_is_not_seen_moving(
 ):
     block = Mechanism(mass=mass, damping=damping, stiffness=stiffness)
     records = (record("run", np.zeros(len(TIME)), np.zeros(len(TIME)), ("N", "m")),)
-    state = ModelState((block,), records, Sample.of(records))
+    state = ModelState((block,), records, ScoredSamples.of(records))
     assert is_seen_moving(state) is seen
 
 
@@ -421,7 +421,7 @@ def test_a_curve_before_a_mass_leaves_what_drives_all_as_strong():
     force = registry()["friction-force"](coulomb=1.0, presliding_distance=1e-4)
     beside = OtherModes(numerator=(0.5,), denominator=(1.0, 1.0, 400.0), hold="linear")
     records = (record("run", u, np.zeros(1600), ("N", "m")),)
-    state = ModelState((host, force, beside), records, Sample.of(records))
+    state = ModelState((host, force, beside), records, ScoredSamples.of(records))
     strong = ExponentialCurve(curvature=0.8)
     law = Law("exponential", strong, ("curvature",), "before")
     before = state.residual.std()

@@ -8,7 +8,7 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.modes import modes, one_by_one, split_modes
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.model import Model
 from hystbench.record import Channel, Record
 
@@ -84,7 +84,7 @@ def test_only_the_mode_that_differs_from_level_to_level_is_given():
         )
         records.append(Record(name, DT, u, y, FORCE, MOTION, "measured"))
     records = tuple(records)
-    start = ModelState((whole,), records, Sample.of(records), hold="linear")
+    start = ModelState((whole,), records, ScoredSamples.of(records), hold="linear")
     (first,) = modes(start, "position")
     assert np.sqrt(first.chain[0].stiffness / first.chain[0].mass) < 20
     model = Model("whole", FORCE, MOTION, first.chain)

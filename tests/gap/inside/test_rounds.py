@@ -8,9 +8,9 @@ import pytest
 from hystbench.gap import decision
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import Fitted
-from hystbench.gap.inside.name import _rounds, chosen
+from hystbench.gap.inside.named_inside import _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
-from hystbench.gap.naming.name import name
+from hystbench.gap.naming.add_effects import add_effects
 from hystbench.gap.records.evidence import Evidence
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -114,9 +114,9 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
 
     def counted(*args, **kwargs):
         calls.append(args)
-        return name(*args, **kwargs)
+        return add_effects(*args, **kwargs)
 
-    monkeypatch.setattr(decision, "name", counted)
+    monkeypatch.setattr(decision, "add_effects", counted)
     found = decision.search(
         "made",
         tuple(given),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hystbench.gap.judging.black_box import PENALTIES, BlackBox, Signals, ridges
+from hystbench.gap.judging.black_box import PENALTIES, BlackBox, BoxInputs, ridges
 from hystbench.gap.records.folds import make_folds
 from tests.gap.made import compared, record, sine
 
@@ -126,7 +126,7 @@ def test_weights_are_those_of_the_stacked_least_squares():
 def test_products_of_the_functions_at_the_landmarks_are_the_kernel():
     u = multisine(4, count=60)
     item = compared(u, u**2)
-    signals, _ = Signals.of([item], [slice(None)])
+    signals, _ = BoxInputs.of([item], [slice(None)])
     cloud = signals.state(item, slice(None))  # fewer than landmarks: nothing is lost
     apart = np.sum((cloud[:, None] - cloud[None]) ** 2, axis=2)
     seen = signals.near_landmarks(cloud)

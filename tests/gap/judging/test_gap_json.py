@@ -19,7 +19,7 @@ from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.judging.gap_json import effect_mapping, ranking_rows
 from hystbench.gap.judging.verdict import Left
-from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.schema import RANK
 from hystbench.model import Model, load_model

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from hystbench.gap.judging.grouped_evidence import Products, _factored
+from hystbench.gap.judging.grouped_evidence import ColumnProducts, _factored
 
 ROWS = 2000
 
@@ -28,7 +28,7 @@ def test_of_orthogonal_columns_the_variance_has_a_closed_form():
     rng = np.random.default_rng(1)
     columns = np.linalg.qr(rng.standard_normal((ROWS, 12)))[0] * np.sqrt(ROWS)
     signal = columns @ rng.normal(0, 0.3, 12) + rng.standard_normal(ROWS)
-    found = Products.of(columns, signal).explained([range(12)])
+    found = ColumnProducts.of(columns, signal).explained([range(12)])
     amplitudes = columns.T @ signal / ROWS
     left = signal - columns @ amplitudes
     # At a fixed point the noise is charged for what the amplitudes determine.
@@ -42,7 +42,7 @@ def test_of_orthogonal_columns_the_variance_has_a_closed_form():
 def test_noise_and_sizes_are_found_again(seed):
     counts, sizes = (30, 40, 20), (2.0, 0.0, 0.5)
     columns, signal, groups = made(seed, counts, sizes, 1.0)
-    found = Products.of(columns, signal).explained(groups)
+    found = ColumnProducts.of(columns, signal).explained(groups)
     assert found.noise == pytest.approx(1.0, abs=4 * np.sqrt(2 / ROWS))
     for size, count, variance in zip(sizes, counts, found.variances, strict=True):
         error = 4 * np.sqrt(2 / count) * size**2 + 4 / ROWS
@@ -53,7 +53,7 @@ def test_noise_and_sizes_are_found_again(seed):
 def test_groups_that_explain_nothing_take_no_noise_away(seed):
     # By least squares 200 columns would take a tenth of it.
     columns, signal, groups = made(seed, (5, 200), (1.0, 0.0), 1.0)
-    products = Products.of(columns, signal)
+    products = ColumnProducts.of(columns, signal)
     few, all_of_them = (products.explained(groups[:k]) for k in (1, 2))
     assert all_of_them.noise == pytest.approx(few.noise, rel=0.02)
     assert all_of_them.evidence <= few.evidence + 3.0
@@ -63,7 +63,7 @@ def test_the_evidence_is_the_density_of_the_signal():
     columns, signal, groups = made(3, (4, 6), (1.0, 0.2), 0.7)
     columns, signal = columns[:300], signal[:300]
     columns = columns / np.sqrt(np.mean(columns**2, axis=0))
-    found = Products.of(columns, signal).explained(groups)
+    found = ColumnProducts.of(columns, signal).explained(groups)
     spread = np.repeat(found.variances, [len(group) for group in groups])
     covariance = (columns * spread) @ columns.T + found.noise * np.eye(300)
     density = multivariate_normal(cov=covariance).logpdf(signal)
@@ -72,8 +72,8 @@ def test_the_evidence_is_the_density_of_the_signal():
 
 def test_a_group_offered_twice_explains_no_more():
     columns, signal, groups = made(4, (15,), (1.0,), 1.0)
-    twice = Products.of(np.hstack([columns, columns]), signal)
-    once = Products.of(columns, signal).explained(groups)
+    twice = ColumnProducts.of(np.hstack([columns, columns]), signal)
+    once = ColumnProducts.of(columns, signal).explained(groups)
     assert twice.explained([range(15), range(15, 30)]).noise == pytest.approx(
         once.noise, rel=1e-3
     )
@@ -82,14 +82,14 @@ def test_a_group_offered_twice_explains_no_more():
 def test_scales_of_columns_do_not_matter():
     columns, signal, groups = made(5, (10, 10), (1.0, 0.0), 1.0)
     scales = 10.0 ** np.arange(-10, 10)
-    one = Products.of(columns, signal).explained(groups)
-    other = Products.of(columns * scales, signal).explained(groups)
+    one = ColumnProducts.of(columns, signal).explained(groups)
+    other = ColumnProducts.of(columns * scales, signal).explained(groups)
     assert other.noise == pytest.approx(one.noise, rel=1e-9)
 
 
 def test_a_column_of_zeros_and_no_group_at_all():
     _, signal, _ = made(6, (1,), (1.0,), 1.0)
-    products = Products.of(np.zeros((ROWS, 2)), signal)
+    products = ColumnProducts.of(np.zeros((ROWS, 2)), signal)
     power = np.mean(signal**2)
     assert products.explained([]).noise == pytest.approx(power)
     assert products.explained([range(2)]).noise == pytest.approx(power)

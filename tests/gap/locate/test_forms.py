@@ -3,7 +3,8 @@
 import pytest
 
 from hystbench.gap.effects import effects
-from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.naming.rank import rank
 from hystbench.gap.thresholds import PAYS, SHAPE
 from tests.gap.small import block, hysteresis, measured, records, state_of
 

@@ -13,7 +13,7 @@ from hystbench.gap.locate.level import WORDS, picture_of, take_levels
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.records.floor import noise_floor
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.schema import VIEW
 from hystbench.model import load_model
 from hystbench.record import Channel, Record

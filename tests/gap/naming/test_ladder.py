@@ -7,8 +7,8 @@ import pytest
 from hystbench.gap.decision import search
 from hystbench.gap.fitting.state import Added, Free
 from hystbench.gap.holdout.show import score_hold_out
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.ladder import BASE, RETUNED, rungs
-from hystbench.gap.naming.name import Named
 from hystbench.gap.naming.rounds import Round
 from hystbench.model import Model
 from tests.gap.made import CURRENT, DISPLACEMENT

@@ -6,12 +6,12 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.naming import rank as module
 from hystbench.gap.naming.rank import (
     above_noise_of_its_own,
     beside_their_own_shapes,
     beyond_simpler_laws,
-    make_score,
     rank,
 )
 from hystbench.gap.naming.rounds import Candidate, best_forms

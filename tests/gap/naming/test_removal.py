@@ -7,6 +7,7 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect, without_effect
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import refit
 from hystbench.gap.fitting.uncertainty import (
     error_of_size,
@@ -14,8 +15,7 @@ from hystbench.gap.fitting.uncertainty import (
     standard_errors,
 )
 from hystbench.gap.naming import removal as taken_out
-from hystbench.gap.naming.name import LITTLE, Named
-from hystbench.gap.naming.rank import make_score
+from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.removal import TakenOut, needless, unknown, without_what_goes
 from hystbench.gap.naming.rounds import Round
 from hystbench.gap.progress import silent

@@ -7,11 +7,11 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect, without_effect
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.judging.gap_json import ranking_rows
 from hystbench.gap.naming import second_looks as reconsider
-from hystbench.gap.naming.name import Named
-from hystbench.gap.naming.rank import make_score
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round, reasons
 from hystbench.gap.naming.second_looks import reconsidered
 from hystbench.gap.progress import silent

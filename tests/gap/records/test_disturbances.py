@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hystbench.gap.records.floor import lone_share, unrepeated
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.record import Channel, Record
 
 PERIOD, DT = 100, 1e-3

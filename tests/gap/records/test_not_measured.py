@@ -12,7 +12,7 @@ from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.folds import make_folds
 from hystbench.gap.records.nuisance import left_over, path_and_mains
-from hystbench.gap.records.sample import Compared, Sample
+from hystbench.gap.records.scored_samples import Compared, ScoredSamples
 from hystbench.model import load_model
 from tests.gap.closing import close_gap
 from tests.gap.made import record, sine
@@ -46,17 +46,17 @@ def base(records):
 
 def test_none_of_them_is_scored_in_the_fit(both):
     clean, _ = both
-    sample = Sample.of(clean)
+    sample = ScoredSamples.of(clean)
     for positions in sample.positions:
         assert not set(LOST) & set(positions.tolist())
         assert (np.diff(positions) > 0).all()
-    assert [len(p) for p in Sample.of(clean, 10**6).positions] == [2000 - 6] * 4
+    assert [len(p) for p in ScoredSamples.of(clean, 10**6).positions] == [2000 - 6] * 4
 
 
 def test_a_whole_record_is_sampled_as_before():
     whole = record(sine(3))
     masked = replace(whole, interpolated=np.zeros(2000, dtype=bool))
-    (a,), (b,) = (Sample.of([item]).positions for item in (whole, masked))
+    (a,), (b,) = (ScoredSamples.of([item]).positions for item in (whole, masked))
     np.testing.assert_array_equal(a, b)
 
 

@@ -13,7 +13,7 @@ from hystbench.gap.locate.distortion import EITHER, EVEN, ODD, take_distortion
 from hystbench.gap.locate.over_axis import COLUMNS, FEWEST, over_plane, rate_edges
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.floor import noise_floor
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.report.where_pictures import LOOKS
 from tests.gap.examples import (
     DT,

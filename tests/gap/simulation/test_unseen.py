@@ -18,7 +18,7 @@ from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.run import write_next_experiment
 from hystbench.gap.simulation.reshape import reshapings
 from hystbench.gap.simulation.simulation import Simulation
@@ -153,7 +153,7 @@ def test_a_simulator_that_forgets_has_no_hysteresis(kind, module):
     simulation = Simulation(chain, records())
     assert simulation.loop is None
     assert simulation.behind_hysteresis == 0
-    assert reshapings(simulation, Sample.of(records(), 50)).shape[1] == 0
+    assert reshapings(simulation, ScoredSamples.of(records(), 50)).shape[1] == 0
     assert Simulation((hysteresis(), *chain), records()).loop == 0
 
 
@@ -163,7 +163,7 @@ def test_a_simulator_that_remembers_may_be_of_a_wrong_shape(kind, module):
     chain = (External(function=f"{module(FUNCTIONS)}:{kind}"),)
     simulation = Simulation(chain, records())
     assert (simulation.loop, simulation.behind_hysteresis) == (0, 1)
-    assert reshapings(simulation, Sample.of(records(), 50)).shape[1] > 0
+    assert reshapings(simulation, ScoredSamples.of(records(), 50)).shape[1] > 0
     assert Simulation((block("gain", value=1.0), *chain), records()).loop == 1
     with pytest.raises(Declined, match="has a hysteresis already"):
         next(effects()["hysteresis"].variants(simulation))
@@ -180,7 +180,7 @@ def test_what_lies_behind_the_hysteresis_inside_is_spanned_too(module):
     """A curve of the output is no curve of the input where something delays it."""
     given = records()
     simulation = Simulation((External(function=f"{module(FUNCTIONS)}:loose"),), given)
-    sample = Sample.of(given, 300)
+    sample = ScoredSamples.of(given, 300)
     basis, _ = np.linalg.qr(reshapings(simulation, sample))
     curve = sample.take(tuple(np.sin(y) for y in simulation.output))
     rest = curve - basis @ (basis.T @ curve)

@@ -21,8 +21,8 @@ from hystbench.gap.bases.orders import (
     Judged,
     Orders,
     as_good,
-    fewest,
-    plainest,
+    with_plainest_start,
+    without_needless_zeros,
 )
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.bases.split_linear import best_split, chain_of, is_bent
@@ -153,7 +153,9 @@ def linear_of(evidence: Evidence) -> Linear:
     else:
         chosen = next(item for item in found if as_good(item, tried))
         steps = {item.dt for item in evidence.fit}
-        chosen = fewest(chosen, tried, min(steps) if len(steps) == 1 else None)
+        chosen = without_needless_zeros(
+            chosen, tried, min(steps) if len(steps) == 1 else None
+        )
         if chosen.orders.late:
             orders, found = chosen.orders, [chosen]
             spared = len(orders.evidence.fit[0]) < len(evidence.fit[0])
@@ -207,7 +209,7 @@ def _coarse(evidence: Evidence) -> Evidence:
 def _on_all_samples(found: Found, everything: Orders) -> Found:
     """Fit a ratio that was found on fewer samples to all of them."""
     records = everything.evidence.fit
-    task = plainest(replace(found.task, records=records), found.ratio)
+    task = with_plainest_start(replace(found.task, records=records), found.ratio)
     ratio = task.refined(found.ratio, everything.whole, ROUNDS)
     count = sum(int(mask.sum()) for mask in everything.whole)
     fit = float(np.sqrt(ratio.cost / count))

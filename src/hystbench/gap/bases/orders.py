@@ -147,7 +147,7 @@ class Orders:
             own_offsets=evidence.own_offsets,
             held=int(self.decay_s is not None),
         )
-        return self.judged(plainest(task, first), first)
+        return self.judged(with_plainest_start(task, first), first)
 
     def judged(self, task: OutputError, first: Ratio) -> Found:
         """Fit a ratio to all records, and from there to each fold's."""
@@ -212,7 +212,9 @@ class Orders:
         return Orders(replace(self.evidence, fit=fit), late)
 
 
-def fewest(found: Found, others: Sequence[Judged], step: float | None) -> Found:
+def without_needless_zeros(
+    found: Found, others: Sequence[Judged], step: float | None
+) -> Found:
     """Leave out zeros that a ratio does not need, and take its input in time.
 
     A sample between input and output looks like a zero, or like a pole and some.
@@ -301,7 +303,7 @@ def in_time(plain: Found, step: float) -> Found | None:
     return None
 
 
-def plainest(task: OutputError, ratio: Ratio) -> OutputError:
+def with_plainest_start(task: OutputError, ratio: Ratio) -> OutputError:
     """Take the plainest start of the records that does nearly as well as any."""
     everything = [record.counted for record in task.records]
     tasks = [replace(task, start=start) for start in possible_starts(task.records)]

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from hystbench.blocks.drive_lag import DriveLag
-from hystbench.gap.bases.orders import Orders, plainest
+from hystbench.gap.bases.orders import Orders, with_plainest_start
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import fit_ratio
 from hystbench.gap.records.evidence import Evidence
@@ -95,7 +95,7 @@ def _simulated(orders: Orders) -> list[FloatArray]:
     """Fit a ratio of one order and simulate it, one output a record."""
     evidence, first = orders.evidence, fit_ratio(orders.spectra, ORDER, ORDER - 1)
     task = OutputError(evidence.fit, evidence.hold, orders.spectra.scale)
-    task = plainest(task, first)
+    task = with_plainest_start(task, first)
     return task.simulate(task.refined(first, orders.whole, FEW))
 
 

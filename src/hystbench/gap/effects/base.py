@@ -317,7 +317,9 @@ def places_inside(simulation: Simulation) -> list[int]:
     A linear base that is written as two in series may hide a static nonlinearity
     between its halves.
     """
-    linear = [k for k, item in enumerate(simulation.chain) if item.name == LINEAR]
+    linear = [
+        k for k, item in enumerate(simulation.chain) if item.name == TRANSFER_FUNCTION
+    ]
     return linear[1:]
 
 
@@ -364,7 +366,7 @@ def places_in_sensor(simulation: Simulation, linear: bool = False) -> list[int]:
     return [end, *before]
 
 
-LINEAR = "transfer-function"
+TRANSFER_FUNCTION = "transfer-function"
 INSIDE = "inside the base"
 """Place of an effect between two transfer functions."""
 

@@ -14,7 +14,13 @@ from hystbench.blocks.exponential_stiffness import ExponentialStiffness
 from hystbench.blocks.stiffness import Stiffness
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import LINEAR, Declined, Effect, Values, Variant
+from hystbench.gap.effects.base import (
+    TRANSFER_FUNCTION,
+    Declined,
+    Effect,
+    Values,
+    Variant,
+)
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -112,7 +118,7 @@ def _modes(block: Block) -> Iterator[tuple[Before, dict[str, Any]]]:
     if block.name == "resonance":
         given = block.to_mapping()
         yield (), {key: given[key] for key in MODE}
-    elif block.name == LINEAR:
+    elif block.name == TRANSFER_FUNCTION:
         yield from _modes_inside(cast("TransferFunction", block))
 
 
@@ -156,4 +162,4 @@ def _left(block: TransferFunction, down: np.ndarray) -> Block:
         static = block.numerator[-1] / float(down[0])
         return registry()["gain"].from_mapping({"value": static})
     given = block.to_mapping() | {"denominator": down.tolist()}
-    return registry()[LINEAR].from_mapping(given)
+    return registry()[TRANSFER_FUNCTION].from_mapping(given)

@@ -16,7 +16,7 @@ from hystbench.gap.experiment.excitations import Excitation, Limits, candidates
 from hystbench.gap.experiment.separation import Pair, Rival, Sets, separations
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.model import Model
 from hystbench.record import Record

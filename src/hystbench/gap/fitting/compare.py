@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 

@@ -12,9 +12,9 @@ from hystbench.blocks.linear import LinearBlock
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Variant
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.search import Attempt
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.fitting.variant_search import Attempt
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.simulation.simulation import NOT_LINEAR
 from hystbench.record import Record
@@ -89,7 +89,7 @@ def _coarser(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     every = np.concatenate(state.sample.positions)
     few = replace(
         state,
-        sample=Sample(tuple(every[own] for own in kept)),
+        sample=ScoredSamples(tuple(every[own] for own in kept)),
         correction=None if state.correction is None else state.correction[rows],
     )
     directions = orthonormal(score.directions[rows])
@@ -108,7 +108,7 @@ def _in_longer_steps(state: ModelState, straight: float) -> ModelState:
     few = replace(
         state,
         records=tuple(map(_every, state.records, steps)),
-        sample=Sample(state.sample.positions, apart=steps),
+        sample=ScoredSamples(state.sample.positions, apart=steps),
         correction=None,
     )
     return replace(few, correction=few.residual - state.residual)

@@ -139,7 +139,7 @@ class OwnValues:
         Nothing where it lowers the score by less than its numbers are charged.
         """
         until = round(FIRST * len(record))
-        own = fitted(record, simulated, self.kinds, until)
+        own = values_of_record(record, simulated, self.kinds, until)
         squares = [
             np.mean((record.y - one.of(simulated, record.dt))[:until] ** 2)
             for one in (Own(), own)
@@ -215,7 +215,7 @@ def own_values(
     # With the most freedom first: what that does not gain, less cannot.
     for count in range(len(kinds), 0, -1):
         for some in combinations(kinds, count):
-            each = [fitted(*pair, some) for pair in pairs]
+            each = [values_of_record(*pair, some) for pair in pairs]
             own = costs(each)
             if count == len(kinds) and best - own.sum() < PAYS:
                 return NONE
@@ -247,7 +247,7 @@ STILL = 1e-6
 """Of the score, below which two are the same."""
 
 
-def fitted(
+def values_of_record(
     record: Record,
     simulated: FloatArray,
     kinds: Sequence[str],

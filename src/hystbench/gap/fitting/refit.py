@@ -8,9 +8,10 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.score import Products, Score
-from hystbench.gap.fitting.search import Trial
+from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
+from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState, beside_count, beside_slope
+from hystbench.gap.fitting.variant_search import Trial
 from hystbench.record import FloatArray
 
 ROUNDS = 5
@@ -29,24 +30,6 @@ ENOUGH = 0.05
 """A round that lowers the score by less is the last."""
 
 
-def score_of(state: ModelState, score: Score) -> float:
-    """Score a model as it is; amplitudes of what lies beside are solved for."""
-    return _score_beside(state, score, beside_of(state, score))
-
-
-def beside_of(state: ModelState, score: Score) -> Products | None:
-    """Give the products of what lies beside a model; None without."""
-    if not state.beside:
-        return None
-    columns = state.beside_columns
-    return score.shared(columns, np.zeros(columns.shape[1]))
-
-
-def _score_beside(state: ModelState, score: Score, beside: Products | None) -> float:
-    nothing = np.zeros((len(state.sample), 0))
-    return score.amplitudes(state.residual, nothing, state.freedom, beside=beside).score
-
-
 def refit(
     state: ModelState, score: Score, rounds: int = ROUNDS
 ) -> tuple[ModelState, float]:
@@ -59,7 +42,7 @@ def refit(
     score : float
     """
     beside = beside_of(state, score)
-    best = _score_beside(state, score, beside)
+    best = score_beside(state, score, beside)
     for _ in range(rounds if state.free else 0):
         size = sizes(state)
         before = best
@@ -74,7 +57,7 @@ def refit(
             change = dict(enumerate(found.values.tolist()))
             try:
                 moved = state.with_chain(state.moved(change, reflected=True))
-                value = _score_beside(moved, score, beside)
+                value = score_beside(moved, score, beside)
             except InputError:
                 continue  # out of what the blocks accept together: go less far
             if value <= best:  # at the floor the score is flat, the step still right

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hystbench.errors import InputError
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.thresholds import LEAST_WEIGHT, PARAMETER, RECORD_WEIGHT
 from hystbench.record import FloatArray
 
@@ -85,7 +85,7 @@ class Score:
 
     Parameters
     ----------
-    sample : Sample
+    sample : ScoredSamples
     directions : ndarray, shape (scored samples, d)
         Orthonormal: what a wrong shape of the hysteresis could do.
     floor : float
@@ -94,7 +94,7 @@ class Score:
         Of each record's scored samples, those that count; by default all.
     """
 
-    sample: Sample
+    sample: ScoredSamples
     directions: FloatArray
     floor: float
     used: tuple[NDArray[np.bool_], ...] | None = None
@@ -117,7 +117,7 @@ class Score:
         return whole.hexdigest()
 
     @classmethod
-    def plain(cls, sample: Sample, floor: float) -> Score:
+    def plain(cls, sample: ScoredSamples, floor: float) -> Score:
         """Give a score of residuals as they are, with no direction to spare."""
         return cls(sample, np.zeros((len(sample), 0)), floor)
 

@@ -22,7 +22,7 @@ from hystbench.gap.cache import Result, records_digest, remembered
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray, Record
 
@@ -134,7 +134,7 @@ class Restorer:
     """
 
     def __init__(self, records: tuple[Record, ...], own: Sequence[Block]) -> None:
-        self.records, self.sample = records, Sample.of(records)
+        self.records, self.sample = records, ScoredSamples.of(records)
         self._own = own
         self._corrections: dict[tuple[Block, ...], FloatArray | None] = {}
 

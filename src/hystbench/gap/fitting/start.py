@@ -10,7 +10,7 @@ from hystbench.blocks.held import Hold
 from hystbench.errors import InputError
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.floor import Floor, noise_floor
-from hystbench.gap.records.sample import Compared, Sample
+from hystbench.gap.records.scored_samples import Compared, ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record
@@ -48,7 +48,7 @@ def start_state(
     state = ModelState(
         chain,
         records,
-        Sample.of(records),
+        ScoredSamples.of(records),
         free=free_numbers(base),
         hold=hold,
         offered=offered,

@@ -15,7 +15,7 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Beside, Refused, Values
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.record import FloatArray, Record
@@ -67,7 +67,7 @@ class ModelState:
     ----------
     chain : tuple of Block
     records : tuple of Record
-    sample : Sample
+    sample : ScoredSamples
     free : tuple of Free
     added : tuple of Added
     beside : tuple of (Beside, values)
@@ -85,7 +85,7 @@ class ModelState:
 
     chain: tuple[Block, ...]
     records: tuple[Record, ...]
-    sample: Sample
+    sample: ScoredSamples
     free: tuple[Free, ...] = ()
     added: tuple[Added, ...] = ()
     beside: tuple[tuple[Beside, Values], ...] = ()

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.fitting.refit import score_of
+from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.sample import rms
+from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.simulation import Simulation
 
 

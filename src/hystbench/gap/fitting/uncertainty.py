@@ -12,7 +12,7 @@ from scipy.special import ndtri, stdtrit
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import FloatArray
 
 SAMPLES = 2000
@@ -217,5 +217,5 @@ def between_records(pieces: Pieces, uncounted: int = 0) -> FloatArray:
 
 def on_more_samples(state: ModelState) -> ModelState:
     """Give a model with more of each record's samples scored."""
-    sample = Sample.of(state.records, SAMPLES)
+    sample = ScoredSamples.of(state.records, SAMPLES)
     return replace(state, sample=sample, correction=None).settled()

@@ -21,7 +21,7 @@ from hystbench.gap.records.nuisance import (
     degree_that_carries_on,
     path_and_mains,
 )
-from hystbench.gap.records.sample import rms
+from hystbench.gap.records.scored_samples import rms
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record

@@ -15,7 +15,7 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.records.nuisance import Nuisance, left_over
-from hystbench.gap.records.sample import rms
+from hystbench.gap.records.scored_samples import rms
 from hystbench.record import FloatArray, Mask, Record
 
 #: Draws of the bootstrap, and the part of them that its interval holds.

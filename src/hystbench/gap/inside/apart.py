@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from hystbench.gap.fitting.model_score import score_of
 from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
-from hystbench.gap.fitting.refit import score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.name import Inside
+from hystbench.gap.inside.named_inside import Inside
 from hystbench.gap.naming.with_own_values import ROUNDS, on_records, simulated
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS

@@ -20,7 +20,7 @@ from hystbench.blocks.other_modes import OtherModes
 from hystbench.gap.fitting.least_squares import at_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Record
 
 PART = 0.25
@@ -34,14 +34,14 @@ class Beginnings:
     Parameters
     ----------
     records : tuple of Record
-    sample : Sample
+    sample : ScoredSamples
     kept : ndarray of bool, shape (scored samples,)
         Which of the whole records' scored samples are left.
     score : Score
     """
 
     records: tuple[Record, ...]
-    sample: Sample
+    sample: ScoredSamples
     kept: NDArray[np.bool_]
     score: Score
 
@@ -89,7 +89,10 @@ class Beginnings:
             if start is not None:
                 of_start.append(start[:count])
             kept.append(np.arange(len(places)) < count)
-        sample, mask = Sample(tuple(positions), tuple(of_start)), np.concatenate(kept)
+        sample, mask = (
+            ScoredSamples(tuple(positions), tuple(of_start)),
+            np.concatenate(kept),
+        )
         own = Score(sample, score.directions[mask], score.floor)
         return cls(tuple(records), sample, mask, own)
 

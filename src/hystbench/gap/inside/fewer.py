@@ -16,7 +16,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.search import FEW, Hypothesis
 from hystbench.gap.records.coarser import coarser, left_out
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray
@@ -49,7 +49,7 @@ def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
     if left_out(records, start.records):
         chain = starting(chain, "repeating")
     return replace(
-        start, chain=chain, records=records, sample=Sample.of(records)
+        start, chain=chain, records=records, sample=ScoredSamples.of(records)
     ).settled()
 
 

@@ -27,7 +27,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.inside.modes import frequency_of, modes
 from hystbench.gap.inside.stores import in_other_order, stores
-from hystbench.gap.records.sample import Sample, rms
+from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.quantities import Quantities
@@ -214,7 +214,7 @@ def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     if np.mean((wanted - static @ _solved(static, wanted)) ** 2) < most:
         return None
     nothing = np.zeros((len(wanted), 0))
-    score = Score(Sample.of(simulated), nothing, 1e-3 * most)
+    score = Score(ScoredSamples.of(simulated), nothing, 1e-3 * most)
     best = best_host(list(one_coordinate(simulated, quantities, start.hold)), score)
     if best is None or rms(best.state.residual) ** 2 > most:
         return None
@@ -248,7 +248,7 @@ def one_coordinate(
 
 def impedance(records: tuple[Record, ...], moved: str, hold: Hold) -> ModelState:
     """Give the impedance that fits best: its force is linear in its numbers."""
-    sample = Sample.of(records)
+    sample = ScoredSamples.of(records)
     columns = sample.take([Impedance.columns(moved, hold, r.u, r.dt) for r in records])
     wanted = sample.take([record.y for record in records])
     values = _solved(columns, wanted).tolist()
@@ -266,7 +266,7 @@ def masses(
     solved for.
     """
     found: list[tuple[float, tuple[Block, ...]]] = []
-    sample = Sample.of(records)
+    sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
     # Where periods were left out the first sample is in the middle of a motion.
     at_rest = _from_rest(records) and not all(item.repeats for item in records)
@@ -301,7 +301,7 @@ def free_masses(
     records: tuple[Record, ...], output: str, hold: Hold
 ) -> Iterator[ModelState]:
     """Give a mass without a spring, begun at the rate of decay that fits best."""
-    sample = Sample.of(records)
+    sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
     span = max(record.dt * len(record) for record in records)
     step = min(record.dt for record in records)
@@ -382,7 +382,7 @@ def _state(
     own: dict[int, tuple[str, ...]],
 ) -> ModelState:
     free = tuple(Free(k, name) for k, names in own.items() for name in names)
-    return ModelState(chain, records, Sample.of(records), free=free, hold=hold)
+    return ModelState(chain, records, ScoredSamples.of(records), free=free, hold=hold)
 
 
 def _solved(columns: FloatArray, wanted: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ from hystbench.blocks.store import Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects.law import Changed, Filled
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.record import Record
 
 RATES = 6
@@ -42,7 +42,7 @@ def stores(
     """
     if min(float(record.y.min()) for record in records) < -FARTHEST * noise_rms:
         return
-    sample = Sample.of(records)
+    sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
     span = max(record.dt * len(record) for record in records)
     fastest = 0.3 / min(record.dt for record in records)

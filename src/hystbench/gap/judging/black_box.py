@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.records.folds import Fold, make_folds
-from hystbench.gap.records.sample import Compared, Sample
+from hystbench.gap.records.scored_samples import Compared, ScoredSamples
 from hystbench.operators import play, state_space
 from hystbench.record import FloatArray, Record
 
@@ -49,9 +49,9 @@ LEAST = 1e-12
 class BlackBox:
     """Nonlinear finite-impulse-response model of the residual, in free run.
 
-    A ridge regression on what :class:`Signals` gives. The measured output is not among
-    the columns, so that it runs as freely as the simulator; nor is time: what the input
-    does not explain, the black box cannot.
+    A ridge regression on what :class:`BoxInputs` gives. The measured output is not
+    among the columns, so that it runs as freely as the simulator; nor is time: what the
+    input does not explain, the black box cannot.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class BlackBox:
         there is no power above the floor.
     """
 
-    signals: Signals
+    signals: BoxInputs
     weights: FloatArray
     explained_on_folds: float | None
     input_range: tuple[float, float]
@@ -83,7 +83,7 @@ class BlackBox:
         """
         records = [item.record for item in compared]
         rows = _rows(records)
-        signals, table = Signals.of(compared, rows)
+        signals, table = BoxInputs.of(compared, rows)
         target = _taken([item.residual for item in compared], rows)
         held = [_taken(fold.validation, rows) for fold in folds]
         train = [_taken(fold.train, rows) for fold in folds]
@@ -157,7 +157,7 @@ def black_box(compared: Sequence[Compared], floor_rms: float) -> BlackBox:
 
 
 @dataclass(frozen=True)
-class Signals:
+class BoxInputs:
     """What the black box sees: past and present of input and simulated output.
 
     Parameters
@@ -198,7 +198,7 @@ class Signals:
     @classmethod
     def of(
         cls, compared: Sequence[Compared], rows: Sequence[Any]
-    ) -> tuple[Signals, FloatArray]:
+    ) -> tuple[BoxInputs, FloatArray]:
         """Choose scales and landmarks by the records that fit; give their table too."""
         records = [item.record for item in compared]
         u, s = [x.u for x in records], [item.simulated for item in compared]
@@ -322,7 +322,7 @@ def _rows(records: Sequence[Record]) -> list[NDArray[np.intp]]:
     total = sum(int(np.sum(record.counted)) for record in records)
     shares = [int(np.sum(record.counted)) / total for record in records]
     return [
-        Sample.of([record], max(1, round(ROWS * share))).positions[0]
+        ScoredSamples.of([record], max(1, round(ROWS * share))).positions[0]
         for record, share in zip(records, shares, strict=True)
     ]
 

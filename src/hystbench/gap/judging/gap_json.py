@@ -14,7 +14,7 @@ from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty_beside import Errors
 from hystbench.gap.judging.verdict import Left, confidence, error_of
-from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, near
 from hystbench.model import Model
 from hystbench.record import FloatArray, Record

@@ -43,8 +43,8 @@ class Grouped:
 
 
 @dataclass(frozen=True, eq=False)
-class Products:
-    """Products of all columns with each other and with a signal.
+class ColumnProducts:
+    """ColumnProducts of all columns with each other and with a signal.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Products:
     rows: int
 
     @classmethod
-    def of(cls, columns: FloatArray, signal: FloatArray) -> Products:
+    def of(cls, columns: FloatArray, signal: FloatArray) -> ColumnProducts:
         """Multiply columns, shape (n, k), and a signal, shape (n,)."""
         gram = columns.T @ columns
         size = np.sqrt(gram.diagonal() / len(signal))

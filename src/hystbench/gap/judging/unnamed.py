@@ -16,7 +16,7 @@ import numpy as np
 
 from hystbench.gap.effects.drift import FORMS, WINDING, degree
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.judging.grouped_evidence import Products
+from hystbench.gap.judging.grouped_evidence import ColumnProducts
 from hystbench.gap.judging.known_signals import PATH, generic_groups, halves, paths
 from hystbench.gap.simulation.reshape import orthonormal, products
 from hystbench.gap.thresholds import LOOSE, UNNAMED_SHARE
@@ -170,7 +170,7 @@ def what_is_unnamed(
     groups = own | generic | changing
     ends = np.cumsum([0, *(columns.shape[1] for columns in groups.values())])
     at = {k: range(*ends[n : n + 2]) for n, k in enumerate(groups)}
-    table = Products.of(np.hstack(list(groups.values())), state.residual)
+    table = ColumnProducts.of(np.hstack(list(groups.values())), state.residual)
     alone, with_generic, with_changing = (
         table.explained([at[name] for name in (*own, *more)])
         for more in ((), generic, changing)

@@ -9,10 +9,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.judging.unnamed import NOTHING, Unnamed
-from hystbench.gap.naming.rank import make_score
 from hystbench.gap.naming.rounds import Candidate
 from hystbench.gap.thresholds import (
     ABOVE_NOISE,

@@ -20,7 +20,7 @@ from hystbench.gap.locate.views import (
     slow_time,
 )
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 
 __all__ = ["LEVEL", "Contribution", "View", "Where", "locate", "ranked"]
 

@@ -11,7 +11,7 @@ from scipy import fft, special
 from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import LEAST_SHARE, SIGNIFICANT, chance, percent
-from hystbench.gap.records.sample import Compared, whole_periods
+from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray
 
 IntArray = NDArray[np.int64]

@@ -24,7 +24,7 @@ from hystbench.gap.locate.picture import (
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent, view_of
 from hystbench.gap.records.floor import periodogram
-from hystbench.gap.records.sample import Compared, whole_periods
+from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray
 
 BANDS = 12

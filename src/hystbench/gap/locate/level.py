@@ -26,7 +26,7 @@ from hystbench.gap.locate.mode import LINES, Lines, Mode, find_modes, fit_mode, 
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, percent
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.quantities import quantity_of
 from hystbench.record import FloatArray
 

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import fft
 
-from hystbench.gap.records.sample import Compared, whole_periods
+from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray
 
 ComplexArray = NDArray[np.complex128]

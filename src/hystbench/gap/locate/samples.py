@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from hystbench.errors import InputError
 from hystbench.gap.records.floor import Floor
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.operators import play
 from hystbench.record import FloatArray

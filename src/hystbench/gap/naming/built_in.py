@@ -15,15 +15,15 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.search import Trial
 from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
+from hystbench.gap.fitting.variant_search import Trial
 from hystbench.gap.naming import cached
-from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model

@@ -7,16 +7,16 @@ from typing import Any
 
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.base import Declined, Effect, Variant
-from hystbench.gap.fitting import refit, search
+from hystbench.gap.fitting import refit, variant_search
 from hystbench.gap.fitting.glance import glance_of, thinned
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.search import Attempt, Trial, coarse
 from hystbench.gap.fitting.serialize import (
     remembered_of,
     state_again,
     state_with_correction,
 )
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.variant_search import Attempt, Trial, coarse
 
 Tried = tuple[Attempt, Trial]
 """A variant beside a model, and how it does over its grid."""
@@ -66,7 +66,7 @@ def fine(attempt: Attempt, trial: Trial) -> Trial:
     return remembered_of(
         attempt.state,
         lambda: ["fine", *about, attempt.score.digest],
-        lambda: search.fine(attempt, trial),
+        lambda: variant_search.fine(attempt, trial),
         lambda found: [found.values, found.score],
         lambda kept: Trial(variant, *kept),
     )

@@ -8,8 +8,8 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.base import Declined, Variant
 from hystbench.gap.fitting.glance import records_at_a_glance
-from hystbench.gap.fitting.search import MANY
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.variant_search import MANY
 from hystbench.gap.naming.rank import FINALISTS
 from hystbench.gap.naming.rounds import MOST
 from hystbench.gap.progress import Say

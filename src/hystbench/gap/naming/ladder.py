@@ -10,8 +10,8 @@ from hystbench.gap.effects import effects
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate import Contribution
-from hystbench.gap.naming.name import Named
-from hystbench.gap.records.sample import Compared
+from hystbench.gap.naming.add_effects import Named
+from hystbench.gap.records.scored_samples import Compared
 
 BASE = "base"
 RETUNED = "base re-tuned"

@@ -14,13 +14,12 @@ from hystbench.gap.effects import among, effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import at_end
-from hystbench.gap.fitting.refit import score_of
+from hystbench.gap.fitting.model_score import directions_of, score_of
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.search import Trial
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.variant_search import Trial
 from hystbench.gap.naming import cached
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
-from hystbench.gap.simulation.reshape import orthonormal
 from hystbench.gap.thresholds import (
     CERTAIN,
     LOOSE,
@@ -29,7 +28,6 @@ from hystbench.gap.thresholds import (
     SHAPE,
     UNNAMED_SHARE,
 )
-from hystbench.record import FloatArray
 
 NEAR = 80.0
 """Variants that score worse than the best by more are not searched further."""
@@ -42,30 +40,6 @@ BEHIND = 0.75
 EXACT = 3
 """Of the finalists, those that are simulated exactly before one is taken."""
 AT_AN_END = "fits best at the end of what it can be"
-
-
-def make_score(state: ModelState, floor_rms: float, forms: bool = True) -> Score:
-    """Give the score for a model: what could be wrong in its shape is spanned anew.
-
-    Parameters
-    ----------
-    state : ModelState
-    floor_rms : float
-    forms : bool
-        Whether the added effects may be of another form too; not when their own
-        numbers are to be found.
-    """
-    shape = state.wrong_shape
-    directions = _directions(shape, state) if forms else shape
-    return Score(state.sample, directions, floor_rms**2)
-
-
-def _directions(wrong_shape: FloatArray, state: ModelState) -> FloatArray:
-    """Give a wrong shape's directions with other forms of what a model has added."""
-    forms = state.other_forms
-    return (
-        orthonormal(np.hstack([wrong_shape, forms])) if forms.shape[1] else wrong_shape
-    )
 
 
 def rank(
@@ -358,7 +332,7 @@ def above_noise_of_its_own(
 
     Its numbers stay charged; effects that were there before may be of another form.
     """
-    own = Score(state.sample, _directions(state.wrong_shape, before), floor)
+    own = Score(state.sample, directions_of(state.wrong_shape, before), floor)
     return score_of(state, own) - own.least()
 
 

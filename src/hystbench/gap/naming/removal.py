@@ -9,10 +9,10 @@ import numpy as np
 
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import removable, without_effect
-from hystbench.gap.fitting.refit import finished, score_of
+from hystbench.gap.fitting.model_score import make_score, score_of
+from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.gap.fitting.uncertainty import error_of_size, on_more_samples
-from hystbench.gap.naming.rank import make_score
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import CERTAIN, FURTHER, LOOSE, PAYS, SHAPE, UNKNOWN
 

@@ -8,9 +8,10 @@ from dataclasses import replace
 from hystbench.gap.effects import among
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import last_to, removable, without_effect
+from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.naming.rank import make_score, rank
+from hystbench.gap.naming.rank import rank
 from hystbench.gap.naming.rounds import Candidate, Round, SecondLook, in_order
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS, SCALE, SHAPE

@@ -9,14 +9,14 @@ import numpy as np
 
 from hystbench.gap.cache import records_digest
 from hystbench.gap.fitting.edit_chain import removable, without_effect
+from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
-from hystbench.gap.fitting.refit import ENOUGH, score_of
+from hystbench.gap.fitting.refit import ENOUGH
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming import cached
-from hystbench.gap.naming.name import Named, name
-from hystbench.gap.naming.rank import make_score
+from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import Say
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, UNNAMED_SHARE
@@ -82,7 +82,7 @@ def named_apart(
             break
         say(f"records have {own.words} of their own: naming beside that")
         apart = on_records(start, own.taken_off(start.records, start.hold))
-        again = name(apart, floor_rms, say, unnamed_share)
+        again = add_effects(apart, floor_rms, say, unnamed_share)
         value = score_of(again.state, score) + own.charge
         if value >= least:
             say("that scores no better: they have none of their own")

@@ -15,7 +15,7 @@ from math import ceil
 import numpy as np
 
 from hystbench.blocks.held import Hold
-from hystbench.gap.records.sample import SAMPLES
+from hystbench.gap.records.scored_samples import SAMPLES
 from hystbench.record import FloatArray, Record
 
 BEYOND = 1e-4

@@ -19,7 +19,7 @@ import numpy as np
 from scipy import fft
 
 from hystbench.errors import InputError
-from hystbench.gap.records.sample import Compared, whole_periods
+from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray, Record
 
 Method = Literal["repeats", "declared", "upper-bound"]

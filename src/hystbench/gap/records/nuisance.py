@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from hystbench.errors import InputError
-from hystbench.gap.records.sample import rms
+from hystbench.gap.records.scored_samples import rms
 from hystbench.record import FloatArray, Mask, Record
 
 #: Part of a hold-out record that estimates what is new in it.

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.gpi import GeneralizedPrandtlIshlinskii
-from hystbench.gap.records.sample import Sample
+from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Signals, Simulation
 from hystbench.operators import play
 from hystbench.record import FloatArray
@@ -41,13 +41,13 @@ SMALLEST = 1e-3
 """Directions weaker than this share of the strongest are left out."""
 
 
-def reshapings(simulation: Simulation, sample: Sample) -> FloatArray:
+def reshapings(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
     """Give what reshaping the hysteresis could add to the output.
 
     Parameters
     ----------
     simulation : Simulation
-    sample : Sample
+    sample : ScoredSamples
 
     Returns
     -------
@@ -57,7 +57,7 @@ def reshapings(simulation: Simulation, sample: Sample) -> FloatArray:
     return _behind(simulation, sample, _ways)
 
 
-def products(simulation: Simulation, sample: Sample) -> FloatArray:
+def products(simulation: Simulation, sample: ScoredSamples) -> FloatArray:
     """Give what a hysteresis could add that is no sum of curves of play operators.
 
     Products of the input and of play operators of it, two of them or the square of one
@@ -71,8 +71,8 @@ def products(simulation: Simulation, sample: Sample) -> FloatArray:
 
 def _behind(
     simulation: Simulation,
-    sample: Sample,
-    make: Callable[[Simulation, int, Sample | None], list[Signals]],
+    sample: ScoredSamples,
+    make: Callable[[Simulation, int, ScoredSamples | None], list[Signals]],
 ) -> FloatArray:
     """Make signals of the hysteresis and send them through what follows it."""
     if simulation.loop is None:
@@ -103,7 +103,9 @@ def orthonormal(columns: FloatArray) -> FloatArray:
     return np.asarray(basis @ np.linalg.inv(triangle).T)
 
 
-def _ways(simulation: Simulation, place: int, sample: Sample | None) -> list[Signals]:
+def _ways(
+    simulation: Simulation, place: int, sample: ScoredSamples | None
+) -> list[Signals]:
     """Give ways in which the output of the hysteresis at a place could differ.
 
     Of whole records, or of scored samples.
@@ -119,7 +121,9 @@ def _ways(simulation: Simulation, place: int, sample: Sample | None) -> list[Sig
     return ways + own
 
 
-def _mixed(simulation: Simulation, place: int, sample: Sample | None) -> list[Signals]:
+def _mixed(
+    simulation: Simulation, place: int, sample: ScoredSamples | None
+) -> list[Signals]:
     """Give products of what enters the hysteresis and of play operators of it."""
     signals = simulation.before[place]
     amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
@@ -137,16 +141,16 @@ def _mixed(simulation: Simulation, place: int, sample: Sample | None) -> list[Si
     return ways
 
 
-def _rows(record: int, sample: Sample | None) -> slice | NDArray[np.intp]:
+def _rows(record: int, sample: ScoredSamples | None) -> slice | NDArray[np.intp]:
     return slice(None) if sample is None else sample.positions[record]
 
 
-def _at(signals: Signals, sample: Sample | None) -> Signals:
+def _at(signals: Signals, sample: ScoredSamples | None) -> Signals:
     """Give whole signals, or their scored samples."""
     return tuple(z[_rows(k, sample)] for k, z in enumerate(signals))
 
 
-def _powers(signals: Signals, sample: Sample | None) -> list[Signals]:
+def _powers(signals: Signals, sample: ScoredSamples | None) -> list[Signals]:
     """Give powers of signals and of play operators of them."""
     amplitude = max(float(np.abs(z).max()) for z in signals) or 1.0
     thresholds = amplitude * np.arange(1, OPERATORS + 1) / (OPERATORS + 1)

@@ -31,7 +31,7 @@ from hystbench.gap.inside.search import (
     singles,
     together,
 )
-from hystbench.gap.naming.name import Named
+from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence

@@ -6,7 +6,7 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.naming.name import Progress, advance
+from hystbench.gap.naming.add_effects import Progress, advance
 from hystbench.gap.thresholds import PAYS
 from tests.gap.small import MODE, block, measured, records, state_of
 

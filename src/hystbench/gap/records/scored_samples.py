@@ -22,7 +22,7 @@ SAMPLES = 1000
 
 
 @dataclass(frozen=True)
-class Sample:
+class ScoredSamples:
     """Positions of the scored samples in each record.
 
     Parameters
@@ -42,7 +42,7 @@ class Sample:
     apart: tuple[int, ...] = ()
 
     @classmethod
-    def of(cls, records: Sequence[Record], count: int = SAMPLES) -> Sample:
+    def of(cls, records: Sequence[Record], count: int = SAMPLES) -> ScoredSamples:
         """Take one sample, at random, of each of ``count`` equal stretches."""
         rng = np.random.default_rng(0)
         positions = []
@@ -60,9 +60,9 @@ class Sample:
         ]
         return cls(tuple(positions), tuple(of_start))
 
-    def on(self, kept: Sequence[int]) -> Sample:
+    def on(self, kept: Sequence[int]) -> ScoredSamples:
         """Give the sample of some of the records, by number."""
-        return Sample(
+        return ScoredSamples(
             tuple(self.positions[k] for k in kept),
             tuple(self.of_start[k] for k in kept) if self.of_start else (),
             tuple(self.apart[k] for k in kept) if self.apart else (),

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from hystbench.errors import InputError
 from hystbench.gap.effects.base import Declined
-from hystbench.gap.fitting.search import Trial, coarse
+from hystbench.gap.fitting.variant_search import Trial, coarse
 
 
 def attempt(axes, score):

@@ -53,7 +53,7 @@ class Trial:
     score: float
 
 
-class Signals(NamedTuple):
+class LeastPoint(NamedTuple):
     """What was simulated at the point that scores least: a step begins there."""
 
     point: Point
@@ -77,7 +77,7 @@ class Attempt:
         self.freedom = state.freedom + variant.freedom
         self.known: dict[Point, Trial] = {}
         self.zero: FloatArray | None = None
-        self.least: Signals | None = None
+        self.least: LeastPoint | None = None
 
     @cached_property
     def power(self) -> float:
@@ -95,7 +95,7 @@ class Attempt:
         found = self._solve(residual, own)
         if self.least is None or found.score < self.least.score:
             amplitudes = found.values[: own.shape[1]]
-            self.least = Signals(point, found.score, own, residual, amplitudes)
+            self.least = LeastPoint(point, found.score, own, residual, amplitudes)
         variant = self.variant
         values = dict(zip(variant.grids, point, strict=True))
         scaled = found.values[: len(variant.unit)]
