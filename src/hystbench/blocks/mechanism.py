@@ -132,15 +132,16 @@ class Mechanism(HeldBlock):
         return self.driven_near(z, dt, (), alone)
 
     def _given(self, motion: Motion) -> FloatArray:
-        """Give the output of a motion."""
-        if self.output == "force":
-            spring = self.damping * motion.velocity + self.stiffness * motion.position
-            return spring + motion.force + self.blend * motion.velocity
-        if self.output == "position":
-            return motion.position + self.blend * motion.velocity
-        if self.output == "velocity":
-            return motion.velocity + self.blend * motion.acceleration
-        return motion.acceleration + self.blend * motion.velocity
+        """Give the output of a motion, which may have run away."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            if self.output == "force":
+                spring = self.stiffness * motion.position + motion.force
+                return spring + (self.damping + self.blend) * motion.velocity
+            if self.output == "position":
+                return motion.position + self.blend * motion.velocity
+            if self.output == "velocity":
+                return motion.velocity + self.blend * motion.acceleration
+            return motion.acceleration + self.blend * motion.velocity
 
     def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
         """Compute how the coordinate moves; arguments are those of :meth:`driven`."""
