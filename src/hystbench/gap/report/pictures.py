@@ -72,6 +72,10 @@ def draw(
 def embedded(figure: Figure, words: str, *, clear: bool = False) -> Picture:
     """Take a figure into the page as SVG, the same bytes each time."""
     buffer = io.BytesIO()
+    layout = figure.get_layout_engine()
+    if layout is not None:  # else all would be drawn twice, once to lay it out
+        layout.execute(figure)
+        figure.set_layout_engine("none")
     about = {"Date": None, "Creator": None}
     figure.savefig(buffer, format="svg", metadata=about, transparent=clear)
     text = base64.b64encode(buffer.getvalue()).decode("ascii")
