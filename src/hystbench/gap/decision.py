@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
+from hystbench.gap.bases.lead import leads_left_out
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects import among
 from hystbench.gap.experiment.excitations import Limits
@@ -142,6 +143,10 @@ def search(
             return named_inside(base, start, floor.rms, quantities, identified, say)
 
         inside = look(start)
+        shorter = _without_leads(inside, base, records, hold, quantities, say)
+        if shorter is not records:
+            start, floor = start_state(shorter, base, hold, declared, offered)
+            inside = look(start)
         if not _leaves_little(inside, floor) and own_offsets(records, quantities):
             start, inside, own = apart_inside(start, inside, floor.rms, look, say)
     enough = inside is not None and _why_enough(inside, floor, unnamed_share)
@@ -167,6 +172,24 @@ def search(
         return found
     reason = f"{found.content['reason']}; {inside.sentence}"
     return replace(found, content={**found.content, "reason": reason})
+
+
+def _without_leads(
+    inside: Inside | None,
+    base: Model,
+    records: tuple[Record, ...],
+    hold: Hold,
+    quantities: Quantities,
+    say: Say,
+) -> tuple[Record, ...]:
+    """Leave out the leads of records of which forces show that they begin in motion.
+
+    A base without the forces is too far off to show it.
+    """
+    if inside is None or quantities.causality == "storage":
+        return records
+    found = augmented(inside.base, inside.named.state)
+    return leads_left_out(records, base, hold, "fit", say, found)
 
 
 def _leaves_little(inside: Inside | None, floor: Floor) -> bool:

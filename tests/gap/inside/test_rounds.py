@@ -1,5 +1,6 @@
 """In which order effects inside are told, and against what each is held."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,12 +9,15 @@ import pytest
 from hystbench.gap import decision
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import Fitted
-from hystbench.gap.inside.name import _rounds, chosen
+from hystbench.gap.fitting.state import Added
+from hystbench.gap.inside.name import Inside, _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
-from hystbench.gap.naming.name import name
+from hystbench.gap.naming.name import Named, name
 from hystbench.gap.records.evidence import Evidence
+from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.small import block
 
 
 def tried(score, *effects):
@@ -129,3 +133,36 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
     assert bool(calls) == chain
     assert found.left.after > 1e-4**2
     assert [item["name"] for item in found.content["effects"]] == ["friction"]
+
+
+class LookedAgainError(Exception):
+    """Forces are looked for a second time."""
+
+
+def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypatch):
+    """A linear base is too far off to show that a record begins in a motion."""
+    host = block("mechanism", mass=1.0, damping=6.0, stiffness=100.0)
+    spring = block("stiffness", quadratic=0.0, cubic=70.0)
+    channels, t = (Channel("f", "N"), Channel("x", "mm")), 0.01 * np.arange(2500)
+    u = 30 * np.sin(2.0 * t) + 30 * np.sin(7.3 * t + 0.5)
+    y = Model("plant", *channels, (host, spring)).simulate(u, 0.01)
+    given = tuple(
+        Record(f"{k}", 0.01, u[k:], y[k:], *channels, "measured", "fit")
+        for k in (0, 530)
+    )
+    base = Model("linear", *channels, (host,), ("mechanism.mass",))
+    seen = []
+
+    def look(base, start, *_):
+        seen.append([record.lead for record in start.records])
+        if len(seen) > 1:
+            raise LookedAgainError
+        added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
+        state = replace(start, chain=(host, spring), added=(added,)).settled()
+        return Inside(base, start, Named(state), "")
+
+    monkeypatch.setattr(decision, "named_inside", look)
+    kinds = Quantities("force", "position")
+    with pytest.raises(LookedAgainError):
+        decision.search("made", given, base, declared=1e-3, quantities=kinds)
+    assert seen == [[0, 0], [0, 197]]
