@@ -59,10 +59,13 @@ from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
-NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "asymmetry", "saturation")
+NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
 """Effects that windows of a free mass cannot tell. An integrator makes a path of its
 own in every window of any error; and each begins at zero wherever the mass is, so that
 no curve over its place has a meaning."""
+OF_THE_PLACE = "asymmetry"
+"""The same behind a base that may hold a hysteresis. Before a linear one it bends what
+drives the mass, as a valve does that opens more one way."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -133,7 +136,8 @@ def search(
     """
     limits = Limits.of(records, asked) if asked else None
     if any(record.decay_s is not None for record in records):
-        offered = tuple(name for name in among(offered) if name not in NOT_IN_WINDOWS)
+        closed = (*NOT_IN_WINDOWS, *(() if quantities else (OF_THE_PLACE,)))
+        offered = tuple(name for name in among(offered) if name not in closed)
     start, floor = start_state(records, base, hold, declared, offered)
     inside, own = None, NONE
     if quantities is not None:

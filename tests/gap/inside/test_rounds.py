@@ -13,7 +13,7 @@ from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside.name import Inside, _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
 from hystbench.gap.naming.name import Named, name
-from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.evidence import Evidence, windows
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
@@ -135,8 +135,8 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
     assert [item["name"] for item in found.content["effects"]] == ["friction"]
 
 
-class LookedAgainError(Exception):
-    """Forces are looked for a second time."""
+class FarEnoughError(Exception):
+    """The search has come to what is tested."""
 
 
 def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypatch):
@@ -156,13 +156,36 @@ def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypat
     def look(base, start, *_):
         seen.append([record.lead for record in start.records])
         if len(seen) > 1:
-            raise LookedAgainError
+            raise FarEnoughError
         added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
         state = replace(start, chain=(host, spring), added=(added,)).settled()
         return Inside(base, start, Named(state), "")
 
     monkeypatch.setattr(decision, "named_inside", look)
     kinds = Quantities("force", "position")
-    with pytest.raises(LookedAgainError):
+    with pytest.raises(FarEnoughError):
         decision.search("made", given, base, declared=1e-3, quantities=kinds)
     assert seen == [[0, 0], [0, 197]]
+
+
+@pytest.mark.parametrize("linear", [True, False])
+def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
+    """No curve over its place has a meaning in a window, but one before it has."""
+    mass = block("mechanism", mass=1.0, damping=6.0, stiffness=0.0)
+    u = 30 * np.sin(3.1 * 0.01 * np.arange(2000))
+    channels = Channel("valve", "V"), Channel("x", "mm")
+    record = Record("r", 0.01, u, mass.simulate(u, u, 0.01), *channels, "measured")
+    base = Model("linear", *channels, (mass,), ("mechanism.mass",))
+    seen = []
+
+    def start_state(records, base, hold, declared, offered):
+        seen.extend(offered)
+        raise FarEnoughError
+
+    monkeypatch.setattr(decision, "start_state", start_state)
+    kinds = Quantities("voltage", "position") if linear else None
+    with pytest.raises(FarEnoughError):
+        decision.search("made", windows(record, 0.2), base, quantities=kinds)
+    assert ("asymmetry" in seen) == linear
+    assert "dead-zone" in seen
+    assert "sensor-nonlinearity" not in seen
