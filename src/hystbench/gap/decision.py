@@ -10,6 +10,7 @@ import numpy as np
 
 from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.blocks.held import Hold
+from hystbench.gap.bases.lead import leads_left_out
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects import among
 from hystbench.gap.experiment.excitations import Limits
@@ -58,10 +59,13 @@ from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Record
 
-NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "asymmetry", "saturation")
+NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
 """Effects that windows of a free mass cannot tell. An integrator makes a path of its
 own in every window of any error; and each begins at zero wherever the mass is, so that
 no curve over its place has a meaning."""
+OF_THE_PLACE = "asymmetry"
+"""The same behind a base that may hold a hysteresis. Before a linear one it bends what
+drives the mass, as a valve does that opens more one way."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,7 +136,8 @@ def search(
     """
     limits = Limits.of(records, asked) if asked else None
     if any(record.decay_s is not None for record in records):
-        offered = tuple(name for name in among(offered) if name not in NOT_IN_WINDOWS)
+        closed = (*NOT_IN_WINDOWS, *(() if quantities else (OF_THE_PLACE,)))
+        offered = tuple(name for name in among(offered) if name not in closed)
     start, floor = start_state(records, base, hold, declared, offered)
     inside, own = None, NONE
     if quantities is not None:
@@ -142,6 +147,10 @@ def search(
             return named_inside(base, start, floor.rms, quantities, identified, say)
 
         inside = look(start)
+        shorter = _without_leads(inside, base, records, hold, quantities, say)
+        if shorter is not records:
+            start, floor = start_state(shorter, base, hold, declared, offered)
+            inside = look(start)
         if not _leaves_little(inside, floor) and own_offsets(records, quantities):
             start, inside, own = apart_inside(start, inside, floor.rms, look, say)
     enough = inside is not None and _why_enough(inside, floor, unnamed_share)
@@ -167,6 +176,24 @@ def search(
         return found
     reason = f"{found.content['reason']}; {inside.sentence}"
     return replace(found, content={**found.content, "reason": reason})
+
+
+def _without_leads(
+    inside: Inside | None,
+    base: Model,
+    records: tuple[Record, ...],
+    hold: Hold,
+    quantities: Quantities,
+    say: Say,
+) -> tuple[Record, ...]:
+    """Leave out the leads of records of which forces show that they begin in motion.
+
+    A base without the forces is too far off to show it.
+    """
+    if inside is None or quantities.causality == "storage":
+        return records
+    found = augmented(inside.base, inside.named.state)
+    return leads_left_out(records, base, hold, "fit", say, found)
 
 
 def _leaves_little(inside: Inside | None, floor: Floor) -> bool:

@@ -9,13 +9,16 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
 from hystbench.gap.decision import Decision, search
+from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import run_base, start_state
+from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.inside.named_inside import quantities_if_linear
@@ -135,10 +138,20 @@ def closed_gap(
     # From here on models are compared with hold-out records: these choose nothing, and
     # may take back what was named.
     evidence = without_lead(evidence, base, "hold_out", say)
+    evidence = _as_found(evidence, decision.base, decision.state, say)
     shown = outcome(decision, decision.content, evidence)
     shown = as_asked(shown, decision, evidence, vocabulary, built_in)
     decision = replace(decision, model=shown.model, content=shown.content)
     return Closed(decision, shown, evidence)
+
+
+def _as_found(
+    evidence: Evidence, base: Model, state: ModelState, say: Say = silent
+) -> Evidence:
+    """Leave out the leads of hold-out records by forces inside, as of fit records."""
+    if not any(isinstance(block, Mechanism) for block in base.chain):
+        return evidence
+    return without_lead(evidence, base, "hold_out", say, augmented(base, state))
 
 
 def found_on_fit(
@@ -265,6 +278,7 @@ def decide_in(
     decision = replace(decision, content=content)
     kept = {
         "floor": asdict(decision.floor),
+        "leads": [record.lead for record in decision.state.records],
         "state": state_mapping(decision.state),
         "rungs": [
             {"name": item.name, "state": state_mapping(item.state)}
@@ -296,15 +310,17 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     """
     tables = (f"holdout/{record.name}.csv" for record in evidence.hold_out)
     writes(*(folder / name for name in (*DECISIVE, *tables)))
-    for use in ("fit", "hold_out"):
-        evidence = without_lead(evidence, base, use)
     kept = read_json(folder / NAMED)
+    leads = zip(evidence.fit, kept["leads"], strict=True)
+    evidence = replace(evidence, fit=tuple(replace(x, lead=n) for x, n in leads))
+    evidence = without_lead(evidence, base, "hold_out")
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)
     own = OwnValues.of_mapping(decided["record_values"])
     fit = own.taken_off(evidence.fit, evidence.hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
+    evidence = _as_found(evidence, base, state)
     rungs = tuple(
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     )

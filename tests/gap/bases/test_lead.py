@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
-from hystbench.gap.bases.lead import without_lead
+from hystbench.gap.bases.lead import leads_left_out, without_lead
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record
+from tests.gap.small import block
 
 DT = 0.01
 CHANNELS = Channel("force", "N"), Channel("position", "mm")
@@ -70,6 +72,38 @@ def test_a_store_has_a_level_to_start_from():
 
 def test_a_window_of_a_free_mass_knows_its_start_otherwise():
     assert leads(linear(), replace(record(537), decay_s=1.0)) == [0]
+
+
+HEAVY = Mechanism(mass=1.0, damping=6.0, stiffness=100.0)
+
+
+def sprung(cubic):
+    """A mass whose spring may harden."""
+    forces = (block("stiffness", quadratic=0.0, cubic=cubic),) if cubic else ()
+    return Model("linear", *CHANNELS, (HEAVY, *forces), ("mechanism.mass",))
+
+
+def middle_of_a_motion():
+    """It hardens by as much as a tenth of its linear spring."""
+    w = DT * np.arange(3000)
+    u = 30 * np.sin(2.0 * w) + 30 * np.sin(7.3 * w + 0.5)
+    y = sprung(70.0).simulate(u, DT)[530:]
+    noise = 0.001 * np.random.default_rng(4).standard_normal(2470)
+    return Record("r", DT, u[530:], y + noise, *CHANNELS, "measured", "fit")
+
+
+def test_a_base_that_is_far_off_hides_a_start_which_forces_show():
+    given = (middle_of_a_motion(),)
+    base, right = sprung(0.0), sprung(70.0)
+    assert leads_left_out(given, base, "zero-order", "fit") is given
+    (found,) = leads_left_out(given, base, "zero-order", "fit", found=right)
+    assert found.lead == 247
+
+
+def test_what_has_no_lead_already_is_looked_at_no_more():
+    given = (replace(middle_of_a_motion(), lead=10),)
+    base, right = sprung(0.0), sprung(70.0)
+    assert leads_left_out(given, base, "zero-order", "fit", found=right) is given
 
 
 def test_scores_leave_a_lead_out():

@@ -177,6 +177,22 @@ def test_forces_are_tried_with_the_timing_of_the_base_and_without():
     assert alone == [block.name for block in firsts]
 
 
+@pytest.mark.parametrize(
+    ("units", "kinds", "count"),
+    [
+        (("N", "mm"), MOVES, 0),
+        (("mm", "N"), Quantities("position", "force"), 1),
+    ],
+)
+def test_where_the_base_is_a_gain_no_mass_is_seen(units, kinds, count):
+    """As of a slow piezoelectric stack: its loop is one of what drives it."""
+    u = np.sin(2.1 * TIME)
+    given = (record("slow", u, 3.0 * u, units),)
+    start = ModelState((Gain(value=3.0, offset=0.0),), given, Sample.of(given))
+    score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
+    assert len(list(hosts(start, kinds, True, score))) == count
+
+
 def test_drag_of_a_loose_mass_whose_acceleration_is_measured():
     """By small steps of Euler: linear, it looks like a mass on a soft spring."""
     given, fine = [], 20

@@ -1,5 +1,6 @@
 """In which order effects inside are told, and against what each is held."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,12 +9,15 @@ import pytest
 from hystbench.gap import decision
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import Fitted
-from hystbench.gap.inside.named_inside import _rounds, chosen
+from hystbench.gap.fitting.state import Added
+from hystbench.gap.inside.named_inside import Inside, _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
-from hystbench.gap.naming.add_effects import add_effects
-from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.naming.add_effects import Named, add_effects
+from hystbench.gap.records.evidence import Evidence, windows
+from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
+from tests.gap.small import block
 
 
 def tried(score, *effects):
@@ -129,3 +133,59 @@ def test_where_no_more_is_left_than_may_stay_no_chain_is_tried(
     assert bool(calls) == chain
     assert found.left.after > 1e-4**2
     assert [item["name"] for item in found.content["effects"]] == ["friction"]
+
+
+class FarEnoughError(Exception):
+    """The search has come to what is tested."""
+
+
+def test_forces_are_looked_for_again_without_the_starts_that_they_show(monkeypatch):
+    """A linear base is too far off to show that a record begins in a motion."""
+    host = block("mechanism", mass=1.0, damping=6.0, stiffness=100.0)
+    spring = block("stiffness", quadratic=0.0, cubic=70.0)
+    channels, t = (Channel("f", "N"), Channel("x", "mm")), 0.01 * np.arange(2500)
+    u = 30 * np.sin(2.0 * t) + 30 * np.sin(7.3 * t + 0.5)
+    y = Model("plant", *channels, (host, spring)).simulate(u, 0.01)
+    given = tuple(
+        Record(f"{k}", 0.01, u[k:], y[k:], *channels, "measured", "fit")
+        for k in (0, 530)
+    )
+    base = Model("linear", *channels, (host,), ("mechanism.mass",))
+    seen = []
+
+    def look(base, start, *_):
+        seen.append([record.lead for record in start.records])
+        if len(seen) > 1:
+            raise FarEnoughError
+        added = Added("stiffness-hardening", "inside", "", (1,), {}, 1.0)
+        state = replace(start, chain=(host, spring), added=(added,)).settled()
+        return Inside(base, start, Named(state), "")
+
+    monkeypatch.setattr(decision, "named_inside", look)
+    kinds = Quantities("force", "position")
+    with pytest.raises(FarEnoughError):
+        decision.search("made", given, base, declared=1e-3, quantities=kinds)
+    assert seen == [[0, 0], [0, 197]]
+
+
+@pytest.mark.parametrize("linear", [True, False])
+def test_what_drives_a_free_mass_may_be_bent(linear, monkeypatch):
+    """No curve over its place has a meaning in a window, but one before it has."""
+    mass = block("mechanism", mass=1.0, damping=6.0, stiffness=0.0)
+    u = 30 * np.sin(3.1 * 0.01 * np.arange(2000))
+    channels = Channel("valve", "V"), Channel("x", "mm")
+    record = Record("r", 0.01, u, mass.simulate(u, u, 0.01), *channels, "measured")
+    base = Model("linear", *channels, (mass,), ("mechanism.mass",))
+    seen = []
+
+    def start_state(records, base, hold, declared, offered):
+        seen.extend(offered)
+        raise FarEnoughError
+
+    monkeypatch.setattr(decision, "start_state", start_state)
+    kinds = Quantities("voltage", "position") if linear else None
+    with pytest.raises(FarEnoughError):
+        decision.search("made", windows(record, 0.2), base, quantities=kinds)
+    assert ("asymmetry" in seen) == linear
+    assert "dead-zone" in seen
+    assert "sensor-nonlinearity" not in seen

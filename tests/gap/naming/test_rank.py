@@ -51,6 +51,16 @@ def test_an_offset_is_no_bias_of_the_field(bias):
     assert first.effect == "calibration-error"
 
 
+def test_creep_stands_behind_a_curve_of_the_base():
+    """As of an elastomer under the stress of a squared voltage."""
+    lag = block("drive-lag", time_constant_s=2e-3)
+    curve = (lag, block("asymmetry", coefficient=3.0))
+    slow = block("creep", magnitudes=[0.5], time_constants_s=[0.2])
+    first, *_ = ranked((*curve, slow), curve, ("creep", "thermal-drift"))
+    assert first.effect == "creep"
+    assert first.state.power(0.0) ** 0.5 < 1.5 * NOISE
+
+
 LOOP = (block("prandtl-ishlinskii", thresholds=[0.0, 0.2, 0.4], weights=[4, 3, 2]),)
 FREE = "hysteresis-shape"
 

@@ -165,3 +165,18 @@ def test_what_effects_ask_of_a_scene():
     assert simulation.largest(0) == max(np.abs(one.u).max() for one in records())
     rates = [np.abs(np.diff(one.u) / one.dt).max() for one in records()]
     assert simulation.fastest() == pytest.approx(max(rates))
+
+
+def place_of_mechanics(*chain):
+    return Simulation(chain, records()).behind_material
+
+
+def test_without_a_hysteresis_the_mechanics_stand_behind_every_curve():
+    """What is linear may stand before a linear block, but not before a curve."""
+    curve = block("asymmetry", coefficient=0.3)
+    lag, gain = block("drive-lag", time_constant_s=2e-3), block("gain", value=2.0)
+    sensor = block("sensor-nonlinearity", quadratic=0.1, cubic=0.0)
+    assert place_of_mechanics(lag, gain) == 0
+    assert place_of_mechanics(lag, curve, gain) == 2
+    assert place_of_mechanics(block("drive-saturation", limit=1.0), lag) == 1
+    assert place_of_mechanics(lag, sensor) == 0

@@ -7,11 +7,14 @@ it remembers of the time before is no effect.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
+from hystbench.blocks.held import Hold
+from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.bases.orders import LEAD
@@ -31,6 +34,7 @@ def without_lead(
     base: Model,
     use: Literal["fit", "hold_out"],
     say: Say = silent,
+    found: Model | None = None,
 ) -> Evidence:
     """Leave out of the score the leads of records that begin in the middle of a motion.
 
@@ -49,29 +53,50 @@ def without_lead(
         Of which records. Hold-out records are looked at when the search is over.
     say : callable
         Told of how many records the lead is left out.
+    found : Model, optional
+        The base with what was found: it is asked in the place of the base, whose own
+        error may hide a start.
     """
-    if not is_identified(base) or evidence.quantities.causality == "storage":
+    if evidence.quantities.causality == "storage":
         return evidence
-    held = base.with_hold(evidence.hold)
     of_use = evidence.fit if use == "fit" else evidence.hold_out
-    records = tuple(_without(record, held) for record in of_use)
-    cut = sum(item.lead > 0 for item in records)
-    if cut:
-        say(
-            f"the first tenth of {cut} of {len(records)} {use.replace('_', '-')} "
-            "records is not scored: what the base leaves there is what another state "
-            "at the first sample would do"
-        )
+    told = use.replace("_", "-")
+    records = leads_left_out(of_use, base, evidence.hold, told, say, found)
     if use == "fit":
         return replace(evidence, fit=records)
     return replace(evidence, hold_out=records)
 
 
-def _without(record: Record, base: Model) -> Record:
+def leads_left_out(
+    records: tuple[Record, ...],
+    base: Model,
+    hold: Hold,
+    use: str,
+    say: Say = silent,
+    found: Model | None = None,
+) -> tuple[Record, ...]:
+    """Do so for records; those already without a lead, and all others, stay."""
+    if not is_identified(base):
+        return records
+    held = base.with_hold(hold)
+    asked = held if found is None else found.with_hold(hold)
+    shorter = tuple(x if x.lead else _without(x, held, asked) for x in records)
+    cut = sum(item is not x for item, x in zip(shorter, records, strict=True))
+    if cut:
+        who = "the base" if found is None else "the model with its forces"
+        say(
+            f"the first tenth of {cut} of {len(records)} {use} records is not scored: "
+            f"what {who} leaves there is what another state at the first sample would "
+            "do"
+        )
+    return shorter if cut else records
+
+
+def _without(record: Record, base: Model, asked: Model) -> Record:
     if record.decay_s is not None:
         return record  # what its start does is a number of its own
     lead = int(LEAD * len(record))
-    rest = record.y - base.simulate(record.u, record.dt)
+    rest = record.y - asked.simulate(record.u, record.dt)
     first, behind = rest[:lead], rest[lead:][record.counted[lead:]]
     measured = record.counted[:lead]
     free = free_motion(base, record.time[:lead])[measured]
@@ -84,6 +109,15 @@ def _without(record: Record, base: Model) -> Record:
     if np.mean((first - free @ states) ** 2) > MOSTLY * np.mean(first**2):
         return record
     return replace(record, lead=lead)
+
+
+def _ratios(base: Model) -> Iterator[tuple[float, ...]]:
+    """Give the denominators of a linear base."""
+    for block in base.chain:
+        if isinstance(block, TransferFunction):
+            yield block.denominator
+        elif isinstance(block, Mechanism):
+            yield block.mass, block.damping, block.stiffness
 
 
 def free_motion(base: Model, time: FloatArray) -> FloatArray:
@@ -101,14 +135,7 @@ def free_motion(base: Model, time: FloatArray) -> FloatArray:
         settle within the time given.
     """
     poles = np.concatenate(
-        [
-            np.zeros(0, dtype=complex),
-            *(
-                np.roots(block.denominator)
-                for block in base.chain
-                if isinstance(block, TransferFunction)
-            ),
-        ]
+        [np.zeros(0, dtype=complex), *(np.roots(down) for down in _ratios(base))]
     )
     span = time[-1] if len(time) else 0.0
     if len(poles) == 0 or -np.max(poles.real) * span < SETTLES:

@@ -25,7 +25,7 @@ from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.modes import frequency_of, modes
+from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
 from hystbench.gap.simulation.simulation import Simulation
@@ -104,7 +104,8 @@ def hosts(
             yield Host(best.state, best, words)
             for other in in_other_order(best.state):
                 yield Host(best.state, best, words, other)
-    if identified and not of_many_modes(start):
+    moves = shows_a_pole(start) or quantities.causality == "motion to force"
+    if identified and moves and not of_many_modes(start):
         begun = one_coordinate(start.records, quantities, start.hold)
         best = best_host(list(begun), score)
         if best is not None and is_seen_moving(best.state):

@@ -71,6 +71,15 @@ def modes(
             yield with_others_free(state) if others_too else state
 
 
+def shows_a_pole(start: ModelState) -> bool:
+    """Tell whether a base that was identified has a pole, or is a gain alone.
+
+    Of a mass that follows at once only its spring is seen. A force inside is then a
+    curve or a loop of what drives it, which a chain has.
+    """
+    return not all(isinstance(block, Gain) for block in start.chain)
+
+
 def frequency_of(mode: Mechanism) -> float:
     """Give the natural frequency of a mode in Hz."""
     return float(np.sqrt(mode.stiffness / mode.mass) / (2 * np.pi))

@@ -12,6 +12,7 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock, attached, through_near
 from hystbench.blocks.base import Block
 from hystbench.blocks.curve import SHORT_STEPS, finer
+from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import HeldBlock, Hold
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.stiffness_hardening import StiffnessHardening
@@ -179,11 +180,23 @@ class Simulation:
 
     @property
     def behind_material(self) -> int:
-        """Place behind the hysteresis and the material's curves that follow it."""
+        """Place behind the hysteresis and the material's curves that follow it.
+
+        Without a hysteresis, behind the last block that does not commute with what is
+        linear: a simulator of somebody's own, or a curve of the drive or the material.
+        """
         k = self.behind_hysteresis
         while k < len(self.chain) and self.chain[k].place == "material":
             k += 1
-        return k
+        if self.loop is not None:
+            return k
+        bends = (
+            place + 1
+            for place, block in enumerate(self.chain)
+            if block.place not in ("mechanics", "sensor")
+            and not isinstance(block, HeldBlock | Gain)
+        )
+        return max(bends, default=0)
 
     @property
     def behind_mechanics(self) -> int:
