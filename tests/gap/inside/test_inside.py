@@ -188,7 +188,7 @@ def test_where_the_base_is_a_gain_no_mass_is_seen(units, kinds, count):
     """As of a slow piezoelectric stack: its loop is one of what drives it."""
     u = np.sin(2.1 * TIME)
     given = (record("slow", u, 3.0 * u, units),)
-    start = ModelState((Gain(value=3.0, offset=0.0),), given, Sample.of(given))
+    start = ModelState((Gain(value=3.0, offset=0.0),), given, ScoredSamples.of(given))
     score = Score(start.sample, np.zeros((len(start.sample), 0)), NOISE**2)
     assert len(list(hosts(start, kinds, True, score))) == count
 
