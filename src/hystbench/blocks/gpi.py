@@ -12,10 +12,7 @@ from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
 from hystbench.blocks.wrapping import HystereticBlock
 from hystbench.envelope import Envelope
-from hystbench.operators import (
-    generalized_play,
-    growing_prandtl_ishlinskii,
-)
+from hystbench.operators import generalized_play, generalized_prandtl_ishlinskii
 from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
 
@@ -65,7 +62,7 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         left, right, rounds = self._envelopes(v)
         if growth is not None:
             growth = np.tile(growth, rounds)
-        y = growing_prandtl_ishlinskii(
+        y = generalized_prandtl_ishlinskii(
             left, right, self.thresholds, self.weights, growth
         )
         return y[-len(v) :] if rounds > 1 else y
