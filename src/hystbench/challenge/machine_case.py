@@ -8,8 +8,8 @@ import numpy as np
 
 from hystbench.challenge.case import Case, effect_told, periods_of, rms, told_of
 from hystbench.challenge.machine import (
+    InputsAndOutputs,
     Machine,
-    Signals,
     draw_machine,
     linear_parts,
     reach_of,
@@ -101,7 +101,10 @@ def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffe
 
 
 def _size(
-    machine: Machine, full: Signals, others: tuple[HiddenEffect, ...], reach: Reach
+    machine: Machine,
+    full: InputsAndOutputs,
+    others: tuple[HiddenEffect, ...],
+    reach: Reach,
 ) -> float:
     """Measure how much an effect changes the output of the fit records.
 
@@ -116,11 +119,11 @@ def _size(
     return rms([y - other for (_, y), (_, other) in pairs])
 
 
-def _left(machine: Machine, signals: Signals) -> float:
+def _left(machine: Machine, signals: InputsAndOutputs) -> float:
     return rms([y - fitted for y, fitted in linear_parts(machine, signals)])
 
 
-def _used(machine: Machine, signals: Signals, use: str) -> Signals:
+def _used(machine: Machine, signals: InputsAndOutputs, use: str) -> InputsAndOutputs:
     pairs = zip(machine.records, signals, strict=True)
     return [signal for item, signal in pairs if item.use == use]
 

@@ -14,7 +14,7 @@ from hystbench.blocks.held import HOLDS, Hold
 from hystbench.dataset import load_dataset, read_input
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_columns
-from hystbench.model import load_model
+from hystbench.model import check_bounded, load_model
 from hystbench.record import Channel, FloatArray, Record, column_name, load_record
 from hystbench.signals import load_signal
 from hystbench.units import check_same_unit
@@ -69,12 +69,7 @@ def simulate(
     if run.record is not None:
         system = system.with_records([run.record], run.column)
     y = system.simulate(run.u, run.dt)
-    lost = np.flatnonzero(~np.isfinite(y))
-    if len(lost):
-        raise InputError(
-            f"{model}: the output is not finite from {lost[0] * run.dt:g} s of "
-            f"{record} on; expected a model that stays bounded"
-        )
+    check_bounded(str(model), y, run.dt, str(record))
     time = np.arange(len(y)) * run.dt
     columns = {"time_s": time, column_name(run.input.name, run.input.unit): run.u}
     if run.y is not None and run.output is not None:

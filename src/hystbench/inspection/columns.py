@@ -88,7 +88,7 @@ class Part:
 
 
 @dataclass
-class Signals:
+class ChosenColumns:
     """Which columns are what, and their units."""
 
     time: str | None
@@ -154,7 +154,7 @@ def _part(
     )
 
 
-def signals_of(parts: Sequence[Part], given: Given, ask: Ask) -> Signals:
+def signals_of(parts: Sequence[Part], given: Given, ask: Ask) -> ChosenColumns:
     """Find which columns are time, input and output, of most parts."""
     common = _common(parts)
     first = next(part for part in parts if set(common) <= set(part.columns))
@@ -194,7 +194,7 @@ def signals_of(parts: Sequence[Part], given: Given, ask: Ask) -> Signals:
         unit_of_time = clock.unit if clock else "s"
         taken = clock.words if clock else "seconds"
         notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
-    return Signals(
+    return ChosenColumns(
         time,
         plain(unit_of_time or "s"),
         *chosen,
@@ -300,7 +300,7 @@ def _finite(column: Column) -> FloatArray:
     return values if len(values) else np.zeros(1)
 
 
-def fits(part: Part, signals: Signals) -> bool:
+def fits(part: Part, signals: ChosenColumns) -> bool:
     """Tell whether a part has the columns."""
     wanted = {signals.input, signals.output}
     if signals.time is not None:

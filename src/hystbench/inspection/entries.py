@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, nearest
 from hystbench.inspection.clocks import Ticks, ticks_of
-from hystbench.inspection.columns import LEAST, Ask, Given, Part, Signals
+from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Given, Part
 from hystbench.inspection.excitation import excitation_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
@@ -35,7 +35,7 @@ Entry = dict[str, Any]
 
 def content_of(
     parts: Sequence[Part],
-    signals: Signals,
+    signals: ChosenColumns,
     given: Given,
     place: Path,
     ask: Ask,
@@ -119,7 +119,7 @@ def _from(place: Path, part: Part) -> str:
 def _frequency(
     about: dict[str, Any],
     parts: Sequence[Part],
-    signals: Signals,
+    signals: ChosenColumns,
     given: Given,
     ask: Ask,
     notes: list[str],
@@ -159,7 +159,7 @@ def checked_frequency(told: str | float) -> float:
     return value
 
 
-def missing_in(part: Part, signals: Signals) -> NDArray[np.bool_]:
+def missing_in(part: Part, signals: ChosenColumns) -> NDArray[np.bool_]:
     """Tell of each sample whether time, input or output has no number."""
     columns = [part.columns[signals.input], part.columns[signals.output]]
     if signals.time is not None:
@@ -171,7 +171,7 @@ def missing_in(part: Part, signals: Signals) -> NDArray[np.bool_]:
 
 def _without_missing(
     part: Part,
-    signals: Signals,
+    signals: ChosenColumns,
     entry: dict[str, Any],
     given: Given,
     ask: Ask,
