@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from hystbench import operators
-from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, play_thresholds, thresholds
+from hystbench.envelope import PUBLISHED_ENVELOPE, Envelope, equal_intervals, thresholds
 from hystbench.errors import InputError
 from hystbench.operators import (
     generalized_play,
@@ -100,15 +100,15 @@ def test_thresholds_by_equation_10():
     envelope = Envelope(1, 1, 0, 0.5, 3, 1, 0, 0)  # at 1: 1.26 left, 2.28 right
     r = thresholds(envelope, 1.0, 3)
     assert r == pytest.approx(np.array([0, 1, 2, 3]) / 4 * 3 * np.tanh(1))
-    assert play_thresholds(0.8, 3) == pytest.approx([0, 0.2, 0.4, 0.6])
+    assert equal_intervals(0.8, 3) == pytest.approx([0, 0.2, 0.4, 0.6])
 
 
 @pytest.mark.parametrize("amplitude", [0.0, -1.0, np.nan, np.inf])
 def test_thresholds_need_a_positive_amplitude(amplitude):
     with pytest.raises(InputError, match="amplitude"):
-        play_thresholds(amplitude, 3)
+        equal_intervals(amplitude, 3)
     with pytest.raises(InputError, match="order: -1"):
-        play_thresholds(1.0, -1)
+        equal_intervals(1.0, -1)
 
 
 # --- the operators against plain loops

@@ -13,8 +13,7 @@ from hystbench.compare.tables import Table, paper_table, paper_tables
 from hystbench.compare.verdict import (
     first_result,
     sentences,
-    verdict_markdown,
-    verdict_rst,
+    verdict_page,
 )
 
 from .made import make_run, published_runs
@@ -211,7 +210,7 @@ def test_the_first_result_has_numbers_and_links():
 
 def test_verdict_is_valid_rst(comparison):
     document = docutils.core.publish_string(
-        verdict_rst(comparison.summary),
+        verdict_page(comparison.summary, "rst"),
         writer="html",
         settings_overrides={"halt_level": 2, "report_level": 2},
     ).decode()
@@ -220,7 +219,7 @@ def test_verdict_is_valid_rst(comparison):
 
 
 def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
-    text = verdict_markdown(comparison.summary)
+    text = verdict_page(comparison.summary, "pipe")
     for model in ("gpo", "backlash", "volterra", "delayed"):
         assert f"| {model} " in text
     assert "| rdgpi, our guess" in text
@@ -228,7 +227,7 @@ def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
 
 def test_the_small_table_keeps_the_halves_apart():
     found = compare_evidence(ClaimEvidence(runs=published_runs()), ("sine-060hz",))
-    text = verdict_markdown(found.summary)
+    text = verdict_page(found.summary, "pipe")
     for half in ("held out", "calibrated"):
         assert f"| {half}: gpo" in text
         assert f"| {half}: all" in text

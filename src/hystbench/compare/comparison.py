@@ -20,8 +20,7 @@ from hystbench.compare.tables import Table, paper_tables
 from hystbench.compare.verdict import (
     first_result,
     print_tables,
-    verdict_markdown,
-    verdict_rst,
+    verdict_page,
 )
 from hystbench.files import write_json, write_text
 from hystbench.published import load_errors, signals
@@ -65,8 +64,8 @@ class Comparison:
         write_audit(out / "audit.csv")
         write_margins(self.edges, self.held_out, out / "margins.csv")
         write_json(out / "summary.json", self.summary)
-        write_text(out / "verdict.rst", verdict_rst(self.summary))
-        write_text(out / "verdict.md", verdict_markdown(self.summary))
+        write_text(out / "verdict.rst", verdict_page(self.summary, "rst"))
+        write_text(out / "verdict.md", verdict_page(self.summary, "pipe"))
         write_text(out / "first.md", first_result(self.summary))
         write_text(out / "tables.txt", self.text())
         for table in self.tables:

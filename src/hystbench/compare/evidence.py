@@ -15,7 +15,7 @@ import numpy as np
 from hystbench.compare.constants import Row
 from hystbench.compare.draws import Drawn, read_draws
 from hystbench.compare.edges import Edge
-from hystbench.compare.rows import Item, finite_or_infinite, read_items, read_rows
+from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
@@ -272,21 +272,16 @@ def identification_of(content: Mapping[str, Any], path: str | Path) -> Identific
     )
 
 
-def read_all(kind: type[Item], path: str | Path) -> tuple[Item, ...]:
-    """Read a CSV file of which each row is an item of a dataclass."""
-    return tuple(read_items(path, kind))
-
-
 FILES: dict[str, tuple[str, Callable[[str | Path], Any]]] = {
-    "order_sweep": ("order_sweep", partial(read_all, OrderError)),
-    "order_sweep_other": ("order_sweep_other", partial(read_all, OrderError)),
+    "order_sweep": ("order_sweep", partial(read_items, kind=OrderError)),
+    "order_sweep_other": ("order_sweep_other", partial(read_items, kind=OrderError)),
     "identified": ("identification", read_identification),
     "envelopes": ("envelope_errors", read_envelope_errors),
     "twin_errors": ("spreads", read_spreads),
     "twin_claims": ("holdings", read_holdings),
     "draws": ("drawn", read_draws),
-    "edges": ("edges", partial(read_all, Edge)),
-    "constants": ("constants", partial(read_all, Row)),
+    "edges": ("edges", partial(read_items, kind=Edge)),
+    "constants": ("constants", partial(read_items, kind=Row)),
 }
 """What evidence is read from beside runs and records: its field, and the reader."""
 
