@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.case import Case, effect_told, periods_of, rms, told_of
+from hystbench.challenge.case import Case, effect_told, rms, told_of
 from hystbench.challenge.machine import (
     InputsAndOutputs,
     Machine,
@@ -66,6 +66,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
                 measured,
                 "twin",
                 item.use,
+                item.period_samples,
             )
         )
     model = _model(machine, spec)
@@ -86,7 +87,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
         },
         "base_error_fit_rms": 0.0,
     }
-    return Case(tuple(records), periods_of(machine.records), model, truth)
+    return Case(tuple(records), model, truth)
 
 
 def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffect:

@@ -57,14 +57,6 @@ class Mode:
     damping_ratio: float
     participation: float
 
-    def parameters(self) -> dict[str, float]:
-        """Give the three values by name."""
-        return {
-            "frequency_hz": self.frequency_hz,
-            "damping_ratio": self.damping_ratio,
-            "participation": self.participation,
-        }
-
 
 @dataclass(frozen=True)
 class Actuator:
