@@ -73,9 +73,7 @@ class Simulator(Block):
         InputError
             As :meth:`call` does; or the calls that a user allows are used up.
         """
-        return current().output(
-            self.label, z, dt, lambda _, z, dt: self.call(z, dt), self.source
-        )
+        return current().output(self.label, z, dt, self.call, self.source)
 
     def again(self, z: FloatArray, dt: float) -> FloatArray:
         """Run the simulator, whatever it gave before.
@@ -85,7 +83,7 @@ class Simulator(Block):
         InputError
             As :meth:`call` does; or the calls that a user allows are used up.
         """
-        return current().fresh(self.label, z, dt, lambda _, z, dt: self.call(z, dt))
+        return current().fresh(self.label, z, dt, self.call)
 
 
 def checked(call: str, z: FloatArray, given: ArrayLike) -> FloatArray:

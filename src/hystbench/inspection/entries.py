@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, nearest
 from hystbench.inspection.clocks import Ticks, ticks_of
-from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Given, Part
+from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, Part
 from hystbench.inspection.excitation import excitation_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
@@ -36,7 +36,7 @@ Entry = dict[str, Any]
 def content_of(
     parts: Sequence[Part],
     signals: ChosenColumns,
-    given: Given,
+    given: Flags,
     place: Path,
     ask: Ask,
     notes: list[str],
@@ -120,7 +120,7 @@ def _frequency(
     about: dict[str, Any],
     parts: Sequence[Part],
     signals: ChosenColumns,
-    given: Given,
+    given: Flags,
     ask: Ask,
     notes: list[str],
 ) -> None:
@@ -173,7 +173,7 @@ def _without_missing(
     part: Part,
     signals: ChosenColumns,
     entry: dict[str, Any],
-    given: Given,
+    given: Flags,
     ask: Ask,
     notes: list[str],
 ) -> list[dict[str, Any]]:
@@ -251,7 +251,7 @@ def _name_of(place: Path) -> str:
 def with_roles(
     entries: list[Entry],
     records: Sequence[Record],
-    given: Given,
+    given: Flags,
     notes: list[str],
 ) -> list[dict[str, Any]]:
     """Give the entries of several records with their roles."""
