@@ -9,7 +9,7 @@ import pytest
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.comparison import compare_evidence
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.tables import Table, paper_table, paper_tables
+from hystbench.compare.tables import PrintedTable, paper_table, paper_tables
 from hystbench.compare.verdict import (
     first_result,
     sentences,
@@ -103,7 +103,9 @@ def test_markdown_keeps_digits():
 def test_latex_marks_and_escapes():
     import pandas as pd
 
-    made = Table("t_1", "a_b 5 % um^2", "", pd.DataFrame({"x_y": ["1†"], "z": ["2^3"]}))
+    made = PrintedTable(
+        "t_1", "a_b 5 % um^2", "", pd.DataFrame({"x_y": ["1†"], "z": ["2^3"]})
+    )
     text = made.latex()
     assert r"\caption{a\_b 5 \% \textmu m$^2$}" in text
     assert r"x\_y & z \\" in text

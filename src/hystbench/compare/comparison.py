@@ -16,7 +16,7 @@ from hystbench.compare.measured import COLUMNS, errors_table
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.rows import names_of, or_diverged, write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
-from hystbench.compare.tables import Table, paper_tables
+from hystbench.compare.tables import PrintedTable, paper_tables
 from hystbench.compare.verdict import (
     first_result,
     print_tables,
@@ -46,7 +46,7 @@ class Comparison:
     off: tuple[OffCell, ...]
     claims: tuple[Judgement, ...]
     summary: dict[str, Any]
-    tables: tuple[Table, ...]
+    tables: tuple[PrintedTable, ...]
     edges: tuple[Edge, ...]
     held_out: frozenset[str]
     added: tuple[Run, ...] = ()
@@ -122,7 +122,7 @@ def compare_evidence(
     )
 
 
-def _added_table(evidence: ClaimEvidence) -> list[Table]:
+def _added_table(evidence: ClaimEvidence) -> list[PrintedTable]:
     """Set side by side what ran and is in none of the paper's tables, if there is any.
 
     Models that the paper does not have stand beside its own.

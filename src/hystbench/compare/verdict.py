@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.tables import Table
+from hystbench.compare.tables import PrintedTable
 
 #: Results that may stand on held-out signals, in words.
 SHORTLY = {
@@ -124,7 +124,7 @@ def _grid(lines: Sequence[Sequence[str]], headers: Sequence[str], style: str) ->
 
 
 def print_tables(
-    tables: Iterable[Table],
+    tables: Iterable[PrintedTable],
     judgements: Iterable[Judgement],
     summary: Mapping[str, Any],
 ) -> str:
