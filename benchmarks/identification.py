@@ -90,7 +90,7 @@ class Fit:
         except InputError:  # envelopes that allow no thresholds: as bad as no model
             return -y
         sides = envelope.left(u), envelope.right(u)
-        model, _ = generalized_prandtl_ishlinskii(*sides, r, point[8:])
+        model = generalized_prandtl_ishlinskii(*sides, r, point[8:])
         return model - y
 
 

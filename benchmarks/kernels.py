@@ -201,7 +201,7 @@ def simulation(x: FloatArray) -> Contest:
     return Contest(
         "GPI simulation",
         len(x),
-        lambda: Adapted(generalized_prandtl_ishlinskii(*given())[0], weights),
+        lambda: Adapted(generalized_prandtl_ishlinskii(*given()), weights),
         {
             PLAIN: lambda: Adapted(reference.prandtl_ishlinskii(*given()), weights),
             **c_builds("", lambda c: Adapted(c.prandtl_ishlinskii(*given()), weights)),

@@ -24,7 +24,7 @@ def record(samples: int, seed: int = 1) -> tuple[FloatArray, FloatArray]:
     u = rng.uniform(-AMPLITUDE, AMPLITUDE, samples)
     envelopes = PUBLISHED_ENVELOPE.left(u), PUBLISHED_ENVELOPE.right(u)
     r = thresholds(PUBLISHED_ENVELOPE, AMPLITUDE, 10)
-    y, _ = generalized_prandtl_ishlinskii(*envelopes, r, np.linspace(2.0, 0.2, 11))
+    y = generalized_prandtl_ishlinskii(*envelopes, r, np.linspace(2.0, 0.2, 11))
     return u, y + 0.01 * np.std(y) * rng.standard_normal(samples)
 
 

@@ -82,7 +82,7 @@ def test_at_rate_zero_it_is_the_generalized_prandtl_ishlinskii_model():
     r = np.arange(7) * float(MODEL.spacing(0.0))
     weights = float(MODEL.gain(0.0)) * np.exp(-MODEL.tau * r)
     envelope = MODEL.envelope_gain * u + MODEL.envelope_offset
-    expected, _ = generalized_prandtl_ishlinskii(envelope, envelope, r, weights)
+    expected = generalized_prandtl_ishlinskii(envelope, envelope, r, weights)
     assert still.simulate(u, DT) == pytest.approx(expected, rel=1e-12)
     # and so does the full model where the input is slow enough
     assert MODEL.simulate(u, 1e6) == pytest.approx(expected, rel=1e-4)

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
+from hystbench.files import finite_or_none
 from hystbench.filters import AdaptiveFilter, Result, filter_class
 from hystbench.record import FloatArray, Record
 from hystbench.results import run_result
@@ -136,11 +135,6 @@ def run_filter(
         "weights": result.weights.tolist(),
     }
     return kept, result
-
-
-def finite_or_none(value: float) -> float | None:
-    """Infinity is no JSON number; an infinite spread is one that is not there."""
-    return float(value) if np.isfinite(value) else None
 
 
 def divergence(

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import MISSING, asdict, dataclass, fields
-from typing import Any
+from dataclasses import MISSING, dataclass, fields
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,8 +19,44 @@ from hystbench.errors import InputError, nearest
 from hystbench.record import FloatArray
 
 
+class NamedNumbers:
+    """Mixin of a dataclass of numbers: all finite, and given and taken by name."""
+
+    place: ClassVar[str]
+    """What messages call it."""
+
+    def check_finite(self) -> None:
+        """Refuse numbers that are not finite."""
+        # asdict would copy: this runs a thousand times in a fit
+        for name, value in vars(self).items():
+            if not isinstance(value, str) and not math.isfinite(value):
+                raise InputError(f"{self.place}.{name}: {value} is not a finite number")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Give the parameters by name."""
+        return dict(vars(self))
+
+    @classmethod
+    def from_dict(cls, parameters: Mapping[str, Any]) -> Self:
+        """Make it from its parameters by name.
+
+        Raises
+        ------
+        InputError
+            If a name is missing or unknown.
+        """
+        known = {item.name: item for item in fields(cls)}  # type: ignore[arg-type]
+        for name in parameters:
+            if name not in known:
+                raise InputError(f"{cls.place}.{name}: unknown; {nearest(name, known)}")
+        for name, item in known.items():
+            if item.default is MISSING and name not in parameters:
+                raise InputError(f"{cls.place}.{name}: missing")
+        return cls(**parameters)
+
+
 @dataclass(frozen=True)
-class Envelope:
+class Envelope(NamedNumbers):
     """Envelope functions of the generalized play operator, Eqs. 5 and 6.
 
     The left one, ``a0 tanh(a1 v + a2) + a3``, bounds the output from above where
@@ -41,6 +77,8 @@ class Envelope:
         If a parameter is not finite.
     """
 
+    place: ClassVar[str] = "envelope"
+
     a0: float
     a1: float
     a2: float
@@ -52,10 +90,7 @@ class Envelope:
 
     def __post_init__(self) -> None:
         """Refuse parameters that are not finite."""
-        # asdict would copy: this runs a thousand times in a fit
-        for name, value in vars(self).items():
-            if not math.isfinite(value):
-                raise InputError(f"envelope.{name}: {value} is not a finite number")
+        self.check_finite()
 
     def left(self, v: ArrayLike) -> FloatArray:
         """Left envelope, Eq. 5, at each input."""
@@ -64,39 +99,6 @@ class Envelope:
     def right(self, v: ArrayLike) -> FloatArray:
         """Right envelope, Eq. 6, at each input."""
         return _curve(self.a4, self.a5, self.a6, self.a7, v)
-
-    def to_dict(self) -> dict[str, float]:
-        """Give the eight parameters by name."""
-        return asdict(self)
-
-    @classmethod
-    def from_dict(cls, parameters: Mapping[str, float]) -> Envelope:
-        """Make an envelope from its eight parameters by name.
-
-        Raises
-        ------
-        InputError
-            If a name is missing or unknown.
-        """
-        check_names(cls, parameters, "envelope")
-        return cls(**{name: float(value) for name, value in parameters.items()})
-
-
-def check_names(model: type, parameters: Mapping[str, Any], place: str) -> None:
-    """Refuse parameters that a dataclass has not, or one that it lacks.
-
-    Raises
-    ------
-    InputError
-        If a name is missing or unknown.
-    """
-    known = [field.name for field in fields(model)]
-    for name in parameters:
-        if name not in known:
-            raise InputError(f"{place}.{name}: unknown; {nearest(name, known)}")
-    for field in fields(model):
-        if field.default is MISSING and field.name not in parameters:
-            raise InputError(f"{place}.{field.name}: missing")
 
 
 PUBLISHED_ENVELOPE = Envelope(
@@ -130,25 +132,16 @@ def thresholds(envelope: Envelope, amplitude: float, order: int) -> FloatArray:
         ``i / (N + 1) * max(right(amplitude), left(amplitude))``, i from 0 to N.
     """
     largest = max(float(envelope.right(amplitude)), float(envelope.left(amplitude)))
-    return _equal_intervals(largest, order)
+    return equal_intervals(largest, order)
 
 
-def play_thresholds(amplitude: float, order: int) -> FloatArray:
-    """Thresholds of the play operators: Eq. 10 with the input as its own envelope.
-
-    Parameters
-    ----------
-    amplitude : float
-        Largest magnitude of the input.
-    order : int
-        Order N.
-
-    Returns
-    -------
-    ndarray, shape (order + 1,)
-        ``i / (N + 1) * amplitude``, i from 0 to N.
-    """
-    return _equal_intervals(amplitude, order)
+def equal_intervals(largest: float, order: int) -> FloatArray:
+    """Thresholds of plays, Eq. 10: ``i / (N + 1) * largest``, i from 0 to N."""
+    if order < 0:
+        raise InputError(f"order: {order} given, 0 or more expected")
+    if not 0 < largest < np.inf:
+        raise InputError(f"thresholds: the largest would be {largest}; check amplitude")
+    return np.arange(order + 1) / (order + 1) * largest
 
 
 def fewest_samples(order: int) -> int:
@@ -166,11 +159,3 @@ def _curve(
     curve: FloatArray = np.empty(x.shape)
     kernels.call("hb_envelope", x.size, height, slope, place, offset, x, curve)
     return curve
-
-
-def _equal_intervals(largest: float, order: int) -> FloatArray:
-    if order < 0:
-        raise InputError(f"order: {order} given, 0 or more expected")
-    if not 0 < largest < np.inf:
-        raise InputError(f"thresholds: the largest would be {largest}; check amplitude")
-    return np.arange(order + 1) / (order + 1) * largest

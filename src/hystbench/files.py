@@ -7,6 +7,7 @@ import csv
 import errno
 import hashlib
 import json
+import math
 import os
 import shutil
 import tempfile
@@ -194,6 +195,11 @@ def write_text(path: str | Path, text: str, *, edit: bool = False) -> None:
 def write_json(path: str | Path, content: Any) -> None:
     """Write JSON that any reader takes: NaN and infinity are refused."""
     write_text(path, json.dumps(content, indent=1, allow_nan=False) + "\n")
+
+
+def finite_or_none(value: float) -> float | None:
+    """Give a number as JSON can hold it: infinity and NaN are none."""
+    return float(value) if math.isfinite(value) else None
 
 
 def read_json(path: str | Path) -> Any:

@@ -323,6 +323,22 @@ def load_model(path: str | Path) -> Model:
     return Model.from_mapping(load_yaml(path, "a model file"), str(path))
 
 
+def check_bounded(name: str, y: FloatArray, dt: float, record: str) -> None:
+    """Refuse an output of a model that is not finite throughout.
+
+    Raises
+    ------
+    InputError
+        With the names of model and record, and the time.
+    """
+    lost = np.flatnonzero(~np.isfinite(y))
+    if len(lost):
+        raise InputError(
+            f"{name}: the output is not finite from {lost[0] * dt:g} s of {record} on; "
+            "expected a model that stays bounded"
+        )
+
+
 def _shown(free: bool, name: str, value: Value) -> str:
     """Say a parameter shortly, and whether it may be changed."""
     if isinstance(value, tuple):

@@ -88,44 +88,47 @@ def generalized_prandtl_ishlinskii(
     right: ArrayLike,
     thresholds: ArrayLike,
     weights: ArrayLike,
-    state: ArrayLike | None = None,
-) -> tuple[FloatArray, FloatArray]:
+    growth: ArrayLike | None = None,
+) -> FloatArray:
     """Generalized Prandtl-Ishlinskii model, Eq. 9: weighted generalized plays.
 
-    The outputs of the operators are summed as they come and never stored.
+    From rest. The outputs of the operators are summed as they come and never stored.
 
     Parameters
     ----------
-    left, right, thresholds, state
+    left, right, thresholds
         As for :func:`generalized_play`.
     weights : array_like, shape (m,)
         Weight of each operator.
+    growth : array_like, shape (n,), optional
+        Factor on all thresholds at each sample, none negative; one by default.
 
     Returns
     -------
-    y : ndarray, shape (n,)
+    ndarray, shape (n,)
         Output of the model.
-    state : ndarray, shape (m,)
-        Outputs of the operators after the last sample.
 
     Raises
     ------
     InputError
-        As for :func:`generalized_play`, or if weights and thresholds differ in number.
+        As for :func:`generalized_play`, if weights and thresholds differ in number,
+        or if a growth is negative.
     """
     left, right = _envelopes(left, right)
-    r = _thresholds(thresholds)
-    w = _array(weights)
+    r, w = _thresholds(thresholds), _array(weights)
     if w.shape != r.shape:
         raise InputError(f"weights: {w.shape} given, {len(r)} expected")
-    end = kernels.pad(_state(state, len(r)))
+    y, weighted = np.empty(len(left)), kernels.pad(w)
+    sizes = (len(left), len(weighted) // kernels.WIDTH)
+    if growth is not None:
+        grown = (kernels.pad(r), weighted, _growth(growth, len(left)), y)
+        kernels.call("hb_growing_prandtl_ishlinskii", *sizes, left, right, *grown)
+        return y
     # an operator of infinite threshold never leaves zero
-    spaced = kernels.pad(r, np.inf)
-    y = np.empty(len(left))
-    vectors = len(end) // kernels.WIDTH
-    arrays = (left, right, spaced, kernels.pad(w), end, y)
-    kernels.call("hb_prandtl_ishlinskii", len(left), vectors, *arrays)
-    return y, end[: len(r)].copy()
+    spaced, state = kernels.pad(r, np.inf), np.zeros(len(weighted))
+    arrays = (left, right, spaced, weighted, state, y)
+    kernels.call("hb_prandtl_ishlinskii", *sizes, *arrays)
+    return y
 
 
 def growing_play(
@@ -159,46 +162,6 @@ def growing_play(
     state, outputs = np.zeros(len(r)), np.empty((len(v), len(r)))
     kernels.call("hb_growing_play", len(v), len(r), v, r, factor, state, outputs)
     return outputs
-
-
-def growing_prandtl_ishlinskii(
-    left: FloatArray,
-    right: FloatArray,
-    thresholds: ArrayLike,
-    weights: ArrayLike,
-    growth: ArrayLike | None,
-) -> FloatArray:
-    """Eq. 9 from rest with thresholds that may grow from sample to sample.
-
-    Parameters
-    ----------
-    left, right, thresholds, weights
-        As for :func:`generalized_prandtl_ishlinskii`.
-    growth : array_like, shape (n,), or None
-        Factor on all thresholds at each sample, none negative; None for one.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        Output of the model.
-
-    Raises
-    ------
-    InputError
-        As for :func:`generalized_prandtl_ishlinskii`, or if a growth is negative.
-    """
-    if growth is None:
-        return generalized_prandtl_ishlinskii(left, right, thresholds, weights)[0]
-    left, right = _envelopes(left, right)
-    r, w = _thresholds(thresholds), _array(weights)
-    if w.shape != r.shape:
-        raise InputError(f"weights: {w.shape} given, {len(r)} expected")
-    factor, y = _growth(growth, len(left)), np.empty(len(left))
-    spaced, weighted = kernels.pad(r), kernels.pad(w)
-    vectors = len(spaced) // kernels.WIDTH
-    arrays = (left, right, spaced, weighted, factor, y)
-    kernels.call("hb_growing_prandtl_ishlinskii", len(left), vectors, *arrays)
-    return y
 
 
 def rate_dependent_prandtl_ishlinskii(

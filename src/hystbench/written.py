@@ -216,7 +216,7 @@ def claim_logs(folder: str | Path, logs: Iterable[str]) -> None:
 
 
 @dataclass
-class Run:
+class CommandFiles:
     """What one command reads and writes.
 
     Parameters
@@ -231,13 +231,13 @@ class Run:
     outputs: dict[Path, Path] = field(default_factory=dict)
 
 
-_run: ContextVar[Run | None] = ContextVar("run", default=None)
+_run: ContextVar[CommandFiles | None] = ContextVar("run", default=None)
 
 
 @contextmanager
 def one_run() -> Iterator[None]:
     """Begin a command: what it reads must not be what it writes."""
-    before = _run.set(Run())
+    before = _run.set(CommandFiles())
     try:
         yield
     finally:
@@ -309,7 +309,7 @@ def check_free(path: str | Path) -> None:
     if not os.path.lexists(path):
         return
     if _run.get() is not None:
-        _refuse_input(path, _run.get() or Run())
+        _refuse_input(path, _run.get() or CommandFiles())
     if path.is_dir() and not path.is_symlink():
         raise InputError(f"{path}: a folder; expected a file or nothing")
     if is_ours(path):
@@ -342,7 +342,7 @@ def check_writable(folder: str | Path) -> None:
         raise InputError(f"{place}: not writable; expected a folder to write into")
 
 
-def _refuse_input(output: Path, run: Run) -> None:
+def _refuse_input(output: Path, run: CommandFiles) -> None:
     """Refuse an output that is an input by another name, or by the same."""
     try:
         found = output.stat()

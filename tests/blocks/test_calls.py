@@ -172,7 +172,9 @@ def test_a_file_that_cannot_be_read_is_called_instead_and_said(rig, spoil):
 
 
 def test_the_cache_is_bounded_and_the_oldest_make_room(rig):
-    room = {"bound": 6 * (U.nbytes + 512)}
+    rig.run([U])
+    (one,) = files(rig.cache)
+    room = {"bound": 6 * one.stat().st_size}
     first = [k * U for k in range(1, 7)]
     rig.run(first, **room)
     assert len(files(rig.cache)) == 6

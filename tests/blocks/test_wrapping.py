@@ -16,7 +16,7 @@ from hystbench.blocks.wrapping import Wrapped
 from hystbench.envelope import Envelope
 from hystbench.errors import InputError
 from hystbench.model import Model
-from hystbench.operators import growing_play, growing_prandtl_ishlinskii
+from hystbench.operators import generalized_prandtl_ishlinskii, growing_play
 from hystbench.record import Channel
 
 from .examples import EXAMPLES
@@ -278,4 +278,4 @@ def test_a_growth_that_is_none_is_refused(growth, expected):
     with pytest.raises(InputError, match=expected):
         growing_play(v, [0.1], growth)
     with pytest.raises(InputError, match=expected):
-        growing_prandtl_ishlinskii(v, v, [0.1], [1.0], growth)
+        generalized_prandtl_ishlinskii(v, v, [0.1], [1.0], growth)

@@ -2,7 +2,7 @@
 
 import itertools
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -229,7 +229,7 @@ def test_every_effect_shows(family, name, spread, excitations):
             continue
         effect = draw(IN_ACTUATOR[name], random, spread, (form,))
         if name == "stiffness-hardening":
-            more = {**effect.parameters, **mode.parameters()}
+            more = {**effect.parameters, **asdict(mode)}
             effect = replace(effect, parameters=more)
         largest = 0.0
         for key in ("multisine-strong", "steps"):

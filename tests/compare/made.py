@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.compare.evidence import Identification, Run
+from hystbench.compare.evidence import IdentifiedLoop, Run
 from hystbench.published import load_errors, load_text, signals, sine_frequency
 from hystbench.record import Channel, Record
 
@@ -113,9 +113,9 @@ def sum_records(scale: float = 1.0, odd: float = 0.0, outside: float = 0.0):
     return {name: make_record(name, u, 20 * u) for name, u in found.items()}
 
 
-def make_identification(**changes) -> Identification:
+def make_identification(**changes) -> IdentifiedLoop:
     """Make an identification that found the published envelopes."""
-    found = Identification(
+    found = IdentifiedLoop(
         envelope=dict(TEXT.envelope),
         thresholds=np.arange(31) / 31 * 0.2,
         weights=np.exp(-np.arange(31) / 5),

@@ -10,7 +10,7 @@ import pytest
 from hystbench.compare.cells import ComparedCell, compare_cells
 from hystbench.compare.claims import judge_all
 from hystbench.compare.claims.claim import Claim, Judgement
-from hystbench.compare.constants import Row
+from hystbench.compare.constants import Ranking
 from hystbench.compare.draws import Drawn
 from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import ClaimEvidence
@@ -281,7 +281,7 @@ def test_the_two_findings_by_hand():
     }
     assert eq19_finding([]) is None
     pairs = ("40 of 48", "20 of 30")
-    row = Row("gma", "gpi", 0.0, 0.0, "yes", 12, 13, "", *pairs, 0, *[1.0] * 4)
+    row = Ranking("gma", "gpi", 0.0, 0.0, "yes", 12, 13, "", *pairs, 0, *[1.0] * 4)
     taps = [
         replace(row, constant_tap=size, configured="", gpo_first=first)
         for size, first in ((0.1, 9), (1.0, 5))

@@ -9,12 +9,11 @@ import pytest
 from hystbench.compare.cells import compare_cells
 from hystbench.compare.comparison import compare_evidence
 from hystbench.compare.evidence import ClaimEvidence
-from hystbench.compare.tables import Table, paper_table, paper_tables
+from hystbench.compare.tables import PrintedTable, paper_table, paper_tables
 from hystbench.compare.verdict import (
     first_result,
     sentences,
-    verdict_markdown,
-    verdict_rst,
+    verdict_page,
 )
 
 from .made import make_run, published_runs
@@ -104,7 +103,9 @@ def test_markdown_keeps_digits():
 def test_latex_marks_and_escapes():
     import pandas as pd
 
-    made = Table("t_1", "a_b 5 % um^2", "", pd.DataFrame({"x_y": ["1†"], "z": ["2^3"]}))
+    made = PrintedTable(
+        "t_1", "a_b 5 % um^2", "", pd.DataFrame({"x_y": ["1†"], "z": ["2^3"]})
+    )
     text = made.latex()
     assert r"\caption{a\_b 5 \% \textmu m$^2$}" in text
     assert r"x\_y & z \\" in text
@@ -211,7 +212,7 @@ def test_the_first_result_has_numbers_and_links():
 
 def test_verdict_is_valid_rst(comparison):
     document = docutils.core.publish_string(
-        verdict_rst(comparison.summary),
+        verdict_page(comparison.summary, "rst"),
         writer="html",
         settings_overrides={"halt_level": 2, "report_level": 2},
     ).decode()
@@ -220,7 +221,7 @@ def test_verdict_is_valid_rst(comparison):
 
 
 def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
-    text = verdict_markdown(comparison.summary)
+    text = verdict_page(comparison.summary, "pipe")
     for model in ("gpo", "backlash", "volterra", "delayed"):
         assert f"| {model} " in text
     assert "| rdgpi, our guess" in text
@@ -228,7 +229,7 @@ def test_verdict_in_markdown_has_a_row_for_each_filter(comparison):
 
 def test_the_small_table_keeps_the_halves_apart():
     found = compare_evidence(ClaimEvidence(runs=published_runs()), ("sine-060hz",))
-    text = verdict_markdown(found.summary)
+    text = verdict_page(found.summary, "pipe")
     for half in ("held out", "calibrated"):
         assert f"| {half}: gpo" in text
         assert f"| {half}: all" in text

@@ -10,7 +10,6 @@ def first_halves(case):
             item,
             u=item.u[: len(item) // 2].copy(),
             y=item.y[: len(item) // 2].copy(),
-            period_samples=case.period_samples.get(item.name),
         )
         for item in case.records
         if item.use == "fit"

@@ -8,7 +8,7 @@ import pytest
 from hystbench.commands.jobs.constants import constants
 from hystbench.commands.jobs.random_sum import random_sum
 from hystbench.commands.jobs.step_sweep import step_sweep
-from hystbench.compare.constants import Row
+from hystbench.compare.constants import Ranking
 from hystbench.compare.draws import read_draws
 from hystbench.compare.edges import Edge
 from hystbench.compare.rows import read_items
@@ -75,7 +75,7 @@ def test_draws_edges_and_constants_are_what_the_comparison_reads(
         constants, two[0], "--identified", identified,
         "--settings", json.dumps(job), "--out", out,
     )  # fmt: skip
-    ranked = read_items(out, Row)
+    ranked = read_items(out, Ranking)
     usual = [row for row in ranked if row.configured]
     assert len(usual) == 1
     assert {row.constant_tap for row in ranked} == {0.0, 1.0}

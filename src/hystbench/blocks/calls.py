@@ -25,7 +25,7 @@ EVERY = 5.0
 
 USED_UP = "the calls that --calls allows are used up"
 
-Call = Callable[[str, FloatArray, float], FloatArray]
+Call = Callable[[FloatArray, float], FloatArray]
 
 
 class CallsUsedUp(InputError):  # noqa: N818  (a bound that was asked for)
@@ -122,7 +122,7 @@ class Calls:
         dt : float
             Sampling interval in seconds.
         call : callable
-            ``call(name, z, dt)`` calls the function and checks what it gives.
+            ``call(z, dt)`` calls the function and checks what it gives.
         source : callable
             Gives a digest of what the function is made of, once it was called.
 
@@ -205,7 +205,7 @@ class Calls:
                 f"{name}: {USED_UP}: {self.bound}; expected a larger number"
             )
         start = self.clock()
-        y = call(name, z, dt)
+        y = call(z, dt)
         end = self.clock()
         if not self.made:
             self._first = end - start

@@ -17,7 +17,7 @@ from typing import ClassVar
 import numpy as np
 
 from hystbench.blocks.parameter import number, text
-from hystbench.blocks.simulator import Simulator, called_with, checked, digest_of
+from hystbench.blocks.simulator import Simulator, digest_of
 from hystbench.errors import InputError, short
 from hystbench.record import FloatArray
 
@@ -74,9 +74,8 @@ class Command(Simulator):
             files.insert(0, Path(program))
         return digest_of(self.command, *files)
 
-    def call(self, z: FloatArray, dt: float) -> FloatArray:
+    def run(self, call: str, z: FloatArray, dt: float) -> list[float]:
         """Start the program once."""
-        call = called_with(self.command, z, dt)
         time = np.arange(len(z)) * dt
         rows = zip(time.tolist(), z.tolist(), strict=True)
         table = "\n".join([HEADER, *(f"{t!r},{u!r}" for t, u in rows)]) + "\n"
@@ -92,7 +91,7 @@ class Command(Simulator):
                 if not gives.is_file():
                     raise InputError(f"{call}, it wrote no file {OUTPUT}")
                 said = gives.read_text(errors="replace")
-        return checked(call, z, _numbers(call, said, dt, len(z)))
+        return _numbers(call, said, dt, len(z))
 
     def _run(self, call: str, words: list[str], table: str) -> str:
         """Run a program to its end and give what it wrote to its standard output."""

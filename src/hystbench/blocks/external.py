@@ -15,7 +15,7 @@ import numpy as np
 
 from hystbench.blocks.kept_outputs import source_digest
 from hystbench.blocks.parameter import text
-from hystbench.blocks.simulator import Simulator, called_with, checked
+from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError, in_line, nearest
 from hystbench.record import FloatArray
 
@@ -54,31 +54,18 @@ class External(Simulator):
         """The function's name."""
         return self.function
 
-    def call(self, z: FloatArray, dt: float) -> FloatArray:
-        """Call the function once."""
-        return called(self.function, z, dt)
+    def run(self, call: str, z: FloatArray, dt: float) -> Any:
+        """Import the function, and call it once."""
+        function = imported(self.function)
+        try:
+            return function(np.array(z), dt)
+        except (Exception, SystemExit) as error:
+            # Whatever a user's program raises is to be told in one line.
+            raise InputError(f"{call}, it raised {in_line(error)}") from error
 
     def source(self) -> str:
         """Digest of the modules that the function is made of."""
         return source_digest(self.function)
-
-
-def called(name: str, z: FloatArray, dt: float) -> FloatArray:
-    """Call a function of somebody's and check what it gives.
-
-    Raises
-    ------
-    InputError
-        If it cannot be imported, raises, or gives anything but n finite numbers.
-    """
-    call = called_with(name, z, dt)
-    function = imported(name)
-    try:
-        given = function(np.array(z), dt)
-    except (Exception, SystemExit) as error:
-        # Whatever a user's program raises is to be told in one line.
-        raise InputError(f"{call}, it raised {in_line(error)}") from error
-    return checked(call, z, given)
 
 
 @cache

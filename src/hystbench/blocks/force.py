@@ -5,12 +5,13 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.attached import AttachedBlock
+from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.step import Sampling, Step
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
@@ -23,6 +24,9 @@ LAWS = (
 ROW = 6
 """Numbers of a row of the kernel."""
 
+Near: TypeAlias = "tuple[Any, FloatArray, tuple[Force, ...]]"
+"""A host with numbers near, what drives it, and the forces inside it."""
+
 
 class Motion(NamedTuple):
     """How a coordinate moves, shape (n,) each."""
@@ -34,25 +38,75 @@ class Motion(NamedTuple):
     """Sum of the forces inside."""
 
 
-class Host(Protocol):
-    """A block with a coordinate: ``mechanism`` or ``impedance``."""
+@dataclass(frozen=True)
+class Host(HeldBlock):
+    """A block with a coordinate, which meets forces: a mechanism or an impedance."""
 
-    name: ClassVar[str]
+    @abstractmethod
+    def motions(
+        self,
+        z: FloatArray,
+        dt: float,
+        forces: tuple[Force, ...],
+        others: Sequence[Near],
+    ) -> list[Motion]:
+        """Compute how the coordinate moves, and how others with numbers near do.
+
+        Parameters
+        ----------
+        z : ndarray, shape (n,)
+            What drives it.
+        dt : float
+            Sampling interval in seconds.
+        forces : tuple of Force
+        others : sequence of (Host, ndarray, tuple of Force)
+        """
+
+    @abstractmethod
+    def given(self, motion: Motion) -> FloatArray:
+        """Give the output of a motion."""
+
+    @abstractmethod
+    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
+        """Say what it does at one sample with forces inside."""
+
+    def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
+        """Compute how the coordinate moves; arguments are those of :meth:`motions`."""
+        return self.motions(z, dt, forces, ())[0]
 
     def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
-        """Compute the output with forces inside."""
+        """Compute the output with forces inside; NaN from where it has run away."""
+        return self.given(self.motion(z, dt, forces))
 
     def driven_near(
         self,
         z: FloatArray,
         dt: float,
         forces: tuple[Force, ...],
-        others: Sequence[Any],
+        others: Sequence[Near],
     ) -> list[FloatArray]:
-        """Compute the output, then that of each other host, input and forces."""
+        """Compute the output, then those of others near, as :meth:`motions` does."""
+        found = self.motions(z, dt, forces, others)
+        hosts = (self, *(host for host, _, _ in others))
+        return [host.given(motion) for host, motion in zip(hosts, found, strict=True)]
 
-    def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
-        """Say what it does at one sample with forces inside."""
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output without a force inside."""
+        return self.driven(z, dt, ())
+
+    def near(
+        self,
+        z: FloatArray,
+        u: FloatArray,
+        dt: float,
+        others: Sequence[tuple[Host, FloatArray]],
+    ) -> list[FloatArray]:
+        """Compute the output, and those of others near, without a force inside."""
+        return self.driven_near(z, dt, (), [(host, own, ()) for host, own in others])
+
+    def step(self, sampling: Sampling) -> Step:
+        """Say what it does at one sample without a force inside."""
+        return self.driven_step(sampling, ())
 
 
 @dataclass(frozen=True)

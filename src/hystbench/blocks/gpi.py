@@ -10,18 +10,15 @@ import numpy as np
 from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, a_threshold, choice, numbers
 from hystbench.blocks.step import PASSED, Sampling, Step
-from hystbench.blocks.wrapping import HystereticBlock
+from hystbench.blocks.wrapping import PlayBlock
 from hystbench.envelope import Envelope
-from hystbench.operators import (
-    generalized_play,
-    growing_prandtl_ishlinskii,
-)
+from hystbench.operators import generalized_play, generalized_prandtl_ishlinskii
 from hystbench.rdgpi.model import STARTS
 from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
-class GeneralizedPrandtlIshlinskii(HystereticBlock):
+class GeneralizedPrandtlIshlinskii(PlayBlock):
     """Weighted sum of generalized play operators (paper, Eqs. 3-6 and 9).
 
     ``y(t) = sum_i w_i F_{r_i}[z](t)`` with the envelope functions
@@ -54,10 +51,6 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
     weights: tuple[float, ...] = a_threshold("Y", "w_i", optional=False)
     start: str = choice("operators before the first sample", STARTS, "rest")
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute Eq. 9 for every sample."""
-        return self.grow(z, u, dt, None)
-
     def grow(
         self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
     ) -> FloatArray:
@@ -65,7 +58,7 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         left, right, rounds = self._envelopes(v)
         if growth is not None:
             growth = np.tile(growth, rounds)
-        y = growing_prandtl_ishlinskii(
+        y = generalized_prandtl_ishlinskii(
             left, right, self.thresholds, self.weights, growth
         )
         return y[-len(v) :] if rounds > 1 else y
@@ -89,9 +82,6 @@ class GeneralizedPrandtlIshlinskii(HystereticBlock):
         if rounds > 1:
             left, right = np.tile(left, rounds), np.tile(right, rounds)
         return left, right, rounds
-
-    def check_growth(self) -> None:
-        """Accept: the thresholds of play operators can grow."""
 
     def step(self, sampling: Sampling) -> Step:
         """Give Eq. 9."""

@@ -20,8 +20,8 @@ from hystbench.blocks.curve import (
     through_samples,
     weighed,
 )
-from hystbench.blocks.force import Force, Motion, against, exported
-from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.force import Force, Host, Motion, Near, against, exported
+from hystbench.blocks.held import Hold
 from hystbench.blocks.parameter import HUGE, choice, number
 from hystbench.blocks.step import Sampling, Step, foretold, smooth_curve
 from hystbench.record import FloatArray
@@ -58,7 +58,7 @@ RATE, CURVATURE = _differences(1), _differences(2)
 
 
 @dataclass(frozen=True)
-class Impedance(HeldBlock):
+class Impedance(Host):
     """Force of a device that is moved: ``y = m q'' + c q' + k q + F(q, q') + bias``.
 
     F is the sum of the forces that follow it in the chain. The input is the position q,
@@ -117,51 +117,31 @@ class Impedance(HeldBlock):
             [motion.acceleration, motion.velocity, motion.position, ones]
         )
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the force without one that is not linear."""
-        return self.driven(z, dt, ())
-
-    def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
-        """Compute the force.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-            The motion.
-        dt : float
-            Sampling interval in seconds.
-        forces : tuple of Force
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
-        return self.driven_near(z, dt, forces, ())[0]
-
-    def driven_near(
+    def motions(
         self,
         z: FloatArray,
         dt: float,
         forces: tuple[Force, ...],
-        others: Sequence[tuple[Impedance, FloatArray, tuple[Force, ...]]],
-    ) -> list[FloatArray]:
-        """Compute the force, then that of each other impedance, motion and forces.
+        others: Sequence[Near],
+    ) -> list[Motion]:
+        """Give the motion and the forces that it meets, and those of others.
 
         What moves alike moves once, and meets forces that are the same once.
         """
-        own = self.motion(z, dt, forces)
-        found = [self._given(own)]
+        path = np.ascontiguousarray(z, dtype=np.float64)
+        still = Motion(*self._moved(path, dt), np.zeros(len(path)))
+        own = still._replace(force=self._met(still, path, dt, forces))
+        found = [own]
         for host, moved, laws in others:
             if moved is not z:
-                motion = host.motion(moved, dt, laws)
+                found.append(host.motion(moved, dt, laws))
             elif laws != forces:
-                motion = own._replace(force=host._met(own, z, dt, laws))
+                found.append(own._replace(force=host._met(own, path, dt, laws)))
             else:
-                motion = own
-            found.append(host._given(motion))
+                found.append(own)
         return found
 
-    def _given(self, motion: Motion) -> FloatArray:
+    def given(self, motion: Motion) -> FloatArray:
         """Give the force of a motion."""
         return (
             self.mass * motion.acceleration
@@ -171,12 +151,8 @@ class Impedance(HeldBlock):
             + self.bias
         )
 
-    def step(self, sampling: Sampling) -> Step:
-        """Take rates from the curve through the newest samples."""
-        return self.driven_step(sampling, ())
-
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
-        """Do so with forces inside."""
+        """Take rates from the curve through the newest samples."""
         points, ahead, dt = sampling.curve_points, sampling.ahead, sampling.dt
         smooth, exact = self.holding == "band-limited", ahead >= AHEAD
         rate, curvature = (
@@ -230,12 +206,6 @@ class Impedance(HeldBlock):
             rates=REACH,
             differs=told,
         )
-
-    def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
-        """Give the motion and the forces that it meets, as for :meth:`driven`."""
-        z = np.ascontiguousarray(z, dtype=np.float64)
-        motion = Motion(*self._moved(z, dt), np.zeros(len(z)))
-        return motion._replace(force=self._met(motion, z, dt, forces))
 
     def _met(
         self, motion: Motion, z: FloatArray, dt: float, forces: tuple[Force, ...]

@@ -10,18 +10,18 @@ from __future__ import annotations
 import os
 import sys
 import sysconfig
-import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
 from importlib import metadata
+from io import BytesIO
 from pathlib import Path
 from types import BuiltinFunctionType, FunctionType, ModuleType
 
 import numpy as np
 
+from hystbench.kept_files import KeptFiles
 from hystbench.record import FloatArray
 
 BOUND = 2**29
@@ -30,36 +30,21 @@ SUFFIX = ".npz"
 
 
 class KeptOutputs:
-    """A folder of outputs, a folder in it for each function as its source is.
-
-    Outputs that this run neither made nor used make room for new ones, the oldest
-    first; where none is left, no more are kept.
+    """Outputs as files, in a folder for each function as its source is.
 
     Parameters
     ----------
     folder : Path
-    say : callable
-        Told once of what cannot be read or written.
-    bound : int
-        Bytes of all files together, at most.
+    say, bound
+        As for :class:`hystbench.kept_files.KeptFiles`.
     """
 
     def __init__(
         self, folder: Path, say: Callable[[str], None], bound: int = BOUND
     ) -> None:
-        self.folder, self.say, self.bound = folder, say, bound
+        self.folder = folder
+        self._files = KeptFiles(folder, f"*/*{SUFFIX}", bound, say, "outputs")
         self._places: dict[str, Path] = {}
-        self._older: dict[Path, int] = {}
-        """Files of earlier runs that this one has not used, oldest first."""
-        self._size = 0
-        self._said: set[str] = set()
-        try:
-            there = sorted((x.stat().st_mtime, x) for x in folder.glob(f"*/*{SUFFIX}"))
-            for _, file in there:
-                self._older[file] = file.stat().st_size
-        except OSError as error:
-            self._say_once(f"{folder}: {error.strerror}; outputs are not kept")
-        self._size = sum(self._older.values())
 
     def open(self, name: str, source: str) -> None:
         """Find the place of a function by the digest of what it is made of."""
@@ -68,43 +53,34 @@ class KeptOutputs:
     def get(self, name: str, z: FloatArray, dt: float) -> FloatArray | None:
         """Give the output for an input; None where there is none to be read."""
         file = self._file(name, z, dt)
-        if file is None or not file.is_file():
+        content = None if file is None else self._files.read(file)
+        if content is None:
             return None
         try:
-            with zipfile.ZipFile(file) as archive, archive.open("y.npy") as stream:
-                y = np.lib.format.read_array(stream, allow_pickle=False)
+            with zipfile.ZipFile(BytesIO(content)) as archive:
+                stream = BytesIO(archive.read("y.npy"))
+            y = np.lib.format.read_array(stream, allow_pickle=False)
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-            self._say_once(f"{file}: not read ({error}); called instead")
+            self._files.say_once(f"{file}: not read ({error}); called instead")
             return None
         if y.dtype != np.float64 or y.shape != z.shape or not np.isfinite(y).all():
-            self._say_once(f"{file}: not an output of {len(z)} numbers; called instead")
+            not_one = f"not an output of {len(z)} numbers"
+            self._files.say_once(f"{file}: {not_one}; called instead")
             return None
-        self._older.pop(file, None)
-        with suppress(OSError):  # a file that only looks older than it is does no harm
-            os.utime(file)
         return np.ascontiguousarray(y)
 
     def put(self, name: str, z: FloatArray, dt: float, y: FloatArray) -> None:
         """Keep an output, if there is room and the folder can be written."""
         file = self._file(name, z, dt)
-        size = y.nbytes + 512  # with the archive's own parts
-        if file is None or not self._has_room(size):
-            return
-        try:
-            _write(file, y)
-        except OSError as error:
-            self._say_once(f"{self.folder}: {error.strerror}; outputs are not kept")
-            self._places.pop(name)
-            return
-        self._size += size - self._older.pop(file, 0)
+        if file is not None:
+            content = BytesIO()
+            np.savez(content, y=y)
+            self._files.write(file, content.getvalue())
 
     def drop(self, name: str) -> None:
         """Remove what earlier runs kept of a function as its source is."""
-        place = self._places[name]
-        for file in [file for file in self._older if file.parent == place]:
-            self._remove(file)
-        for file in place.glob(f"*{SUFFIX}"):
-            file.unlink(missing_ok=True)
+        for file in self._places[name].glob(f"*{SUFFIX}"):
+            self._files.remove(file)
 
     def _file(self, name: str, z: FloatArray, dt: float) -> Path | None:
         if name not in self._places:
@@ -112,43 +88,6 @@ class KeptOutputs:
         about = f"{len(z)} {dt!r} {z.dtype.str}\n".encode()
         key = blake2b(about + z.tobytes(), digest_size=16).hexdigest()
         return self._places[name] / f"{key}{SUFFIX}"
-
-    def _has_room(self, size: int) -> bool:
-        while self._size + size > self.bound and self._older:
-            self._remove(next(iter(self._older)))
-        if self._size + size <= self.bound:
-            return True
-        self._say_once(
-            f"{self.folder}: {self.bound >> 20} MiB are full; no more outputs are kept"
-        )
-        return False
-
-    def _remove(self, file: Path) -> None:
-        self._size -= self._older.pop(file)
-        file.unlink(missing_ok=True)
-
-    def _say_once(self, line: str) -> None:
-        """Say one line of each sort: a broken disk would say thousands."""
-        sort = line.rpartition(";")[2]
-        if sort not in self._said:
-            self._said.add(sort)
-            self.say(line)
-
-
-def _write(file: Path, y: FloatArray) -> None:
-    """Write an output whole or not at all; one that cannot be read is replaced.
-
-    What lies in a cache is named by what it holds and is nobody's work, so that no list
-    is kept of it.
-    """
-    file.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=file.parent)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            np.savez(stream, y=y)
-        Path(name).replace(file)
-    finally:
-        Path(name).unlink(missing_ok=True)
 
 
 def folder_of_user() -> Path:

@@ -6,15 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import ceil, sqrt
-from typing import ClassVar, TypeAlias
+from typing import ClassVar
 
 import numpy as np
 
 from hystbench import kernels
 from hystbench.blocks.base import Place
 from hystbench.blocks.curve import held_lines
-from hystbench.blocks.force import Force, Motion, exported, rows
-from hystbench.blocks.held import HeldBlock
+from hystbench.blocks.force import Force, Host, Motion, Near, exported, rows
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
 from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.step import Sampling, Step, lines_of
@@ -31,12 +30,8 @@ CONTACT = 10
 """Steps of an interval that a stiff contact may ask for: it is stable without."""
 
 
-Near: TypeAlias = "tuple[Mechanism, FloatArray, tuple[Force, ...]]"
-"""What drives another mechanism of the same forces, with numbers near."""
-
-
 @dataclass(frozen=True)
-class Mechanism(HeldBlock):
+class Mechanism(Host):
     """A coordinate q of a machine: ``m q'' + c q' + k q + F(q, q') = gain z + bias``.
 
     F is the sum of the forces that follow it in the chain; without one it is linear. A
@@ -86,52 +81,7 @@ class Mechanism(HeldBlock):
                 "no place of balance"
             )
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the output without a force inside."""
-        return self.driven(z, dt, ())
-
-    def driven(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> FloatArray:
-        """Compute the output with forces inside.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-            The force that drives it.
-        dt : float
-            Sampling interval in seconds.
-        forces : tuple of Force
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            NaN from where the motion has run away.
-        """
-        return self._given(self.motion(z, dt, forces))
-
-    def driven_near(
-        self,
-        z: FloatArray,
-        dt: float,
-        forces: tuple[Force, ...],
-        others: Sequence[Near],
-    ) -> list[FloatArray]:
-        """Compute the output, then those of others near, as :meth:`motions` does."""
-        found = self.motions(z, dt, forces, others)
-        hosts = (self, *(host for host, _, _ in others))
-        return [host._given(motion) for host, motion in zip(hosts, found, strict=True)]
-
-    def near(
-        self,
-        z: FloatArray,
-        u: FloatArray,
-        dt: float,
-        others: Sequence[tuple[Mechanism, FloatArray]],
-    ) -> list[FloatArray]:
-        """Compute the output, and those of others near, without a force inside."""
-        alone = [(host, own, ()) for host, own in others]
-        return self.driven_near(z, dt, (), alone)
-
-    def _given(self, motion: Motion) -> FloatArray:
+    def given(self, motion: Motion) -> FloatArray:
         """Give the output of a motion, which may have run away."""
         with np.errstate(over="ignore", invalid="ignore"):
             if self.output == "force":
@@ -143,10 +93,6 @@ class Mechanism(HeldBlock):
                 return motion.velocity + self.blend * motion.acceleration
             return motion.acceleration + self.blend * motion.velocity
 
-    def motion(self, z: FloatArray, dt: float, forces: tuple[Force, ...]) -> Motion:
-        """Compute how the coordinate moves; arguments are those of :meth:`driven`."""
-        return self.motions(z, dt, forces, ())[0]
-
     def motions(
         self,
         z: FloatArray,
@@ -156,14 +102,7 @@ class Mechanism(HeldBlock):
     ) -> list[Motion]:
         """Compute how the coordinate moves, and how others with numbers near do.
 
-        Of those each step is the tangent of this one's: right for small differences.
-
-        Parameters
-        ----------
-        z, dt, forces
-            Those of :meth:`driven`.
-        others : sequence of (Mechanism, ndarray, tuple of Force)
-            Of the same forces, with other numbers.
+        Each step of those is the tangent of this one's: right for small differences.
         """
         hosts = (self, *(host for host, _, _ in others))
         signals = (z, *(own for _, own, _ in others))
@@ -206,12 +145,8 @@ class Mechanism(HeldBlock):
         moves = (x[:, shown] for x in (q, v, curved, force))
         return [Motion(*each) for each in zip(*moves, strict=True)]
 
-    def step(self, sampling: Sampling) -> Step:
-        """Move the coordinate over the interval that has passed."""
-        return self.driven_step(sampling, ())
-
     def driven_step(self, sampling: Sampling, forces: tuple[Force, ...]) -> Step:
-        """Do so with forces inside."""
+        """Move the coordinate over the interval that has passed."""
         lines = lines_of(self.holding, sampling)
         line = sampling.dt / lines.segments
         parts = self._parts(line, forces)

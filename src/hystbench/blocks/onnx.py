@@ -11,8 +11,6 @@ import numpy as np
 from hystbench.blocks.parameter import text
 from hystbench.blocks.simulator import (
     Simulator,
-    called_with,
-    checked,
     digest_of,
     file_of,
     same_file,
@@ -60,10 +58,9 @@ class Onnx(Simulator):
         """Digest of the file."""
         return digest_of(self.label, file_of(self.label, self.file, EXPECTED))
 
-    def call(self, z: FloatArray, dt: float) -> FloatArray:
+    def run(self, call: str, z: FloatArray, dt: float) -> np.ndarray:
         """Run the graph once."""
         path = file_of(self.label, self.file, EXPECTED)
-        call = called_with(self.label, z, dt)
         runtime = library("onnxruntime", "onnxruntime", self.label, "simulators")
         session = _session(runtime, self.label, *same_file(path))
         first, *more = session.get_inputs()
@@ -82,7 +79,7 @@ class Onnx(Simulator):
             # The runtime raises anything of a graph that does not fit.
             raise InputError(f"{call}, it failed: {in_line(error)}") from error
         given = np.asarray(found)
-        return checked(call, z, given.reshape(-1) if given.size == len(z) else given)
+        return given.reshape(-1) if given.size == len(z) else given
 
 
 @lru_cache(maxsize=8)

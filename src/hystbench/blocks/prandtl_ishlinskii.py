@@ -10,13 +10,13 @@ import numpy as np
 from hystbench.blocks.base import Place
 from hystbench.blocks.parameter import HUGE, a_threshold, numbers
 from hystbench.blocks.step import Sampling, Step
-from hystbench.blocks.wrapping import HystereticBlock
+from hystbench.blocks.wrapping import PlayBlock
 from hystbench.operators import growing_play
 from hystbench.record import FloatArray
 
 
 @dataclass(frozen=True)
-class PrandtlIshlinskii(HystereticBlock):
+class PrandtlIshlinskii(PlayBlock):
     """Play operators beside the signal itself: ``y = z + sum_i w_i P_i[z]``.
 
     ``P_i`` is the play operator of threshold r_i (paper, Eqs. 1 and 2, w(0) = 0). The
@@ -42,10 +42,6 @@ class PrandtlIshlinskii(HystereticBlock):
     square_weights: tuple[float, ...] = a_threshold("1/U", "s_i")
     cube_weights: tuple[float, ...] = a_threshold("1/U^2", "c_i")
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Add the weighted plays."""
-        return self.grow(z, u, dt, None)
-
     def grow(
         self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
     ) -> FloatArray:
@@ -57,9 +53,6 @@ class PrandtlIshlinskii(HystereticBlock):
         if self.cube_weights:
             y += plays**3 @ np.array(self.cube_weights)
         return y
-
-    def check_growth(self) -> None:
-        """Accept: the thresholds of play operators can grow."""
 
     def step(self, sampling: Sampling) -> Step:
         """Add the weighted plays."""

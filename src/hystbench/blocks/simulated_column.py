@@ -97,10 +97,15 @@ class SimulatedColumn(Block):
             If it is of none of them.
         """
         # The array itself first: repeats of one input may have been simulated each.
-        for same in (_is, _equals):
-            for record in self.records:
-                if record.simulated is not None and record.dt == dt and same(z, record):
-                    return record.simulated[: len(z)]
+        alike = [
+            (record.u, record.simulated)
+            for record in self.records
+            if record.simulated is not None and record.dt == dt
+        ]
+        itself = [pair for pair in alike if pair[0] is z]
+        for u, simulated in itself or alike:
+            if itself or np.array_equal(z, u[: len(z)]):
+                return simulated[: len(z)]
         if not self.records:
             raise InputError(
                 f"{self.name}: expected records with the column {self.column!r}, "
@@ -111,11 +116,3 @@ class SimulatedColumn(Block):
             f"{self.name}: its input is that of no record ({names}); any other "
             f"{NEEDS_RERUN}"
         )
-
-
-def _is(z: FloatArray, record: Record) -> bool:
-    return z is record.u
-
-
-def _equals(z: FloatArray, record: Record) -> bool:
-    return np.array_equal(z, record.u[: len(z)])

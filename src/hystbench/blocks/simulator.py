@@ -42,24 +42,33 @@ class Simulator(Block):
         """What messages call it, and by which its outputs are known."""
 
     @abstractmethod
-    def call(self, z: FloatArray, dt: float) -> FloatArray:
-        """Run the simulator once.
+    def run(self, call: str, z: FloatArray, dt: float) -> ArrayLike:
+        """Run the simulator once; what it gives is not checked yet.
 
         Parameters
         ----------
+        call : str
+            Who is called with what, for messages.
         z : ndarray, shape (n,)
         dt : float
             Sampling interval in seconds.
 
-        Returns
-        -------
-        ndarray, shape (n,)
+        Raises
+        ------
+        InputError
+            If it cannot be run, or fails.
+        """
+
+    def call(self, z: FloatArray, dt: float) -> FloatArray:
+        """Run the simulator once, and check that it gives n finite numbers.
 
         Raises
         ------
         InputError
-            If it cannot be run, fails, or gives anything but n finite numbers.
+            As :meth:`run` does, and if it gives anything else.
         """
+        call = f"{self.label}: called with {len(z)} samples and dt = {dt:g} s"
+        return checked(call, z, self.run(call, z, dt))
 
     @abstractmethod
     def source(self) -> str:
@@ -73,9 +82,7 @@ class Simulator(Block):
         InputError
             As :meth:`call` does; or the calls that a user allows are used up.
         """
-        return current().output(
-            self.label, z, dt, lambda _, z, dt: self.call(z, dt), self.source
-        )
+        return current().output(self.label, z, dt, self.call, self.source)
 
     def again(self, z: FloatArray, dt: float) -> FloatArray:
         """Run the simulator, whatever it gave before.
@@ -85,7 +92,7 @@ class Simulator(Block):
         InputError
             As :meth:`call` does; or the calls that a user allows are used up.
         """
-        return current().fresh(self.label, z, dt, lambda _, z, dt: self.call(z, dt))
+        return current().fresh(self.label, z, dt, self.call)
 
 
 def checked(call: str, z: FloatArray, given: ArrayLike) -> FloatArray:
@@ -121,11 +128,6 @@ def checked(call: str, z: FloatArray, given: ArrayLike) -> FloatArray:
             f"{call}, it gave {y[lost[0]]} at sample {lost[0]}; expected finite numbers"
         )
     return y
-
-
-def called_with(label: str, z: FloatArray, dt: float) -> str:
-    """Say who was called with what."""
-    return f"{label}: called with {len(z)} samples and dt = {dt:g} s"
 
 
 def digest_of(text: str, *files: Path) -> str:

@@ -38,7 +38,7 @@ class Hysteresis(Protocol):
 class HystereticBlock(Block):
     """Hysteresis, which a :class:`WrappingBlock` may follow.
 
-    A subclass made of play operators overrides :meth:`grow` and :meth:`check_growth`.
+    That of play operators is a :class:`PlayBlock`.
     """
 
     hysteretic: ClassVar[bool] = True
@@ -57,6 +57,24 @@ class HystereticBlock(Block):
             f"'{self.name}' has no thresholds that could grow; "
             "expected 'gpi' or 'hysteresis', or the form 'excess-field'"
         )
+
+
+@dataclass(frozen=True)
+class PlayBlock(HystereticBlock):
+    """Hysteresis of play operators, whose thresholds can grow."""
+
+    @abstractmethod
+    def grow(
+        self, v: FloatArray, u: FloatArray, dt: float, growth: FloatArray | None
+    ) -> FloatArray:
+        """Compute the output with all thresholds times ``growth``."""
+
+    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
+        """Compute the output with thresholds as they are."""
+        return self.grow(z, u, dt, None)
+
+    def check_growth(self) -> None:
+        """Accept."""
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 
 from hystbench.blocks.base import Block
@@ -56,7 +58,7 @@ def base_model(
         block = _identified(u, loop.respond(u))
     chain: list[Block] = [block]
     if mode is not None:
-        chain.append(Resonance(hold="band-limited", **mode.parameters()))
+        chain.append(Resonance(hold="band-limited", **asdict(mode)))
     return Model("base", INPUT, OUTPUT, tuple(chain))
 
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -40,8 +39,6 @@ class Case:
     Parameters
     ----------
     records : tuple of Record
-    period_samples : mapping of str to int
-        Of the periodic records, by name.
     model : Model or None
         The base model; None where the solver is to identify a linear one.
     truth : mapping
@@ -49,7 +46,6 @@ class Case:
     """
 
     records: tuple[Record, ...]
-    period_samples: dict[str, int]
     model: Model | None
     truth: dict[str, Any] = field(repr=False)
 
@@ -111,7 +107,7 @@ def make_case(spec: CaseSpec) -> Case:
     model = base_model(plant.loop, plant.mode, excitations, linear)
     noise_rms = float(np.hypot(noise, RESOLUTION / np.sqrt(12.0)))
     truth = told_of(spec, OUTPUT.unit, noise_rms, size)
-    truth["mode"] = None if plant.mode is None else plant.mode.parameters()
+    truth["mode"] = None if plant.mode is None else asdict(plant.mode)
     truth["effects"] = []
     fit_records = [record for record in records if record.use == "fit"]
     for k, effect in enumerate(effects):
@@ -137,7 +133,7 @@ def make_case(spec: CaseSpec) -> Case:
     truth["hold_out"] = _hold_out(full, bare, held_out, model)
     base_error = _minus(bare.of(fit), _simulated(model, fit))
     truth["base_error_fit_rms"] = rms(base_error)
-    return Case(records, periods_of(excitations), model, truth)
+    return Case(records, model, truth)
 
 
 class Readings:
@@ -196,7 +192,7 @@ def _draw(
         kind = IN_ACTUATOR[name]
         effect = draw_effect(kind, random, spec.spread, _forms(name, spec.family))
         if name == "stiffness-hardening":
-            values = {**effect.parameters, **mode.parameters()}
+            values = {**effect.parameters, **asdict(mode)}
             effect = HiddenEffect(kind, effect.form, values)
         if name == "hysteresis-shape":
             hidden = _other_loop(effect.form, loop, excitations, random)
@@ -253,7 +249,8 @@ def _record(
     y = full.actuator.convert(noisy, item.dt, number)
     u = np.round(item.sampled(), 8)
     rounded = np.round(y / RESOLUTION) * RESOLUTION
-    return Record(item.name, item.dt, u, rounded, INPUT, OUTPUT, "twin", item.use)
+    channels, period = (INPUT, OUTPUT), item.period_samples
+    return Record(item.name, item.dt, u, rounded, *channels, "twin", item.use, period)
 
 
 def told_of(
@@ -287,15 +284,6 @@ def effect_told(effect: HiddenEffect, **own: Any) -> dict[str, Any]:
         "units": {name: item.unit for name, item in form.ranges.items()},
         **own,
         "views": list(effect.kind.views),
-    }
-
-
-def periods_of(excitations: Iterable[Excitation]) -> dict[str, int]:
-    """Give the periods of the records that have one, in samples."""
-    return {
-        item.name: item.period_samples
-        for item in excitations
-        if item.period_samples is not None
     }
 
 

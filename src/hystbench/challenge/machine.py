@@ -38,7 +38,8 @@ TURNING = {
     "force": "N*m",
 }
 
-Signals = list[tuple[FloatArray, FloatArray]]
+InputsAndOutputs = list[tuple[FloatArray, FloatArray]]
+"""Of each record; of a linear fit each output and that of the model."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ class Machine:
                 part = replace(part, **effect.law.numbers(effect.parameters, reach))
         return part
 
-    def read(self, hidden: Sequence[HiddenEffect], reach: Reach) -> Signals:
+    def read(self, hidden: Sequence[HiddenEffect], reach: Reach) -> InputsAndOutputs:
         """Give input and output of every record at its samples, without noise."""
         return [self._read(item, hidden, reach) for item in self.records]
 
@@ -253,7 +254,7 @@ def draw_machine(
     return replace(machine, size=wanted / reach_of(machine).position)
 
 
-def linear_parts(machine: Machine, signals: Signals) -> Signals:
+def linear_parts(machine: Machine, signals: InputsAndOutputs) -> InputsAndOutputs:
     """Fit the same machine without any effect; give each record's model output.
 
     Parameters
@@ -327,7 +328,7 @@ def _between(u: FloatArray) -> FloatArray:
     )
 
 
-def _linear_impedance(machine: Machine, signals: Signals) -> Signals:
+def _linear_impedance(machine: Machine, signals: InputsAndOutputs) -> InputsAndOutputs:
     columns = []
     for u, _ in signals:
         fine = _between(u)

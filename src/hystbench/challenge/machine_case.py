@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.challenge.case import Case, effect_told, periods_of, rms, told_of
+from hystbench.challenge.case import Case, effect_told, rms, told_of
 from hystbench.challenge.machine import (
+    InputsAndOutputs,
     Machine,
-    Signals,
     draw_machine,
     linear_parts,
     reach_of,
@@ -66,6 +66,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
                 measured,
                 "twin",
                 item.use,
+                item.period_samples,
             )
         )
     model = _model(machine, spec)
@@ -86,7 +87,7 @@ def make_machine_case(spec: CaseSpec) -> Case:
         },
         "base_error_fit_rms": 0.0,
     }
-    return Case(tuple(records), periods_of(machine.records), model, truth)
+    return Case(tuple(records), model, truth)
 
 
 def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffect:
@@ -101,7 +102,10 @@ def _resized(machine: Machine, effect: HiddenEffect, reach: Reach) -> HiddenEffe
 
 
 def _size(
-    machine: Machine, full: Signals, others: tuple[HiddenEffect, ...], reach: Reach
+    machine: Machine,
+    full: InputsAndOutputs,
+    others: tuple[HiddenEffect, ...],
+    reach: Reach,
 ) -> float:
     """Measure how much an effect changes the output of the fit records.
 
@@ -116,11 +120,11 @@ def _size(
     return rms([y - other for (_, y), (_, other) in pairs])
 
 
-def _left(machine: Machine, signals: Signals) -> float:
+def _left(machine: Machine, signals: InputsAndOutputs) -> float:
     return rms([y - fitted for y, fitted in linear_parts(machine, signals)])
 
 
-def _used(machine: Machine, signals: Signals, use: str) -> Signals:
+def _used(machine: Machine, signals: InputsAndOutputs, use: str) -> InputsAndOutputs:
     pairs = zip(machine.records, signals, strict=True)
     return [signal for item, signal in pairs if item.use == use]
 

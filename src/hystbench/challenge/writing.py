@@ -97,8 +97,8 @@ def _dataset(case: Case) -> str:
     entries = []
     for record in case.records:
         entry: dict[str, Any] = {"file": f"{record.name}.csv", "use": record.use}
-        if record.name in case.period_samples:
-            entry["period_samples"] = case.period_samples[record.name]
+        if record.period_samples is not None:
+            entry["period_samples"] = record.period_samples
         entries.append(entry)
     given, measured = case.records[0].input, case.records[0].output
     content = {

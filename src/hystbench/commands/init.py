@@ -13,7 +13,7 @@ from hystbench import options
 from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.errors import InputError
 from hystbench.files import write_text
-from hystbench.inspection.columns import Given
+from hystbench.inspection.columns import Flags
 from hystbench.inspection.draft import Draft, draft
 from hystbench.inspection.writing import yaml_text
 from hystbench.written import writes
@@ -57,35 +57,28 @@ def init(files: Sequence[Path], out: Path | None, **given: Any) -> None:
     place = out or files[0].parent / PLACE
     if out is None:
         writes(place)  # refuses, before work is paid
-    found = draft(files, place, Given(**given), _asker())
+    there = sys.stdin.isatty() and sys.stdout.isatty()
+    found = draft(files, place, Flags(**given), _asked if there else _refused)
     write_text(place, yaml_text(found.dataset.about))
     for line in _said(place, found):
         click.echo(line)
     options.warn(found.warnings)
 
 
-class _Nobody:
-    """Refuses what would have to be asked; units alone have a word for unknown."""
-
-    def __call__(self, question: str, choices: Sequence[str], flag: str) -> str:
-        if flag.endswith("-unit"):
-            return "-"
-        told = f"; expected one of {', '.join(choices)}" if choices else ""
-        raise InputError(f"{question}: not told; say {flag}{told}")
+def _refused(question: str, choices: Sequence[str], flag: str) -> str:
+    """Refuse what nobody is there to be asked; units alone have a word for unknown."""
+    if flag.endswith("-unit"):
+        return "-"
+    told = f"; expected one of {', '.join(choices)}" if choices else ""
+    raise InputError(f"{question}: not told; say {flag}{told}")
 
 
-class _Terminal:
-    """Asks on the terminal."""
-
-    def __call__(self, question: str, choices: Sequence[str], flag: str) -> str:
-        kind = click.Choice(list(choices)) if choices else None
-        default = "-" if flag.endswith("-unit") else None
-        answer: str = click.prompt(question, type=kind, default=default, err=True)
-        return answer
-
-
-def _asker() -> _Nobody | _Terminal:
-    return _Terminal() if sys.stdin.isatty() and sys.stdout.isatty() else _Nobody()
+def _asked(question: str, choices: Sequence[str], flag: str) -> str:
+    """Ask on the terminal."""
+    kind = click.Choice(list(choices)) if choices else None
+    default = "-" if flag.endswith("-unit") else None
+    answer: str = click.prompt(question, type=kind, default=default, err=True)
+    return answer
 
 
 def _said(place: Path, found: Draft) -> list[str]:

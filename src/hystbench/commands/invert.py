@@ -72,10 +72,7 @@ def invert(
     if reference is not None:
         if dt is not None or stroke is not None:
             raise InputError("--dt and --stroke: expected none beside --reference")
-        if sampled:
-            _follow_sampled(system, model, reference, limits, out)
-        else:
-            _follow(system, model, reference, band, limits, out)
+        _follow(system, model, reference, band, limits, sampled, out)
         return
     if dt is None or stroke is None:
         missing = "--dt" if dt is None else "--stroke"
@@ -99,41 +96,37 @@ def _follow(
     file: Path,
     band: float | None,
     limits: Limits,
+    sampled: bool,
     out: Path,
 ) -> None:
-    wanted = column_name(system.output.name, system.output.unit)
-    dt, reference = read_input(file, wanted)
-    with options.refused_of(model, file):
-        found = feedforward(system, reference, dt, band, limits)
-    _write(out, system, dt, reference, found.u, found.y)
-    exact = f"'{found.exact}' inverted exactly, " if found.exact else ""
-    unit = system.input.unit
-    click.echo(
-        f"{out}: {len(reference)} samples, input from {found.u.min():.4g} to "
-        f"{found.u.max():.4g} {unit}; {exact}{len(found.error) - 1} corrections up to "
-        f"{_band(band, dt):g} Hz; the model's output is off by "
-        f"{100 * found.left:.3g} % of the stroke (RMS)"
-    )
-    if found.clipped:
-        click.echo(f"{found.clipped} samples stand at a limit of the input")
-
-
-def _follow_sampled(
-    system: Model, model: Path, file: Path, limits: Limits, out: Path
-) -> None:
-    dt, reference = read_input(
-        file, column_name(system.output.name, system.output.unit)
-    )
-    u = _by_code(system, model, dt, limits)(reference)
-    y = system.simulate(u, dt)
-    _write(out, system, dt, reference, u, y)
-    stroke = float(np.ptp(reference)) or 1.0
-    left = float(np.sqrt(np.mean((y - reference) ** 2))) / stroke
+    """Write the input for a reference, from the whole of it or sample by sample."""
+    names = [column_name(x.name, x.unit) for x in (system.input, system.output)]
+    dt, reference = read_input(file, names[1])
+    clipped = 0
+    if sampled:
+        u = _by_code(system, model, dt, limits)(reference)
+        y = system.simulate(u, dt)
+        stroke = float(np.ptp(reference)) or 1.0
+        left = float(np.sqrt(np.mean((y - reference) ** 2))) / stroke
+        how = "inverted sample by sample, as exported code does"
+    else:
+        with options.refused_of(model, file):
+            found = feedforward(system, reference, dt, band, limits)
+        u, y, left, clipped = found.u, found.y, found.left, found.clipped
+        exact = f"'{found.exact}' inverted exactly, " if found.exact else ""
+        corrections = f"{len(found.error) - 1} corrections"
+        how = f"{exact}{corrections} up to {_band(band, dt):g} Hz"
+    time = np.arange(len(reference)) * dt
+    simulated = column_name("simulated", system.output.unit)
+    titles = ("time_s", *names, simulated)
+    write_columns(out, dict(zip(titles, (time, u, reference, y), strict=True)))
     click.echo(
         f"{out}: {len(reference)} samples, input from {u.min():.4g} to {u.max():.4g} "
-        f"{system.input.unit}; inverted sample by sample, as exported code does; the "
-        f"model's output is off by {100 * left:.3g} % of the stroke (RMS)"
+        f"{system.input.unit}; {how}; the model's output is off by "
+        f"{100 * left:.3g} % of the stroke (RMS)"
     )
+    if clipped:
+        click.echo(f"{clipped} samples stand at a limit of the input")
 
 
 def _by_code(system: Model, model: Path, dt: float, limits: Limits) -> Invert:
@@ -146,23 +139,6 @@ def _by_code(system: Model, model: Path, dt: float, limits: Limits) -> Invert:
         return u
 
     return invert
-
-
-def _write(
-    out: Path,
-    system: Model,
-    dt: float,
-    reference: FloatArray,
-    u: FloatArray,
-    y: FloatArray,
-) -> None:
-    columns = {
-        "time_s": np.arange(len(reference)) * dt,
-        column_name(system.input.name, system.input.unit): u,
-        column_name(system.output.name, system.output.unit): reference,
-        column_name("simulated", system.output.unit): y,
-    }
-    write_columns(out, columns)
 
 
 def _table(

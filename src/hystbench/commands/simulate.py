@@ -14,21 +14,19 @@ from hystbench.blocks.held import HOLDS, Hold
 from hystbench.dataset import load_dataset, read_input
 from hystbench.errors import InputError, nearest
 from hystbench.files import write_columns
-from hystbench.model import load_model
+from hystbench.model import check_bounded, load_model
 from hystbench.record import Channel, FloatArray, Record, column_name, load_record
 from hystbench.signals import load_signal
 from hystbench.units import check_same_unit
 
 
-class Run(NamedTuple):
-    """What is to be simulated, and what was measured if anything was."""
+class Task(NamedTuple):
+    """What is to be simulated, and the record if anything was measured."""
 
     dt: float
     u: FloatArray
     input: Channel
-    y: FloatArray | None
-    output: Channel | None
-    hold: Hold | None
+    hold: Hold | None = None
     record: Record | None = None
     column: str | None = None
 
@@ -57,29 +55,25 @@ def simulate(
     the model's input, named with its unit, such as current_A.
     """
     system = load_model(model)
-    run = _read(record, dataset, system.input)
-    pairs = [("input", system.input, run.input), ("output", system.output, run.output)]
+    task = _read(record, dataset, system.input)
+    measured = None if task.record is None else task.record.output
+    pairs = [("input", system.input, task.input), ("output", system.output, measured)]
     for side, ours, theirs in pairs:
         if theirs is not None:
             place = f"{model}: {side}: unit"
             check_same_unit(place, ours.unit, str(record), theirs.unit)
-    taken = hold or run.hold
+    taken = hold or task.hold
     if taken is not None:
         system = system.with_hold(taken)
-    if run.record is not None:
-        system = system.with_records([run.record], run.column)
-    y = system.simulate(run.u, run.dt)
-    lost = np.flatnonzero(~np.isfinite(y))
-    if len(lost):
-        raise InputError(
-            f"{model}: the output is not finite from {lost[0] * run.dt:g} s of "
-            f"{record} on; expected a model that stays bounded"
-        )
-    time = np.arange(len(y)) * run.dt
-    columns = {"time_s": time, column_name(run.input.name, run.input.unit): run.u}
-    if run.y is not None and run.output is not None:
-        columns[column_name("measured", run.output.unit)] = run.y
-    unit = (run.output or system.output).unit  # one unit, in the record's spelling
+    if task.record is not None:
+        system = system.with_records([task.record], task.column)
+    y = system.simulate(task.u, task.dt)
+    check_bounded(str(model), y, task.dt, str(record))
+    time = np.arange(len(y)) * task.dt
+    columns = {"time_s": time, column_name(task.input.name, task.input.unit): task.u}
+    if task.record is not None:
+        columns[column_name("measured", task.record.output.unit)] = task.record.y
+    unit = (measured or system.output).unit  # one unit, in the record's spelling
     columns[column_name("simulated", unit)] = y
     write_columns(out, columns)
     click.echo(
@@ -88,7 +82,7 @@ def simulate(
     )
 
 
-def _read(record: Path, dataset: Path | None, expected: Channel) -> Run:
+def _read(record: Path, dataset: Path | None, expected: Channel) -> Task:
     if record.suffix != ".npz":
         return _read_file(record, dataset, expected)
     if dataset is not None:
@@ -96,16 +90,16 @@ def _read(record: Path, dataset: Path | None, expected: Channel) -> Run:
     if _names(record) >= {"name", "dt", "u", "unit"}:
         signal = load_signal(record)
         given = Channel("input", signal.unit)
-        return Run(signal.dt, signal.u, given, None, None, None)
+        return Task(signal.dt, signal.u, given)
     found = load_record(record)
-    return Run(found.dt, found.u, found.input, found.y, found.output, None, found)
+    return Task(found.dt, found.u, found.input, record=found)
 
 
-def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Run:
+def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Task:
     beside = record.parent / "dataset.yaml"
     if dataset is None and not beside.is_file():
         dt, u = read_input(record, column_name(expected.name, expected.unit))
-        return Run(dt, u, expected, None, None, None)
+        return Task(dt, u, expected)
     about = load_dataset(dataset or beside)
     names = [
         name
@@ -121,8 +115,8 @@ def _read_file(record: Path, dataset: Path | None, expected: Channel) -> Run:
     if names:
         found = about.read(names[0])
         hold = cast(Hold, about.about["input"].get("hold", "band-limited"))
-        own = found.dt, found.u, found.input, found.y, found.output
-        return Run(*own, hold, found, about.simulated_column)
+        own = found.dt, found.u, found.input
+        return Task(*own, hold, found, about.simulated_column)
     files = [file.name for file in about.record_files.values()]
     raise InputError(
         f"{about.path}: records: {record} is none of them; "

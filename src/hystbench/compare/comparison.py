@@ -16,12 +16,11 @@ from hystbench.compare.measured import COLUMNS, errors_table
 from hystbench.compare.off import OffCell, off_cells, write_off
 from hystbench.compare.rows import names_of, or_diverged, write_fields
 from hystbench.compare.summary import rms_error_percent, summarise
-from hystbench.compare.tables import Table, paper_tables
+from hystbench.compare.tables import PrintedTable, paper_tables
 from hystbench.compare.verdict import (
     first_result,
     print_tables,
-    verdict_markdown,
-    verdict_rst,
+    verdict_page,
 )
 from hystbench.files import write_json, write_text
 from hystbench.published import load_errors, signals
@@ -47,7 +46,7 @@ class Comparison:
     off: tuple[OffCell, ...]
     claims: tuple[Judgement, ...]
     summary: dict[str, Any]
-    tables: tuple[Table, ...]
+    tables: tuple[PrintedTable, ...]
     edges: tuple[Edge, ...]
     held_out: frozenset[str]
     added: tuple[Run, ...] = ()
@@ -65,8 +64,8 @@ class Comparison:
         write_audit(out / "audit.csv")
         write_margins(self.edges, self.held_out, out / "margins.csv")
         write_json(out / "summary.json", self.summary)
-        write_text(out / "verdict.rst", verdict_rst(self.summary))
-        write_text(out / "verdict.md", verdict_markdown(self.summary))
+        write_text(out / "verdict.rst", verdict_page(self.summary, "rst"))
+        write_text(out / "verdict.md", verdict_page(self.summary, "pipe"))
         write_text(out / "first.md", first_result(self.summary))
         write_text(out / "tables.txt", self.text())
         for table in self.tables:
@@ -123,7 +122,7 @@ def compare_evidence(
     )
 
 
-def _added_table(evidence: ClaimEvidence) -> list[Table]:
+def _added_table(evidence: ClaimEvidence) -> list[PrintedTable]:
     """Set side by side what ran and is in none of the paper's tables, if there is any.
 
     Models that the paper does not have stand beside its own.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Row:
+class Ranking:
     """The ranking on a twin with one constant.
 
     Parameters

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.compare.constants import Row
+from hystbench.compare.constants import Ranking
 from hystbench.compare.draws import Drawn, read_draws
 from hystbench.compare.edges import Edge
-from hystbench.compare.rows import Item, finite_or_infinite, read_items, read_rows
+from hystbench.compare.rows import finite_or_infinite, read_items, read_rows
 from hystbench.compare.twins import Holding, read_holdings, read_spreads
 from hystbench.errors import InputError, nearest
 from hystbench.files import read_json
@@ -106,7 +106,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Identification:
+class IdentifiedLoop:
     """Result of Algorithm 1 on the slow loop."""
 
     envelope: dict[str, float]
@@ -135,7 +135,7 @@ class ClaimEvidence:
     records: Mapping[str, Record] = field(default_factory=dict)
     order_sweep: tuple[OrderError, ...] = ()
     order_sweep_other: tuple[OrderError, ...] = ()
-    identification: Identification | None = None
+    identification: IdentifiedLoop | None = None
     envelope_errors: Mapping[Cell, float] = field(default_factory=dict)
     spreads: Mapping[tuple[str, str, Metric], tuple[float, float]] = field(
         default_factory=dict
@@ -143,7 +143,7 @@ class ClaimEvidence:
     holdings: Mapping[str, tuple[Holding, ...]] = field(default_factory=dict)
     drawn: Mapping[str, Drawn] = field(default_factory=dict)
     edges: tuple[Edge, ...] = ()
-    constants: tuple[Row, ...] = ()
+    constants: tuple[Ranking, ...] = ()
 
     @property
     def added_models(self) -> tuple[str, ...]:
@@ -248,19 +248,19 @@ def read_envelope_errors(path: str | Path) -> dict[Cell, float]:
     }
 
 
-def read_identification(path: str | Path) -> Identification:
+def read_identification(path: str | Path) -> IdentifiedLoop:
     """Read the result of Algorithm 1."""
     return identification_of(_content(path), path)
 
 
-def identification_of(content: Mapping[str, Any], path: str | Path) -> Identification:
+def identification_of(content: Mapping[str, Any], path: str | Path) -> IdentifiedLoop:
     """Make the result of Algorithm 1 from what its file at a path holds."""
 
     def array(key: str) -> FloatArray:
         return np.asarray(_need(content, key, path), dtype=float)
 
     envelope = _need(content, "envelope", path)
-    return Identification(
+    return IdentifiedLoop(
         envelope={key: float(_need(envelope, key, path)) for key in _PARAMETERS},
         thresholds=array("thresholds"),
         weights=array("weights"),
@@ -272,21 +272,16 @@ def identification_of(content: Mapping[str, Any], path: str | Path) -> Identific
     )
 
 
-def read_all(kind: type[Item], path: str | Path) -> tuple[Item, ...]:
-    """Read a CSV file of which each row is an item of a dataclass."""
-    return tuple(read_items(path, kind))
-
-
 FILES: dict[str, tuple[str, Callable[[str | Path], Any]]] = {
-    "order_sweep": ("order_sweep", partial(read_all, OrderError)),
-    "order_sweep_other": ("order_sweep_other", partial(read_all, OrderError)),
+    "order_sweep": ("order_sweep", partial(read_items, kind=OrderError)),
+    "order_sweep_other": ("order_sweep_other", partial(read_items, kind=OrderError)),
     "identified": ("identification", read_identification),
     "envelopes": ("envelope_errors", read_envelope_errors),
     "twin_errors": ("spreads", read_spreads),
     "twin_claims": ("holdings", read_holdings),
     "draws": ("drawn", read_draws),
-    "edges": ("edges", partial(read_all, Edge)),
-    "constants": ("constants", partial(read_all, Row)),
+    "edges": ("edges", partial(read_items, kind=Edge)),
+    "constants": ("constants", partial(read_items, kind=Ranking)),
 }
 """What evidence is read from beside runs and records: its field, and the reader."""
 

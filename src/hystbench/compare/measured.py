@@ -9,7 +9,7 @@ import pandas as pd
 
 from hystbench.compare.evidence import Run, read_run
 from hystbench.compare.rows import write_fields
-from hystbench.compare.tables import Table, error_kind
+from hystbench.compare.tables import PrintedTable, error_kind
 from hystbench.files import write_text
 from hystbench.published import in_order
 
@@ -53,7 +53,7 @@ def compare_measured(
     write_text(out / "verdict.rst", text)
 
 
-def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> Table:
+def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> PrintedTable:
     """Set the errors of all models side by side, a row a record and metric.
 
     Parameters
@@ -77,7 +77,7 @@ def errors_table(name: str, of: str, why: str, runs: Sequence[Run]) -> Table:
                 line[model] = _cell(run, metric)
             content.append(line)
     diverged = [run for run in runs if run.diverged is not None]
-    return Table(
+    return PrintedTable(
         name=name,
         caption=f"{of} {error_kind(models)}. {why}",
         legend="; ".join(

@@ -51,7 +51,7 @@ def finite_or_infinite(text: str, path: str | Path, row: int) -> float:
         raise InputError(f"{path}: row {row}: {text!r} is not a number") from error
 
 
-def read_items(path: str | Path, kind: type[Item]) -> list[Item]:
+def read_items(path: str | Path, kind: type[Item]) -> tuple[Item, ...]:
     """Read a CSV file as items of a dataclass, a column a field.
 
     An empty number is None where the field may be, and else infinite: it is of a
@@ -72,10 +72,10 @@ def read_items(path: str | Path, kind: type[Item]) -> list[Item]:
             return finite_or_infinite("" if text == "diverged" else text, path, row)
         return int(text) if int in wanted else text
 
-    return [
+    return tuple(
         kind(**{name: value(name, row[name], number) for name in hints})
         for number, row in enumerate(read_rows(path, tuple(hints)), 1)
-    ]
+    )
 
 
 def names_of(kind: type) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from hystbench.compare.cells import ComparedCell
 from hystbench.compare.claims.claim import Basis, Judgement, Verdict
-from hystbench.compare.constants import Row
+from hystbench.compare.constants import Ranking
 from hystbench.compare.edges import Edge
 from hystbench.compare.evidence import Cell, ClaimEvidence
 from hystbench.published import FILTERS
@@ -164,7 +164,7 @@ def eq19_finding(edges: Sequence[Edge]) -> dict[str, Any] | None:
     }
 
 
-def constant_tap_finding(rows: Sequence[Row]) -> dict[str, Any] | None:
+def constant_tap_finding(rows: Sequence[Ranking]) -> dict[str, Any] | None:
     """Set the rankings with constant taps, and other zero errors, beside the usual one.
 
     On the first twin; the halves of the pairs apart. None where no tap was tried.
@@ -176,7 +176,7 @@ def constant_tap_finding(rows: Sequence[Row]) -> dict[str, Any] | None:
         return None
     offsets = [row for row in mine if not row.constant_tap]
 
-    def told(row: Row) -> dict[str, Any]:
+    def told(row: Ranking) -> dict[str, Any]:
         pairs = ("pairs_calibrated", "pairs_held_out")
         return {
             "constant_tap": row.constant_tap,
@@ -223,7 +223,7 @@ def summarise(
     *,
     rms_used: Iterable[str] = (),
     edges: Sequence[Edge] = (),
-    constants: Sequence[Row] = (),
+    constants: Sequence[Ranking] = (),
 ) -> dict[str, Any]:
     """Sum up a comparison.
 

@@ -30,7 +30,7 @@ METRIC_NAMES: dict[Metric, str] = {"mse": "MSE (um^2)", "re": "RE"}
 
 
 @dataclass(frozen=True)
-class Table:
+class PrintedTable:
     """A table with its caption and what its marks mean.
 
     Parameters
@@ -159,7 +159,7 @@ def error_kind(models: Iterable[str]) -> str:
 
 def paper_table(
     number: int, cells: Iterable[ComparedCell], draws: Mapping[str, int] | None = None
-) -> Table:
+) -> PrintedTable:
     """Set ours beside one table of the paper; Table 4 repeats the GPO filter.
 
     ``draws`` tells how often a signal was drawn.
@@ -181,7 +181,7 @@ def paper_table(
                 line[f"{model} paper"] = cell.published + mark
                 line[f"{model} ours"] = _ours(cell)
             content.append(line)
-    return Table(
+    return PrintedTable(
         name=f"table-{number}",
         caption=(
             f"Table {number} of the paper ({TITLES[number]}) with ours beside it. "
@@ -215,7 +215,7 @@ def _divergences(cells: Iterable[ComparedCell]) -> list[str]:
 
 def paper_tables(
     cells: Iterable[ComparedCell], draws: Mapping[str, int] | None = None
-) -> tuple[Table, ...]:
+) -> tuple[PrintedTable, ...]:
     """Make Tables 1-4; ``draws`` as in :func:`paper_table`."""
     listed = list(cells)
     return tuple(paper_table(number, listed, draws) for number in TITLES)

@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from hystbench.compare.claims.claim import Judgement
-from hystbench.compare.tables import Table
+from hystbench.compare.tables import PrintedTable
 
 #: Results that may stand on held-out signals, in words.
 SHORTLY = {
@@ -106,20 +106,11 @@ def _row(name: str, part: Mapping[str, Any]) -> tuple[str, ...]:
     )
 
 
-def verdict_rst(summary: Mapping[str, Any]) -> str:
-    """Write the first page of the report as reStructuredText."""
-    return _page(summary, "rst")
-
-
-def verdict_markdown(summary: Mapping[str, Any]) -> str:
-    """Write the verdict as Markdown."""
-    return _page(summary, "pipe")
-
-
-def _page(summary: Mapping[str, Any], style: str) -> str:
-    """Write sentences and small table; a bar has a meaning of its own in markups."""
+def verdict_page(summary: Mapping[str, Any], style: str) -> str:
+    """Write sentences and small table, in a style of tabulate: ``rst`` or ``pipe``."""
     *said, last = sentences(summary)
     listed = "\n".join(f"- {sentence}" for sentence in said)
+    # A bar has a meaning of its own in markups.
     headers = [header.replace("|", r"\|") for header in HEADERS]
     return (
         "\n\n".join((listed, last, _grid(rows(summary), headers, style), LEGEND)) + "\n"
@@ -133,7 +124,7 @@ def _grid(lines: Sequence[Sequence[str]], headers: Sequence[str], style: str) ->
 
 
 def print_tables(
-    tables: Iterable[Table],
+    tables: Iterable[PrintedTable],
     judgements: Iterable[Judgement],
     summary: Mapping[str, Any],
 ) -> str:

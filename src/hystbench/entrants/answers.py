@@ -28,7 +28,7 @@ PLACES = ("{dataset}", "{model}", "{out}")
 #: Bytes of a gap.json that are read; more is no answer.
 LARGEST_ANSWER = 20_000_000
 #: What stands for the model where none is handed over: a linear one, to be identified.
-LINEAR = "linear"
+NO_MODEL = "linear"
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def answer(
         model = given / "model.yaml"
         paths = {
             "{dataset}": str(given / "dataset"),
-            "{model}": str(model) if model.is_file() else LINEAR,
+            "{model}": str(model) if model.is_file() else NO_MODEL,
             "{out}": str(out),
         }
         command = [_filled(word, paths) for word in solver.command]

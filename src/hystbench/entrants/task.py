@@ -27,8 +27,6 @@ class Given:
     name : str
     model : Model
     fit, hold_out : tuple of Record
-    periods : mapping of str to int
-        Samples a period, of periodic records.
     model_file : Path
         Where the model was read.
     """
@@ -37,7 +35,6 @@ class Given:
     model: Model
     fit: tuple[Record, ...]
     hold_out: tuple[Record, ...]
-    periods: dict[str, int]
     model_file: Path = Path()
 
     def base(self, record: Record) -> FloatArray:
@@ -85,17 +82,11 @@ def read(dataset: Path, model: Path) -> Given:
     about = load_dataset(dataset)
     records = [about.read(name) for name in about.record_files]
     hold = about.about["input"].get("hold", "band-limited")
-    periods = {
-        Path(entry["file"]).stem: int(entry["period_samples"])
-        for entry in about.about["records"]
-        if "period_samples" in entry
-    }
     return Given(
         about.name,
         load_model(model).with_hold(hold),
         tuple(record for record in records if record.use == "fit"),
         tuple(record for record in records if record.use == "hold-out"),
-        periods,
         model,
     )
 
@@ -104,7 +95,7 @@ def noise_rms(given: Given) -> float:
     """Estimate the noise from repeated periods; from the residual where none repeat."""
     squares, count = 0.0, 0
     for record in given.fit:
-        period = given.periods.get(record.name)
+        period = record.period_samples
         # the first period holds the switch-on
         whole = len(record) // period - 1 if period else 0
         if whole >= 2 and period:
@@ -122,6 +113,8 @@ def write(given: Given, answer: Answer, out: Path) -> None:
     with np.errstate(over="ignore", invalid="ignore"):
         left = _rms([record.y - answer.predict(record) for record in given.hold_out])
     floor = noise_rms(given)
+    repeats = any(r.period_samples for r in (*given.fit, *given.hold_out))
+    method = "repeats" if repeats else "upper-bound"
     above = before**2 - floor**2
     # A model that runs away on a record closes nothing.
     after = left if np.isfinite(left) else None
@@ -150,7 +143,7 @@ def write(given: Given, answer: Answer, out: Path) -> None:
             "before": before,
             "after": after,
             "noise_floor": floor,
-            "floor_method": "repeats" if given.periods else "upper-bound",
+            "floor_method": method,
             "explained": explained,
         },
         "ranking": [],

@@ -19,15 +19,12 @@ def loop(axes: Axes, record: Record, output: Output, part: slice) -> None:
         axes.plot(record.u[part], output.y[part], **style.look(output.run.model).line)
 
 
-def in_time(
-    axes: Axes, record: Record, output: Output, part: slice, width: float = 1.0
-) -> None:
-    """Draw both outputs over time; thinner lines (points) keep dense ones apart."""
-    behind = {**style.BEHIND, "linewidth": width * style.BEHIND["linewidth"]}
-    axes.plot(*thin(record.time[part], record.y[part]), **behind)
+def in_time(axes: Axes, record: Record, output: Output, part: slice) -> None:
+    """Draw both outputs over time."""
+    axes.plot(*thin(record.time[part], record.y[part]), **style.BEHIND)
     if _reaches(axes, record, output, part):
         line = style.look(output.run.model).line
-        axes.plot(*thin(record.time[part], output.y[part]), linewidth=width, **line)
+        axes.plot(*thin(record.time[part], output.y[part]), linewidth=1.0, **line)
 
 
 def error_in_time(axes: Axes, record: Record, output: Output, part: slice) -> None:

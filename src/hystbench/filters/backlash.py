@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal, get_args
 
-from hystbench.envelope import play_thresholds
+from hystbench.envelope import equal_intervals
 from hystbench.filters.keys import choice
 from hystbench.filters.plays import PlayFilter
 from hystbench.record import FloatArray
@@ -49,7 +49,7 @@ class BacklashFilter(PlayFilter):
     @property
     def thresholds(self) -> FloatArray:
         """Equal intervals of the amplitude."""
-        return play_thresholds(self.amplitude, self.order)
+        return equal_intervals(self.amplitude, self.order)
 
     def envelopes(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Give the input itself twice: the envelopes of a play are straight."""

@@ -11,11 +11,9 @@ it loses time alone.
 from __future__ import annotations
 
 import json
-import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
 from hashlib import blake2b
@@ -24,6 +22,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from hystbench.blocks.kept_outputs import folder_of_user
+from hystbench.kept_files import KeptFiles
 from hystbench.record import Record
 
 Result = TypeVar("Result")
@@ -35,15 +34,13 @@ LIBRARIES = ("numpy", "scipy")
 
 
 class Remembered:
-    """A folder of results, a JSON file each; the oldest make room for new ones.
+    """A folder of results, a JSON file each.
 
     Parameters
     ----------
     folder : Path
-    say : callable
-        Told once where the folder cannot be read or written.
-    bound : int
-        Bytes of all files together, at most.
+    say, bound
+        As for :class:`hystbench.kept_files.KeptFiles`.
 
     Attributes
     ----------
@@ -54,10 +51,9 @@ class Remembered:
     def __init__(
         self, folder: Path, say: Callable[[str], None], bound: int = BOUND
     ) -> None:
-        self.folder, self.say, self.bound = folder, say, bound
-        self.made = self.found = self._size = 0
-        self._usable = True
-        self._keep("", None)
+        self.folder = folder
+        self.made = self.found = 0
+        self._files = KeptFiles(folder, "*.json", bound, say, "results")
 
     def result(
         self,
@@ -86,59 +82,16 @@ class Remembered:
             return read(known[0])
         result = compute()
         self.made += 1
-        self._keep(json.dumps([write(result)]), file)
+        self._files.write(file, json.dumps([write(result)]).encode())
         return result
 
     def _read(self, file: Path) -> Any:
+        """Give the list of one that a file holds; of others the result is computed."""
         try:
-            content = json.loads(file.read_text(encoding="utf-8"))
-            os.utime(file)  # it is among the newest now
-        except (OSError, ValueError):
-            return None  # it is computed, and written anew
+            content = json.loads(self._files.read(file) or b"")
+        except ValueError:
+            return None
         return content if isinstance(content, list) and len(content) == 1 else None
-
-    def _keep(self, text: str, file: Path | None) -> None:
-        """Make room for a result and write it; without a file see what is there."""
-        if not self._usable:
-            return
-        try:
-            if file is None or self._size + len(text) > self.bound:
-                self._size = self._trimmed(self.bound - len(text))
-            if file is not None and len(text) <= self.bound:
-                _write(file, text)
-                self._size += len(text)
-        except OSError as error:
-            self._usable = False
-            self.say(f"{self.folder}: {error.strerror}; results are not kept")
-
-    def _trimmed(self, most: int) -> int:
-        """Remove the oldest results until so many bytes are left; give how many are.
-
-        One that another run removes is passed over.
-        """
-        found = []
-        for file in self.folder.glob("*.json"):
-            with suppress(FileNotFoundError):
-                about = file.stat()
-                found.append((about.st_mtime, file, about.st_size))
-        size = sum(each for _, _, each in found)
-        for _, file, each in sorted(found):
-            if size > most:
-                file.unlink(missing_ok=True)
-                size -= each
-        return size
-
-
-def _write(file: Path, text: str) -> None:
-    """Write a result whole or not at all."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(suffix=".json", dir=file.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
-        Path(name).replace(file)
-    finally:
-        Path(name).unlink(missing_ok=True)
 
 
 _current: ContextVar[Remembered | None] = ContextVar("remembered", default=None)

@@ -54,7 +54,7 @@ class Samples:
     ) -> FloatArray:
         """Output of Eq. 9, shape (n,), without the constant."""
         path = np.concatenate([self.lead, self.u])
-        values, _ = generalized_prandtl_ishlinskii(
+        values = generalized_prandtl_ishlinskii(
             envelope.left(path), envelope.right(path), thresholds, weights
         )
         return values[len(self.lead) :]

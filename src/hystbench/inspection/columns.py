@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
@@ -24,15 +23,13 @@ LEAST = 20
 _OF_MATRIX = re.compile(r"(?P<stem>.+)(?P<place>\(:,\d+\))")
 
 
-class Ask(Protocol):
-    """Asks the user, or refuses where nobody is there."""
-
-    def __call__(self, question: str, choices: Sequence[str], flag: str) -> str:
-        """Give one of the choices; without choices, any text."""
+Ask = Callable[[str, Sequence[str], str], str]
+"""Asks the user, or refuses where nobody is there: takes a question, the choices that
+there are, if any, and the flag that answers it."""
 
 
 @dataclass(frozen=True)
-class Given:
+class Flags:
     """What flags say already.
 
     Parameters
@@ -88,7 +85,7 @@ class Part:
 
 
 @dataclass
-class Signals:
+class ChosenColumns:
     """Which columns are what, and their units."""
 
     time: str | None
@@ -154,7 +151,7 @@ def _part(
     )
 
 
-def signals_of(parts: Sequence[Part], given: Given, ask: Ask) -> Signals:
+def signals_of(parts: Sequence[Part], given: Flags, ask: Ask) -> ChosenColumns:
     """Find which columns are time, input and output, of most parts."""
     common = _common(parts)
     first = next(part for part in parts if set(common) <= set(part.columns))
@@ -194,7 +191,7 @@ def signals_of(parts: Sequence[Part], given: Given, ask: Ask) -> Signals:
         unit_of_time = clock.unit if clock else "s"
         taken = clock.words if clock else "seconds"
         notes.append(f"time {time!r}: no unit is told; taken for {taken} (--time-unit)")
-    return Signals(
+    return ChosenColumns(
         time,
         plain(unit_of_time or "s"),
         *chosen,
@@ -226,12 +223,12 @@ def _told(name: str, column: Column) -> tuple[str, str | None]:
     return words, unit
 
 
-def _asked(given: Given) -> list[str]:
+def _asked(given: Flags) -> list[str]:
     return [name for name in (given.time, given.input, given.output) if name]
 
 
 def _time(
-    part: Part, told: Mapping[str, tuple[str, str | None]], given: Given
+    part: Part, told: Mapping[str, tuple[str, str | None]], given: Flags
 ) -> str | None:
     """Name the column of time: the one asked for, or one that is called so."""
     if given.time is not None:
@@ -263,7 +260,7 @@ def _channels(
     part: Part,
     names: Sequence[str],
     told: Mapping[str, tuple[str, str | None]],
-    given: Given,
+    given: Flags,
     ask: Ask,
 ) -> tuple[str, str]:
     """Name input and output: asked for, told by names and units, or asked."""
@@ -300,7 +297,7 @@ def _finite(column: Column) -> FloatArray:
     return values if len(values) else np.zeros(1)
 
 
-def fits(part: Part, signals: Signals) -> bool:
+def fits(part: Part, signals: ChosenColumns) -> bool:
     """Tell whether a part has the columns."""
     wanted = {signals.input, signals.output}
     if signals.time is not None:

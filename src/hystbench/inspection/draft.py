@@ -15,7 +15,7 @@ from hystbench.formats import Table, read_table
 from hystbench.inspection.columns import (
     LEAST,
     Ask,
-    Given,
+    Flags,
     Part,
     fits,
     parts_of,
@@ -58,7 +58,7 @@ class Draft:
     warnings: tuple[str, ...] = ()
 
 
-def draft(files: Sequence[Path], place: Path, given: Given, ask: Ask) -> Draft:
+def draft(files: Sequence[Path], place: Path, given: Flags, ask: Ask) -> Draft:
     """Propose a dataset.yaml for files of measurements.
 
     Parameters
@@ -67,7 +67,7 @@ def draft(files: Sequence[Path], place: Path, given: Given, ask: Ask) -> Draft:
         One or more, of any format that is known.
     place : Path
         Where dataset.yaml is to stand; paths of the files are relative to it.
-    given : Given
+    given : Flags
     ask : Ask
         Called for what neither files nor flags tell.
 

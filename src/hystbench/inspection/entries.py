@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from hystbench.dataset import RECORD_NAME
 from hystbench.errors import InputError, nearest
 from hystbench.inspection.clocks import Ticks, ticks_of
-from hystbench.inspection.columns import LEAST, Ask, Given, Part, Signals
+from hystbench.inspection.columns import LEAST, Ask, ChosenColumns, Flags, Part
 from hystbench.inspection.excitation import excitation_of
 from hystbench.inspection.missing import cannot_be_bridged, runs
 from hystbench.inspection.names import split_unit
@@ -35,8 +35,8 @@ Entry = dict[str, Any]
 
 def content_of(
     parts: Sequence[Part],
-    signals: Signals,
-    given: Given,
+    signals: ChosenColumns,
+    given: Flags,
     place: Path,
     ask: Ask,
     notes: list[str],
@@ -119,8 +119,8 @@ def _from(place: Path, part: Part) -> str:
 def _frequency(
     about: dict[str, Any],
     parts: Sequence[Part],
-    signals: Signals,
-    given: Given,
+    signals: ChosenColumns,
+    given: Flags,
     ask: Ask,
     notes: list[str],
 ) -> None:
@@ -159,7 +159,7 @@ def checked_frequency(told: str | float) -> float:
     return value
 
 
-def missing_in(part: Part, signals: Signals) -> NDArray[np.bool_]:
+def missing_in(part: Part, signals: ChosenColumns) -> NDArray[np.bool_]:
     """Tell of each sample whether time, input or output has no number."""
     columns = [part.columns[signals.input], part.columns[signals.output]]
     if signals.time is not None:
@@ -171,9 +171,9 @@ def missing_in(part: Part, signals: Signals) -> NDArray[np.bool_]:
 
 def _without_missing(
     part: Part,
-    signals: Signals,
+    signals: ChosenColumns,
     entry: dict[str, Any],
-    given: Given,
+    given: Flags,
     ask: Ask,
     notes: list[str],
 ) -> list[dict[str, Any]]:
@@ -251,7 +251,7 @@ def _name_of(place: Path) -> str:
 def with_roles(
     entries: list[Entry],
     records: Sequence[Record],
-    given: Given,
+    given: Flags,
     notes: list[str],
 ) -> list[dict[str, Any]]:
     """Give the entries of several records with their roles."""

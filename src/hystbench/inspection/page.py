@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from operator import attrgetter
 
 from hystbench.figures.style import COLUMN, PAGE, unit_text
 from hystbench.gap.report.pictures import Picture, draw
 from hystbench.inspection import pictures, words
 from hystbench.inspection.check import Check
-from hystbench.inspection.visible import TENTH
+from hystbench.inspection.facts import Facts
+from hystbench.inspection.visible import TENTH, Seen
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import one_micro
-from hystbench.report.table import Body, Cell, Column, Table, number
-from hystbench.report.table import words as cell
+from hystbench.report.table import Cell, Column, Table, number, table_of
 
 
 def page(found: Check) -> str:
@@ -41,56 +43,44 @@ def page(found: Check) -> str:
 
 def _records(found: Check) -> Table:
     record = found.records[0]
-    columns = (
-        Column("record"),
-        Column("use"),
-        Column("samples", True),
-        Column("rate (Hz)", True),
-        Column("jitter (%)", True),
-        Column("input"),
-        Column("period (samples)", True),
-        Column("periods", True),
-        Column("band"),
-        Column(f"input ({unit_text(record.input.unit)})"),
-        Column(f"output ({unit_text(record.output.unit)})"),
-        Column("delay (ms)", True),
-        Column("missing", True),
-    )
-    rows = [
-        [
-            cell(item.name),
-            cell(item.use),
-            number(item.samples, str(item.samples)),
-            number(1 / item.dt, f"{1 / item.dt:.6g}"),
-            number(
-                item.jitter,
-                "no clock"
-                if item.jitter is None
-                else words.jitter_text(item.jitter).removesuffix(" %"),
-            ),
-            cell(item.excitation.kind),
-            number(item.period, str(item.period or "none")),
-            number(item.periods, f"{item.periods:.3g}"),
-            cell(words.band(item)),
-            cell(f"{item.excitation.low:.3g} to {item.excitation.high:.3g}"),
-            cell(f"{item.low:.3g} to {item.high:.3g}"),
-            number(
-                item.delay_s,
-                f"{1e3 * item.delay_s:.3g} ± {1e3 * item.delay_error_s:.2g}",
-            ),
-            number(item.missing, str(item.missing)),
-        ]
-        for item in found.facts
-    ]
-    return Table(
+    shown: dict[Column, Callable[[Facts], Cell | str]] = {
+        Column("record"): attrgetter("name"),
+        Column("use"): attrgetter("use"),
+        Column("samples", True): lambda x: number(x.samples, str(x.samples)),
+        Column("rate (Hz)", True): lambda x: number(1 / x.dt, f"{1 / x.dt:.6g}"),
+        Column("jitter (%)", True): lambda x: number(x.jitter, _jitter(x)),
+        Column("input"): attrgetter("excitation.kind"),
+        Column("period (samples)", True): lambda x: number(
+            x.period, str(x.period or "none")
+        ),
+        Column("periods", True): lambda x: number(x.periods, f"{x.periods:.3g}"),
+        Column("band"): words.band,
+        Column(f"input ({unit_text(record.input.unit)})"): lambda x: (
+            f"{x.excitation.low:.3g} to {x.excitation.high:.3g}"
+        ),
+        Column(f"output ({unit_text(record.output.unit)})"): lambda x: (
+            f"{x.low:.3g} to {x.high:.3g}"
+        ),
+        Column("delay (ms)", True): lambda x: number(
+            x.delay_s, f"{1e3 * x.delay_s:.3g} ± {1e3 * x.delay_error_s:.2g}"
+        ),
+        Column("missing", True): lambda x: number(x.missing, str(x.missing)),
+    }
+    return table_of(
         "records",
         "All records. The band holds 99 % of the input's power. The delay is that of "
         "the output behind the loop of play operators: a lag and a late trigger both "
         "show in it.",
-        columns,
-        (Body(rows),),
+        found.facts,
+        shown,
         dense=True,
     )
+
+
+def _jitter(item: Facts) -> str:
+    if item.jitter is None:
+        return "no clock"
+    return words.jitter_text(item.jitter).removesuffix(" %")
 
 
 def _pictures(found: Check) -> list[Picture]:
@@ -134,37 +124,31 @@ def _chart(found: Check) -> Picture | None:
 
 def _revealed(found: Check) -> Table:
     record = found.records[0]
-    rows = [
-        [
-            cell(item.effect),
-            number(item.seen_from, words.percent(item.seen_from)),
-            cell(words.strength(item, record.input.unit, record.output.unit)),
-            cell(item.form.replace("_", " ")),
-            cell(words.mistaken(item) or "nothing"),
-        ]
-        for item in found.revealed
-    ]
-    return _table(
+    units = record.input.unit, record.output.unit
+    shown: dict[Column, Callable[[Seen], Cell | str]] = {
+        Column("effect"): attrgetter("effect"),
+        Column("seen from", True): lambda x: number(
+            x.seen_from, words.percent(x.seen_from)
+        ),
+        Column("that is"): lambda x: words.strength(x, *units),
+        Column("in the form"): lambda x: x.form.replace("_", " "),
+        Column("can be mistaken for"): lambda x: words.mistaken(x) or "nothing",
+    }
+    return table_of(
         "revealed",
-        f"Revealed: {len(rows)} of {len(found.effects)} effects. Until it is as strong "
-        "as the last column says, it can be mistaken for another.",
-        ("effect", "seen from", "that is", "in the form", "can be mistaken for"),
-        rows,
+        f"Revealed: {len(found.revealed)} of {len(found.effects)} effects. Until it is "
+        "as strong as the last column says, it can be mistaken for another.",
+        found.revealed,
+        shown,
+        cards=True,
     )
 
 
 def _hidden(found: Check) -> Table:
-    rows = [[cell(item.effect), cell(item.why)] for item in found.hidden]
-    return _table(
+    return table_of(
         "hidden",
-        f"Not revealed: {len(rows)} of {len(found.effects)} effects.",
-        ("effect", "why"),
-        rows,
+        f"Not revealed: {len(found.hidden)} of {len(found.effects)} effects.",
+        found.hidden,
+        {Column("effect"): attrgetter("effect"), Column("why"): attrgetter("why")},
+        cards=True,
     )
-
-
-def _table(
-    name: str, caption: str, titles: tuple[str, ...], rows: list[list[Cell]]
-) -> Table:
-    columns = tuple(Column(title, title == "seen from") for title in titles)
-    return Table(name, caption, columns, (Body(rows),), cards=True)

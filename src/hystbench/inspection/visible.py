@@ -16,7 +16,6 @@ import numpy as np
 from scipy.optimize import brentq
 
 from hystbench.blocks import registry
-from hystbench.errors import InputError
 from hystbench.gap.fitting.score import record_weight
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.records.scored_samples import ScoredSamples
@@ -24,7 +23,7 @@ from hystbench.gap.simulation.reshape import orthonormal, products, reshapings
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import PARAMETER, PAYS
 from hystbench.inspection.shapes import Shape, shapes_of
-from hystbench.model import Model
+from hystbench.model import Model, check_bounded
 from hystbench.record import FloatArray, Record
 
 TENTH = 0.1
@@ -369,9 +368,5 @@ def runs(base: Model, records: Sequence[Record], hold: str) -> tuple[FloatArray,
     """
     outputs = Simulation(base.chain, tuple(records), hold).output  # type: ignore[arg-type]
     for record, output in zip(records, outputs, strict=True):
-        if not np.isfinite(output).all():
-            raise InputError(
-                f"{base.name}: its output on {record.name} is not finite; expected a "
-                "base that stays bounded"
-            )
+        check_bounded(base.name, output, record.dt, record.name)
     return outputs

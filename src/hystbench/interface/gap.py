@@ -324,13 +324,11 @@ def _evidence(dataset: str | Path | Dataset) -> Evidence:
 @contextmanager
 def _kept(calls: int | None, keep_calls: bool, cache: bool, say: Say) -> Iterator[None]:
     """Let what is computed within the block be kept, as far as that is wanted."""
-    from hystbench.blocks.calls import Calls, counted
-    from hystbench.blocks.kept_outputs import KeptOutputs, folder_of_user
     from hystbench.gap.cache import Remembered, folder, remembering
+    from hystbench.options import counted_calls
 
-    outputs = KeptOutputs(folder_of_user(), say) if keep_calls else None
     store = Remembered(folder(), say) if cache else None
-    with counted(Calls(bound=calls, kept=outputs, say=say)), remembering(store):
+    with counted_calls(calls, keep_calls, say), remembering(store):
         yield
 
 

@@ -20,7 +20,7 @@ HOLDS = 0.01
 
 
 @dataclass(frozen=True)
-class Row:
+class FollowedSine:
     """A sine: its frequency, and what is left of it, as a share of the stroke."""
 
     frequency_hz: float
@@ -35,7 +35,7 @@ Invert = Callable[[FloatArray], FloatArray]
 
 def bandwidth(
     model: Model, stroke: float, dt: float, band_hz: float, invert: Invert
-) -> list[Row]:
+) -> list[FollowedSine]:
     """Invert a model for sines of one stroke, from slow to the edge of the band.
 
     Parameters
@@ -50,7 +50,7 @@ def bandwidth(
 
     Returns
     -------
-    list of Row
+    list of FollowedSine
         The error is that of the model itself, over the second half of the record.
     """
     decades = 2
@@ -65,15 +65,15 @@ def bandwidth(
         try:
             u = invert(reference)
         except InputError as error:
-            rows.append(Row(float(frequency), None, None, str(error)))
+            rows.append(FollowedSine(float(frequency), None, None, str(error)))
             continue
         off = (reference - model.simulate(u, dt))[samples // 2 :]
         left = float(np.sqrt(np.mean(off**2))) / stroke
-        rows.append(Row(float(frequency), left, float(np.abs(u).max())))
+        rows.append(FollowedSine(float(frequency), left, float(np.abs(u).max())))
     return rows
 
 
-def holds_to(rows: list[Row]) -> float | None:
+def holds_to(rows: list[FollowedSine]) -> float | None:
     """Give the highest frequency to which each error is at most :data:`HOLDS`."""
     highest = None
     for row in rows:

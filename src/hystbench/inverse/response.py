@@ -57,7 +57,6 @@ def best_linear(
     dt: float,
     band_hz: float,
     hysteretic: bool = False,
-    seed: int = 1,
 ) -> Response:
     """Estimate the best linear approximation by a sum of sines of random phases.
 
@@ -76,8 +75,6 @@ def best_linear(
     hysteretic : bool
         Whether neighbouring frequencies are averaged: where the map has hysteresis,
         what the strong sines make of it hides the response to the weak ones.
-    seed : int
-        Draws the phases.
 
     Raises
     ------
@@ -85,7 +82,7 @@ def best_linear(
         If no input makes an output of that size, or the map runs away with it.
     """
     lines = np.arange(1, max(int(band_hz * count * dt), 2) + 1)
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(1)
     spectra = np.zeros((DRAWS, count // 2 + 1), complex)
     # Slow motion carries the stroke: the sines fall off with their frequency.
     phases = random.uniform(0, 2 * np.pi, (DRAWS, len(lines)))

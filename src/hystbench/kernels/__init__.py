@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError
+from hystbench.libraries import SIZE, compiled
 from hystbench.record import FloatArray
 
 WIDTH = 8
@@ -25,65 +25,40 @@ LIBRARY = Path(__file__).with_name("_kernels.so")
 _FLOAT64 = np.dtype(np.float64)
 _NOTHING = ctypes.c_char * 0  # a place in memory, of no size
 
-_SIZE, _REAL, _ARRAY = ctypes.c_ssize_t, ctypes.c_double, ctypes.c_void_p
 _SIGNATURES: dict[str, tuple[Any, str]] = {
-    # i: a size, f: a number, a: an array
     "hb_largest": (None, "iaa"),
     "hb_envelope": (None, "iffffaa"),
     "hb_follow_direction": (None, "iaaa"),
     "hb_play": (None, "iiaaaaa"),
-    "hb_prandtl_ishlinskii": (_SIZE, "iiaaaaaa"),
-    "hb_rate_dependent": (_SIZE, "iiaaaaaaaa"),
+    "hb_prandtl_ishlinskii": (SIZE, "iiaaaaaa"),
+    "hb_rate_dependent": (SIZE, "iiaaaaaaaa"),
     "hb_growing_play": (None, "iiaaaaa"),
-    "hb_growing_prandtl_ishlinskii": (_SIZE, "iiaaaaaa"),
-    "hb_lms_rows": (_SIZE, "iiaiaafaaa"),
+    "hb_growing_prandtl_ishlinskii": (SIZE, "iiaaaaaa"),
+    "hb_lms_rows": (SIZE, "iiaiaafaaa"),
     "hb_lms_play": (None, "iiiaaiaaafaaaaia"),
     "hb_play_rows": (None, "iiaaiaaa"),
-    "hb_lms_volterra": (_SIZE, "iiiaaffffaaaaa"),
+    "hb_lms_volterra": (SIZE, "iiiaaffffaaaaa"),
     "hb_state_space": (None, "iiiaaafaaa"),
-    "hb_modes": (_SIZE, "iiaaafaaa"),
-    "hb_states": (_SIZE, "iiaa"),
+    "hb_modes": (SIZE, "iiaaafaaa"),
+    "hb_states": (SIZE, "iiaa"),
     "hb_weighed": (None, "iiiaaa"),
     "hb_decimated": (None, "iiiaaa"),
-    "hb_curve_modes": (_SIZE, "iiiiaaafaa"),
-    "hb_curve_space": (_SIZE, "iiiiaaafaa"),
+    "hb_curve_modes": (SIZE, "iiiiaaafaa"),
+    "hb_curve_space": (SIZE, "iiiiaaafaa"),
     "hb_slew_limit": (None, "ifaa"),
     "hb_acting_field": (None, "ifffaa"),
-    "hb_hardening": (_SIZE, "iffffaa"),
-    "hb_mechanism": (_SIZE, "iiiffaiaaaaaa"),
+    "hb_hardening": (SIZE, "iffffaa"),
+    "hb_mechanism": (SIZE, "iiiffaiaaaaaa"),
     "hb_forces": (None, "ifiaaaaa"),
     "hb_settle": (None, "ffiaaa"),
     "hb_store": (None, "iifffffaaaa"),
     "hb_preisach": (None, "iifaaaaa"),
     "hb_jiles_atherton": (None, "iffffffaaa"),
-    "hb_invert_plays": (_SIZE, "iiifaaaffaaa"),
+    "hb_invert_plays": (SIZE, "iiifaaaffaaa"),
 }
 
 
-def load(path: Path = LIBRARY) -> ctypes.CDLL:
-    """Load the shared library and declare its functions.
-
-    Raises
-    ------
-    InputError
-        If it was not built, or was built for another machine.
-    """
-    try:
-        library = ctypes.CDLL(str(path))
-    except OSError as error:
-        raise InputError(
-            f"{path}: the compiled kernels do not load ({error}); build them with "
-            "`pip install --no-deps --no-build-isolation -e .`"
-        ) from error
-    kinds = {"i": _SIZE, "f": _REAL, "a": _ARRAY}
-    for name, (result, arguments) in _SIGNATURES.items():
-        function = getattr(library, name)
-        function.restype = result
-        function.argtypes = [kinds[kind] for kind in arguments]
-    return library
-
-
-_library = load()
+_library = compiled(LIBRARY, _SIGNATURES, "the compiled kernels")
 KERNELS = {name: getattr(_library, name) for name in _SIGNATURES}
 """Every kernel by its name."""
 

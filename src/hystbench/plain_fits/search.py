@@ -12,7 +12,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import HeldBlock
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.model import Model
-from hystbench.plain_fits.table import LINEAR, Searched
+from hystbench.plain_fits.table import PROPORTIONAL_TO, Searched
 from hystbench.plain_fits.task import Fitted, Task
 from hystbench.record import FloatArray
 
@@ -93,8 +93,8 @@ def search(
         )
         for number in range(max(len(item.starts) for item in items))
     ]
-    if effect in LINEAR:
-        number = names.index(LINEAR[effect])
+    if effect in PROPORTIONAL_TO:
+        number = names.index(PROPORTIONAL_TO[effect])
         starts = _scaled(task, starts, number, residual, low[number], high[number])
     found = [
         least_squares(

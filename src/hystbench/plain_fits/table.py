@@ -139,7 +139,7 @@ def _frequencies(step: float) -> tuple[float, ...]:
 
 
 #: The parameter that the effect is proportional to.
-LINEAR = {
+PROPORTIONAL_TO = {
     "resonance": "participation",
     "friction": "coulomb",
     "creep": "magnitudes",

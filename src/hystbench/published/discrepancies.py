@@ -190,13 +190,13 @@ def chirp_rate(text: Text) -> Iterator[AuditRow]:
 
 
 def crossings(
-    envelope: dict[str, float], low: float, high: float, step: float = 1e-5
+    envelope: dict[str, float], low: float, high: float
 ) -> tuple[tuple[float, float, float], ...]:
     """Find where gamma_l <= gamma_r: start, end and the largest excess.
 
-    Scans [low, high] with the given step, so the ends are true to one step.
+    Scans [low, high] in steps of 1e-5, so the ends are true to one step.
     """
-    v: FloatArray = np.linspace(low, high, round((high - low) / step) + 1)
+    v: FloatArray = np.linspace(low, high, round((high - low) / 1e-5) + 1)
     excess = gamma_right(v, envelope) - gamma_left(v, envelope)
     inside = np.flatnonzero(excess >= 0)
     if len(inside) == 0:

@@ -7,15 +7,14 @@ of models; docs/rdgpi.md says what supports it and what does not.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, Literal, NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hystbench.envelope import check_names
+from hystbench.envelope import NamedNumbers
 from hystbench.errors import InputError, nearest
 from hystbench.operators import rate_dependent_prandtl_ishlinskii
 from hystbench.record import FloatArray
@@ -36,7 +35,7 @@ class Path(NamedTuple):
 
 
 @dataclass(frozen=True)
-class RateDependentGPI:
+class RateDependentGPI(NamedNumbers):
     """Prandtl-Ishlinskii model whose thresholds and weights follow the input's rate.
 
     With the rate ``|dv/dt|`` in units of the input per second,
@@ -72,6 +71,8 @@ class RateDependentGPI:
         undefined.
     """
 
+    place: ClassVar[str] = "rdgpi"
+
     alpha1: float
     beta1: float
     lambda1: float
@@ -88,9 +89,7 @@ class RateDependentGPI:
 
     def __post_init__(self) -> None:
         """Refuse parameters that define no model."""
-        for name, value in vars(self).items():
-            if name != "start" and not math.isfinite(value):
-                raise InputError(f"rdgpi.{name}: {value} is not a finite number")
+        self.check_finite()
         if self.start not in STARTS:
             raise InputError(
                 f"rdgpi.start: {self.start!r} unknown; {nearest(self.start, STARTS)}"
@@ -178,22 +177,6 @@ class RateDependentGPI:
         return rate_dependent_prandtl_ishlinskii(
             envelope, envelope, spacing, ratio, self.order + 1, state=state
         )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Give the parameters by name."""
-        return asdict(self)
-
-    @classmethod
-    def from_dict(cls, parameters: Mapping[str, Any]) -> RateDependentGPI:
-        """Make a model from its parameters by name.
-
-        Raises
-        ------
-        InputError
-            If a name is missing or unknown.
-        """
-        check_names(cls, parameters, "rdgpi")
-        return cls(**parameters)
 
 
 PUBLISHED_RDGPI = RateDependentGPI(

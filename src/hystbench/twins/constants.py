@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from statistics import geometric_mean
 from typing import Any
 
-from hystbench.compare.constants import Row
+from hystbench.compare.constants import Ranking
 from hystbench.compare.evidence import Cell
 from hystbench.compare.summary import pairs_in_order
 from hystbench.published import FILTERS
@@ -35,7 +35,7 @@ def vary_constants(
     settings: Settings,
     identified: Mapping[str, Any] | None,
     published: Errors,
-) -> Iterator[Row]:
+) -> Iterator[Ranking]:
     """Run the filters with each zero error, and with each constant tap.
 
     Parameters
@@ -77,7 +77,7 @@ def vary_constants(
             )
             for half in halves
         ]
-        yield Row(
+        yield Ranking(
             twin=twin.name,
             family=twin.family,
             zero_error_mA=1e3 * zero,

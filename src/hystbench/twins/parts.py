@@ -16,6 +16,7 @@ from typing import Any
 
 from hystbench.compare.evidence import ClaimEvidence, Run, identification_of
 from hystbench.errors import InputError, nearest
+from hystbench.files import finite_or_none
 from hystbench.order_errors import OrderError, filters_by_order, order_errors
 from hystbench.record import Record
 from hystbench.twins.experiments import (
@@ -93,7 +94,7 @@ def run(twins: Sequence[Twin], settings: Settings, fitted: Part) -> Part:
             **_on_records(model, job, asked, found),
             "experiments": others,
             "order_sweep": [
-                [point.model, point.order, _finite(point.mse)]
+                [point.model, point.order, finite_or_none(point.mse)]
                 for point in order_errors(swept, by_order)
             ],
         }
@@ -168,7 +169,9 @@ def _on_records(
     runs = run_records(model, job, records, found).values()
     return {
         "runs": [asdict(each) for each in runs],
-        "envelope_errors": [[*cell, _finite(e)] for cell, e in envelopes.items()],
+        "envelope_errors": [
+            [*cell, finite_or_none(e)] for cell, e in envelopes.items()
+        ],
     }
 
 
@@ -176,11 +179,6 @@ def _of(part: Mapping[str, dict[str, Any]], twin: Twin) -> dict[str, Any]:
     if twin.name not in part:
         raise InputError(f"{twin.place}: not run; {nearest(twin.name, part)}")
     return part[twin.name]
-
-
-def _finite(error: float) -> float | None:
-    """JSON has no infinity: a diverged run's error is none."""
-    return error if math.isfinite(error) else None
 
 
 def _infinite(error: float | None) -> float:

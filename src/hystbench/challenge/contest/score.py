@@ -170,6 +170,7 @@ def judge(
     # An effect outside the vocabulary has no name to be called by.
     right, right_strict = _right(kind, hidden, gap["verdict"], named, strict)
     views = gap["where"]
+    retuned = [effect["ratio_retuned_db"] for effect in truth["effects"]]
     return Row(
         solver=solver,
         case=case,
@@ -177,10 +178,7 @@ def judge(
         kind=kind,
         family=truth["family"],
         ratio_db=truth["ratio_db"],
-        ratio_retuned_db=min(
-            (e["ratio_retuned_db"] for e in truth["effects"] if _known(e)),
-            default=None,
-        ),
+        ratio_retuned_db=min((x for x in retuned if x is not None), default=None),
         truth=" ".join(hidden),
         form=" ".join(effect["form"] for effect in truth["effects"]),
         verdict=gap["verdict"],
@@ -205,7 +203,9 @@ def judge(
         where_hit=where_hit(views[0] if views else None, truth["effects"])
         if hidden and not machine
         else None,
-        place_right=names and one is not None and _placed(one, truth["effects"][0])
+        place_right=names
+        and one is not None
+        and one["place"] in PLACES[truth["effects"][0]["place"]]
         if single and machine
         else None,
         shrink=_shrink(truth, gap["gap"]) if hidden else None,
@@ -311,15 +311,6 @@ PLACES = {
     "inside": ("inside", "beside", "around"),
     "behind": ("behind", "sensor"),
 }
-
-
-def _placed(answer: Mapping[str, Any], effect: Mapping[str, Any]) -> bool:
-    """Tell whether an effect is put where it acts."""
-    return answer["place"] in PLACES[effect["place"]]
-
-
-def _known(effect: Mapping[str, Any]) -> bool:
-    return effect["ratio_retuned_db"] is not None
 
 
 def _shrink(truth: Mapping[str, Any], gap: Mapping[str, Any] | None) -> float | None:

@@ -1,33 +1,30 @@
 """The hiding plant's own compiled loops, a library apart from :mod:`hystbench.kernels`.
 
-They share no code with it: what hides an effect and what finds it must not have one
+They share no loop with it: what hides an effect and what finds it must not have one
 mistake in common.
 """
 
 from __future__ import annotations
 
-import ctypes
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError
+from hystbench.libraries import SIZE, compiled
 from hystbench.record import FloatArray
 
 LIBRARY = Path(__file__).with_name("_plant.so")
 
-_SIZE, _REAL, _ARRAY = ctypes.c_ssize_t, ctypes.c_double, ctypes.c_void_p
 _SIGNATURES: dict[str, tuple[Any, str]] = {
-    # i: a size, f: a number, a: an array
-    "hc_diffusion": (_SIZE, "iiiffaa"),
+    "hc_diffusion": (SIZE, "iiiffaa"),
     "hc_lag": (None, "iffaa"),
     "hc_oscillator": (None, "iffffaa"),
     "hc_slew": (None, "ifaa"),
     "hc_joint": (None, "ifaa"),
     "hc_stick_slip": (None, "ifffaa"),
     "hc_generalized_plays": (None, "iiaaaaaaa"),
-    "hc_everett": (_SIZE, "iiifaaaa"),
+    "hc_everett": (SIZE, "iiifaaaa"),
     "hc_jiles_atherton": (None, "ifffffaaa"),
     "hc_mass": (None, "ifffffaaaaaa"),
     "hc_impedance": (None, "ifaaa"),
@@ -35,30 +32,7 @@ _SIGNATURES: dict[str, tuple[Any, str]] = {
 }
 
 
-def load(path: Path = LIBRARY) -> ctypes.CDLL:
-    """Load the shared library and declare its functions.
-
-    Raises
-    ------
-    InputError
-        If it was not built, or was built for another machine.
-    """
-    try:
-        library = ctypes.CDLL(str(path))
-    except OSError as error:
-        raise InputError(
-            f"{path}: the plant's compiled loops do not load ({error}); build them "
-            "with `pip install --no-deps --no-build-isolation -e .`"
-        ) from error
-    kinds = {"i": _SIZE, "f": _REAL, "a": _ARRAY}
-    for name, (result, arguments) in _SIGNATURES.items():
-        function = getattr(library, name)
-        function.restype = result
-        function.argtypes = [kinds[kind] for kind in arguments]
-    return library
-
-
-_library = load()
+_library = compiled(LIBRARY, _SIGNATURES, "the plant's compiled loops")
 
 
 def call(name: str, *arguments: FloatArray | float | int) -> int:

@@ -19,7 +19,7 @@ from hystbench.record import FloatArray
 #: Least steps of the fine grid a sample, and least steps a second.
 OVERSAMPLING, LEAST_RATE = 8, 8000.0
 
-Excitation = Callable[[FloatArray], FloatArray]
+Command = Callable[[FloatArray], FloatArray]
 Act = Callable[[Stage, FloatArray], FloatArray]
 
 
@@ -33,9 +33,7 @@ class Place(NamedTuple):
 
 
 @lru_cache(maxsize=16)
-def _grid(
-    excitation: Excitation, count: int, dt: float
-) -> tuple[FloatArray, FloatArray]:
+def _grid(excitation: Command, count: int, dt: float) -> tuple[FloatArray, FloatArray]:
     """Compute time and command, which a case asks for once a plant that it tries."""
     time: FloatArray = np.arange(count, dtype=np.float64) * dt
     u = excitation(time)
@@ -56,14 +54,6 @@ class Mode:
     frequency_hz: float
     damping_ratio: float
     participation: float
-
-    def parameters(self) -> dict[str, float]:
-        """Give the three values by name."""
-        return {
-            "frequency_hz": self.frequency_hz,
-            "damping_ratio": self.damping_ratio,
-            "participation": self.participation,
-        }
 
 
 @dataclass(frozen=True)
@@ -87,7 +77,7 @@ class Actuator:
     seed: int
 
     def read(
-        self, excitation: Excitation, dt: float, samples: int, record: int
+        self, excitation: Command, dt: float, samples: int, record: int
     ) -> FloatArray:
         """Compute what the sensor gives to its converter, without noise.
 

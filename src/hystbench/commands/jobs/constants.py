@@ -1,6 +1,6 @@
 """``hystbench job constants``: the ranking with other constants."""
 
-from hystbench.compare.constants import Row
+from hystbench.compare.constants import Ranking
 from hystbench.compare.rows import four_digits, names_of, write_fields
 from hystbench.job import In, Json, Out, Settings, job
 from hystbench.published import load_errors
@@ -23,4 +23,4 @@ def constants(
         for twin in read_twins(twins)
         for row in vary_constants(twin, settings, identified, published)
     ]
-    write_fields(out, names_of(Row), rows, four_digits)
+    write_fields(out, names_of(Ranking), rows, four_digits)

@@ -88,12 +88,8 @@ def read_claim(row: Mapping[str, Any]) -> Claim:
     )
 
 
-def _read_table() -> tuple[Claim, ...]:
-    text = files(__package__).joinpath("claims.yaml").read_text(encoding="utf-8")
-    return tuple(map(read_claim, parse_yaml(text, "claims.yaml")))
-
-
-CLAIMS = _read_table()
+_TABLE = files(__package__).joinpath("claims.yaml").read_text(encoding="utf-8")
+CLAIMS = tuple(map(read_claim, parse_yaml(_TABLE, "claims.yaml")))
 
 
 def judge_all(

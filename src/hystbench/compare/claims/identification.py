@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from hystbench.compare.claims.claim import NotTestable, Numbers
-from hystbench.compare.evidence import ClaimEvidence, Identification
+from hystbench.compare.evidence import ClaimEvidence, IdentifiedLoop
 from hystbench.published.equations import Envelope, gamma_left, gamma_right
 from hystbench.record import FloatArray
 
 
-def identified(evidence: ClaimEvidence) -> Identification:
+def identified(evidence: ClaimEvidence) -> IdentifiedLoop:
     """Give the identification.
 
     Raises

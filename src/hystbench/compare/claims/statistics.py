@@ -52,14 +52,14 @@ def _extremes(x: FloatArray) -> NDArray[np.bool_]:
     return np.concatenate(([True], inside, [True]))[: len(x)]
 
 
-def minor_turning_points(x: FloatArray, tolerance: float = 0.1) -> int:
+def minor_turning_points(x: FloatArray) -> int:
     """Count turns inside the range of x: those that close a minor loop.
 
-    A turn is inside where it is farther than ``tolerance`` of the range from both
+    A turn is inside where it is farther than a tenth of the range from both
     ends of the range; turns smaller than half that are passed over.
     """
     bottom, top = float(x.min()), float(x.max())
-    margin = tolerance * (top - bottom)
+    margin = 0.1 * (top - bottom)
     turns = turning_points(x, margin / 2)
     return int(np.sum((turns > bottom + margin) & (turns < top - margin)))
 

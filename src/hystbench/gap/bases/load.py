@@ -25,7 +25,7 @@ from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.cache import records_digest, remembered
 from hystbench.gap.records.evidence import Evidence, check_units
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.model import Model, load_model
+from hystbench.model import Model, check_bounded, load_model
 
 
 def load_base(text: str | Model, evidence: Evidence) -> tuple[Model, str]:
@@ -163,12 +163,7 @@ def _check_bounded(model: Model, evidence: Evidence, place: str) -> None:
     for record in evidence.fit:
         with np.errstate(over="ignore", invalid="ignore"):  # said in our own words
             y = model.simulate(record.u, record.dt)
-        lost = np.flatnonzero(~np.isfinite(y))
-        if len(lost):
-            raise InputError(
-                f"{place}: the output is not finite from {lost[0] * record.dt:g} s of "
-                f"record {record.name} on; expected a model that stays bounded"
-            )
+        check_bounded(place, y, record.dt, f"record {record.name}")
 
 
 def simulator_base(text: str, evidence: Evidence) -> tuple[Model, str]:

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from hystbench.blocks.held import Hold
-from hystbench.errors import InputError
 from hystbench.gap.fitting.state import Free, ModelState
 from hystbench.gap.records.floor import Floor, noise_floor
 from hystbench.gap.records.scored_samples import Compared, ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
-from hystbench.model import Model
+from hystbench.model import Model, check_bounded
 from hystbench.record import FloatArray, Record
 
 
@@ -97,12 +94,7 @@ def check_finite(
         With the model's name, the time and the record.
     """
     for record, simulated in zip(records, outputs, strict=True):
-        lost = np.flatnonzero(~np.isfinite(simulated))
-        if len(lost):
-            raise InputError(
-                f"{name}: the output is not finite from {lost[0] * record.dt:g} s "
-                f"of {record.name} on; expected a model that stays bounded"
-            )
+        check_bounded(name, simulated, record.dt, record.name)
 
 
 def free_numbers(base: Model) -> tuple[Free, ...]:

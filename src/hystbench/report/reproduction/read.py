@@ -38,7 +38,7 @@ class Shown:
 class Reproduction:
     """What a comparison with the paper wrote."""
 
-    cells: list[ComparedCell]
+    cells: Sequence[ComparedCell]
     claims: list[Row]
     on_held_out: list[Row]
     off: list[Row]
