@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -69,7 +69,7 @@ class Hysteresis(Effect):
         amplitude = simulation.largest(0)
         thresholds = [float(x) for x in amplitude * np.arange(OPERATORS) / OPERATORS]
         slope = BEND / amplitude
-        envelope = dict.fromkeys(Envelope.__dataclass_fields__, 0.0)
+        envelope = dict.fromkeys((one.name for one in fields(Envelope)), 0.0)
         envelope |= {"a0": 1 / slope, "a1": slope, "a4": 1 / slope, "a5": slope}
         names = [f"weight {k}" for k in range(1, OPERATORS)]
 
