@@ -10,11 +10,13 @@ import pytest
 from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.effects import effects
 from hystbench.gap.run import closed_gap
+from hystbench.gap.vocabulary import Vocabulary
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record
 
-DT, COUNT, FINE = 0.01, 1500, 8
+DT, COUNT, FINE = 0.01, 1000, 8
 HERTZ, DAMPING, CUBIC, NOISE = 6.0, 0.08, 0.5, 0.002
 LEVELS = (0.15, 0.3, 0.4, 0.2, 0.35, 0.25)
 ZEROS = (0.3, -0.5, 0.15, 0.6, -0.35, 0.45)
@@ -101,9 +103,13 @@ def test_a_level_has_its_zero():
 
 
 def test_the_spring_is_named_beside_both():
+    """Held against its nearest rivals: other forces of the place and the velocity."""
     about = evidence()
     base, _ = load_base("linear", about)
-    found = closed_gap(about, base).decision.content
+    rivals = {"stop", "friction", "asymmetry", "input-delay"}
+    others = set(effects()) - rivals - {"stiffness-hardening"}
+    known = Vocabulary.of(sorted(others), ())
+    found = closed_gap(about, base, vocabulary=known).decision.content
     assert [item["name"] for item in found["effects"]] == ["stiffness-hardening"]
     assert found["verdict"] == "named"
     assert found["record_values"]["kinds"] == ["offset"]
