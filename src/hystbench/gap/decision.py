@@ -64,8 +64,8 @@ NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
 own in every window of any error; and each begins at zero wherever the mass is, so that
 no curve over its place has a meaning."""
 OF_THE_PLACE = "asymmetry"
-"""The same behind a base that may hold a hysteresis. Before a linear one it bends what
-drives the mass, as a valve does that opens more one way."""
+"""Closed as well where the base may hold a hysteresis: it then stands behind it. Before a
+linear base it bends what drives the mass, as a valve does that opens more one way."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,7 +144,9 @@ def search(
         identified = is_identified(base)
 
         def look(start: ModelState) -> Inside | None:
-            return named_inside(base, start, floor.rms, quantities, identified, say)
+            return named_inside(
+                base, start, floor.rms, quantities, identified, say, unnamed_share
+            )
 
         inside = look(start)
         shorter = _without_leads(inside, base, records, hold, quantities, say)

@@ -1,7 +1,8 @@
-"""Every number that can change a verdict, with its meaning.
+"""The numbers that decide a verdict and that several rooms share, with their meaning.
 
-How thoroughly is searched (points of grids, finalists, rounds) stands where the search
-is: more of it finds the same name or a better one.
+What one file alone decides by stands there with its reason, as the worth of a number of
+a base in ``bases/orders.py``. How thoroughly is searched (points of grids, finalists,
+rounds) stands where the search is: more of it finds the same name or a better one.
 """
 
 from __future__ import annotations
@@ -40,8 +41,9 @@ UNNAMED_SHARE = 0.01
 """Of structure that no name accounts for: a tenth of the rms. A user may set it.
 
 An effect that takes less does not matter, and where no more is left in all nothing
-further is looked for; a model that leaves so much more power on
-hold-out records than the base is worse.
+further is looked for. Whatever a user sets, the number here says when two models do the
+same: a host and the base that it stands for, a law and one of fewer numbers, the base
+and a model that leaves more on hold-out records.
 """
 LOOSE = 0.25
 """In all: half of the gap's rms.

@@ -259,7 +259,7 @@ def find_gap(
         Effects that the search must not name.
     with_ : sequence of str
         Effects that are in the model from the start: they are fitted, and are no
-        decision.
+        finding.
     limits : mapping of str to float, optional
         What the next experiment may ask of the actuator: ``low``, ``high``, ``rate``.
     unnamed_share : float

@@ -9,8 +9,8 @@ import pytest
 
 from hystbench.gap.bases.linear import identified_linear
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.effects import effects
+from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.run import closed_gap
 from hystbench.gap.vocabulary import Vocabulary
 from hystbench.quantities import Quantities

@@ -75,16 +75,19 @@ def measured(score, left, *effects):
     return Hypothesis(effects, ("",) * len(effects), Fitted(state, score))
 
 
-@pytest.mark.parametrize(("left", "count"), [(0.02, 2), (0.095, 1)])
+@pytest.mark.parametrize(
+    ("left", "share", "count"), [(0.02, 0.01, 2), (0.095, 0.01, 1), (0.02, 0.1, 1)]
+)
 def test_a_further_effect_that_takes_no_share_of_the_gap_must_be_beyond_doubt(
-    left, count
+    left, share, count
 ):
+    """What matters is what the user says may stay unnamed."""
     found = [
         measured(0.0, 1.0),
         measured(-900.0, 0.1, "friction"),
         measured(-1050.0, left, "friction", "input-delay"),
     ]
-    assert len(chosen(found, 0.0).effects) == count
+    assert len(chosen(found, 0.0, share).effects) == count
 
 
 @pytest.mark.parametrize(

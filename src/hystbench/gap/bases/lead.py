@@ -75,7 +75,7 @@ def leads_left_out(
     say: Say = silent,
     found: Model | None = None,
 ) -> tuple[Record, ...]:
-    """Do so for records; those already without a lead, and all others, stay."""
+    """Leave out the leads of records; one that has no lead stays as it is."""
     if not is_identified(base):
         return records
     held = base.with_hold(hold)

@@ -1,4 +1,4 @@
-"""The effects that can be named, one a module, in the order of the signal's way.
+"""The effects that can be named, one a module, by name.
 
 A new effect is a new module in this package; it is found by its class's ``name``. An
 installed package adds one by an entry point of the group ``hystbench.effects``.

@@ -36,8 +36,20 @@ from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import CERTAIN, FURTHER, UNNAMED_SHARE
 
 
+def for_a_further(taken: float, share: float) -> float:
+    """Give what a further effect must lower the score by.
+
+    One that takes less of the gap than may stay unnamed has to be beyond doubt.
+    """
+    return FURTHER if taken > share else CERTAIN
+
+
 def in_further_modes(
-    found: Hypothesis, offer: Offer, score: Score, say: Say = silent
+    found: Hypothesis,
+    offer: Offer,
+    score: Score,
+    say: Say = silent,
+    share: float = UNNAMED_SHARE,
 ) -> tuple[Hypothesis, tuple[float, ...]]:
     """Let a force act in other modes too, one after the other, while that pays.
 
@@ -52,6 +64,8 @@ def in_further_modes(
         Gives what may be put into the last host of a model.
     score : Score
     say : callable
+    share : float
+        Of the power of the gap: what takes less in a mode does not matter.
 
     Returns
     -------
@@ -60,7 +74,7 @@ def in_further_modes(
         Natural frequencies, in Hz, of the modes that were taken, as they were before.
     """
     modes: list[float] = []
-    while may_gain(found, score) and (more := _in_one_more(found, offer, score)):
+    while may_gain(found, score) and (more := _in_one_more(found, offer, score, share)):
         found, frequency = more
         modes.append(frequency)
         host = found.fitted.state.chain[host_of(found.fitted.state)]
@@ -93,7 +107,7 @@ def further_words(state: ModelState) -> str:
 
 
 def _in_one_more(
-    found: Hypothesis, offer: Offer, score: Score
+    found: Hypothesis, offer: Offer, score: Score, share: float
 ) -> tuple[Hypothesis, float] | None:
     """Put the force into the mode that needs it most; None if it does not pay there."""
     state = found.fitted.state
@@ -124,8 +138,8 @@ def _in_one_more(
         return None
     also = best[0]
     gap = max(state.power(score.floor), score.floor)
-    share = also.fitted.state.share(linear.state, score.floor, gap)
-    pays = FURTHER if share > UNNAMED_SHARE else CERTAIN
+    taken = also.fitted.state.share(linear.state, score.floor, gap)
+    pays = for_a_further(taken, share)
     if also.score > min(linear.score, found.score) - pays:
         return None
     joined = replace(

@@ -19,6 +19,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
 from hystbench.gap.inside.further_modes import (
+    for_a_further,
     further_words,
     in_further_modes,
     with_modes,
@@ -36,7 +37,7 @@ from hystbench.gap.naming.rounds import Candidate, Round
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import may_have_hysteresis
-from hystbench.gap.thresholds import CERTAIN, FURTHER, PAYS, SCALE, UNNAMED_SHARE
+from hystbench.gap.thresholds import PAYS, SCALE, UNNAMED_SHARE
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 
@@ -68,6 +69,7 @@ def named_inside(
     quantities: Quantities,
     identified: bool,
     say: Say = silent,
+    share: float = UNNAMED_SHARE,
 ) -> Inside | None:
     """Find effects inside the dynamics; None where no force pays.
 
@@ -86,6 +88,8 @@ def named_inside(
         Whether the base is the linear model that was identified from the records.
     say : callable
         Told a line of progress at a time.
+    share : float
+        Of the power of the gap: a further effect that takes less does not matter.
     """
     fewer = on_fewer(start, quantities)
     score, score_of_all = (Score.plain(x.sample, floor_rms**2) for x in (fewer, start))
@@ -95,22 +99,23 @@ def named_inside(
     for host in hosts(fewer, quantities, identified, score):
         found = singles(host.fitted, offer, score, say, host.other)
         tried.append((host, found))
-        if not may_gain(chosen(found, score.floor), score):
+        if not may_gain(chosen(found, score.floor, share), score):
             break  # no other host could do better
     if not tried:
         return None
 
     # Together forces are tried in the host that does best with one.
     def least(found: Sequence[Hypothesis]) -> float:
-        return charged(chosen(found, score.floor), found, score.floor)
+        best = chosen(found, score.floor, share)
+        return charged(best, found, score.floor, share)
 
     host, found = min(tried, key=lambda item: least(item[1]))
     found = together(found, offer, score, say)
-    best, alone = chosen(found, score.floor), host.alone
+    best, alone = chosen(found, score.floor, share), host.alone
     if not best.effects:
         say("inside: no force pays")
         return None
-    wider, modes = in_further_modes(best, offer, score, say)
+    wider, modes = in_further_modes(best, offer, score, say, share)
     found, best = [wider if x is best else x for x in found], wider
     if fewer is not start:
         on_all = OnAll.of(start, score_of_all, alone, identified)
@@ -153,7 +158,12 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
     return gain >= PAYS
 
 
-def charged(item: Hypothesis, found: Sequence[Hypothesis], floor: float) -> float:
+def charged(
+    item: Hypothesis,
+    found: Sequence[Hypothesis],
+    floor: float,
+    share: float = UNNAMED_SHARE,
+) -> float:
     """Give the score with what effects have to pay: the first, and each further one.
 
     A further one must take a share of the gap that matters, or be beyond doubt: what is
@@ -161,11 +171,8 @@ def charged(item: Hypothesis, found: Sequence[Hypothesis], floor: float) -> floa
     """
     gap, value = max(found[0].fitted.state.power(floor), floor), item.score
     for before, after in pairwise((found[0], *way_to(item, found))):
-        share = after.fitted.state.share(before.fitted.state, floor, gap)
-        if not before.effects:
-            value += PAYS
-        else:
-            value += FURTHER if share > UNNAMED_SHARE else CERTAIN
+        taken = after.fitted.state.share(before.fitted.state, floor, gap)
+        value += for_a_further(taken, share) if before.effects else PAYS
     return value
 
 
@@ -186,14 +193,16 @@ def way_to(item: Hypothesis, found: Sequence[Hypothesis]) -> list[Hypothesis]:
     return way
 
 
-def chosen(found: Sequence[Hypothesis], floor: float) -> Hypothesis:
+def chosen(
+    found: Sequence[Hypothesis], floor: float, share: float = UNNAMED_SHARE
+) -> Hypothesis:
     """Take the least score with what effects have to pay; of a tie the fewest numbers.
 
     Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
     As many numbers have a weight that turns a little and a spring that grows softer:
     then it is the effect that is offered only where its cause can be.
     """
-    values = [charged(item, found, floor) for item in found]
+    values = [charged(item, found, floor, share) for item in found]
     best = found[int(np.argmin(values))]
     tied = [
         item

@@ -44,7 +44,7 @@ class Grouped:
 
 @dataclass(frozen=True, eq=False)
 class ColumnProducts:
-    """ColumnProducts of all columns with each other and with a signal.
+    """Products of all columns with each other and with a signal.
 
     Parameters
     ----------

@@ -48,11 +48,11 @@ def make_folds(
 ) -> tuple[Fold, ...]:
     """Divide the fit records into folds.
 
-    Three records or more: whole records are held out, in at most five groups.
+    Three records or more: whole records are held back, in at most five groups.
     Records are dealt to the groups in the order of their rate, so that a fold asks
     for rates between those it was fitted to and not for all of the fastest ones.
     Fewer records: each is cut into four contiguous blocks, of whole periods where it
-    has as many, and a fold holds out one block of each record. A guard gap of a tenth
+    has as many, and a fold holds back one block of each record. A guard gap of a tenth
     of a block keeps what a block remembers of its neighbours out of the fit.
 
     Every measured sample judges in exactly one fold.

@@ -1,4 +1,4 @@
-"""A chain of blocks on the fit records: signals before every block, kept."""
+"""A chain of blocks on records: signals before every block, kept."""
 
 from __future__ import annotations
 
