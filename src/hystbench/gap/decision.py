@@ -64,8 +64,8 @@ NOT_IN_WINDOWS = ("drift", "sensor-nonlinearity", "saturation")
 own in every window of any error; and each begins at zero wherever the mass is, so that
 no curve over its place has a meaning."""
 OF_THE_PLACE = "asymmetry"
-"""Closed as well where the base may hold a hysteresis: it then stands behind it. Before a
-linear base it bends what drives the mass, as a valve does that opens more one way."""
+"""Closed as well where the base may hold a hysteresis: it then stands behind it. Before
+a linear base it bends what drives the mass, as a valve does that opens more one way."""
 
 
 @dataclass(frozen=True, kw_only=True)
