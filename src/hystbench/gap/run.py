@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
@@ -18,7 +19,6 @@ from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import run_base, start_state
-from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.inside.named_inside import quantities_if_linear
@@ -126,32 +126,17 @@ def closed_gap(
         If units do not match, the base does not run, or an effect cannot be put in.
     """
     check_units(evidence, base, place)
-    vocabulary = vocabulary.in_device(evidence.device_kind)
-    say = say_in_words(say)
-    evidence = without_lead(evidence, base, "fit", say)
     # Whether the base runs on the inputs held out is known before the search is paid.
     run_base(base, evidence.hold_out, evidence.hold)
     keep_back(evidence)
     decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
-    # From here on models are compared with hold-out records: these choose nothing, and
-    # may take back what was named.
-    evidence = without_lead(evidence, base, "hold_out", say)
-    evidence = _as_found(evidence, decision.base, decision.state, say)
-    shown = outcome(decision, decision.content, evidence)
-    shown = as_asked(shown, decision, evidence, vocabulary, built_in)
+    evidence, shown = shown_on_hold_out(
+        evidence, base, decision, decision.content, vocabulary, built_in, say
+    )
     decision = replace(decision, model=shown.model, content=shown.content)
     return Closed(decision, shown, evidence)
-
-
-def _as_found(
-    evidence: Evidence, base: Model, state: ModelState, say: Say = silent
-) -> Evidence:
-    """Leave out the leads of hold-out records by forces inside, as of fit records."""
-    if not any(isinstance(block, Mechanism) for block in base.chain):
-        return evidence
-    return without_lead(evidence, base, "hold_out", say, augmented(base, state))
 
 
 def found_on_fit(
@@ -164,9 +149,11 @@ def found_on_fit(
 ) -> tuple[Decision, BuiltIn | None]:
     """Put in what is asked for, and find what the fit records say is missing.
 
-    Parameters are those of :func:`closed_gap`, and of the vocabulary what the device
-    can have.
+    Parameters are those of :func:`closed_gap`.
     """
+    say = say_in_words(say)
+    evidence = without_lead(evidence, base, "fit", say)
+    vocabulary = vocabulary.in_device(evidence.device_kind)
     base, built_in = build_in(base, evidence, vocabulary.fixed, say)
     decision = search(
         evidence.name,
@@ -181,6 +168,47 @@ def found_on_fit(
         quantities_if_linear(base, evidence),
     )
     return decision, built_in
+
+
+def shown_on_hold_out(
+    evidence: Evidence,
+    base: Model,
+    fitted: FitResult,
+    decided: Mapping[str, Any],
+    vocabulary: Vocabulary,
+    built_in: BuiltIn | None,
+    say: Say = silent,
+) -> tuple[Evidence, Outcome]:
+    """Compare what was found with the hold-out records, for the first time.
+
+    They choose nothing, and may take back what was named.
+
+    Parameters
+    ----------
+    evidence : Evidence
+    base : Model
+        As it was given.
+    fitted : FitResult
+    decided : mapping
+        What gap.json holds, but for what the hold-out records show.
+    vocabulary : Vocabulary
+    built_in : BuiltIn or None
+    say : callable
+
+    Returns
+    -------
+    evidence : Evidence
+        Without the leads of hold-out records that begin in the middle of a motion.
+    outcome : Outcome
+    """
+    say, found = say_in_words(say), fitted.base
+    evidence = without_lead(evidence, base, "hold_out", say)
+    if any(isinstance(block, Mechanism) for block in found.chain):
+        model = augmented(found, fitted.state)
+        evidence = without_lead(evidence, found, "hold_out", say, model)
+    vocabulary = vocabulary.in_device(evidence.device_kind)
+    shown = outcome(fitted, decided, evidence)
+    return evidence, as_asked(shown, fitted, evidence, vocabulary, built_in)
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:
@@ -268,9 +296,6 @@ def decide_in(
         Effects that may be named, and those that are in the model from the start.
     """
     writes(*(folder / name for name in DECIDED))
-    say = say_in_words(say)
-    evidence = without_lead(evidence, base, "fit", say)
-    vocabulary = vocabulary.in_device(evidence.device_kind)
     decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
@@ -313,24 +338,22 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     kept = read_json(folder / NAMED)
     leads = zip(evidence.fit, kept["leads"], strict=True)
     evidence = replace(evidence, fit=tuple(replace(x, lead=n) for x, n in leads))
-    evidence = without_lead(evidence, base, "hold_out")
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)
     own = OwnValues.of_mapping(decided["record_values"])
     fit = own.taken_off(evidence.fit, evidence.hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
-    evidence = _as_found(evidence, base, state)
     rungs = tuple(
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     )
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(compare(start), floor.rms)
     fitted = FitResult(base, state, floor, box, rungs, own)
-    shown = outcome(fitted, decided, evidence)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
-    vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
-    shown = as_asked(shown, fitted, evidence, vocabulary, built_in)
+    evidence, shown = shown_on_hold_out(
+        evidence, base, fitted, decided, vocabulary, built_in
+    )
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)
