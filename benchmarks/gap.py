@@ -26,8 +26,8 @@ from time import perf_counter, process_time
 from benchmarks.timing import peak_mib, write_table
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.model_score import make_score
-from hystbench.gap.fitting.start import start_state
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import Evidence, load_evidence
 from hystbench.gap.run import closed_gap
@@ -109,7 +109,7 @@ def one_round(evidence: Evidence, model: str, candidates: int, share: float) -> 
     """Rank some of the effects beside the model on the fit records; give the best."""
     base, _ = load_base(model, evidence)
     fit = tuple(cut(record, share) for record in evidence.fit)
-    state, floor = start_state(fit, base, evidence.hold, evidence.noise_rms)
+    state, floor = start_state(fit, base, evidence.input_hold, evidence.noise_rms)
     known = list(effects().values())[:candidates]
     score = make_score(state, floor.rms)
     return rank(state, score, known)[0].effect

@@ -10,9 +10,9 @@ from hystbench.blocks import registry
 from hystbench.gap import cache as module
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.cache import Remembered, remembered, remembering
+from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.serialize import remembered_of
-from hystbench.gap.fitting.start import start_state
 from hystbench.gap.naming.rank import rank
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
@@ -36,7 +36,7 @@ def searched(given, store, offered=FEW):
     evidence, base = given
     with remembering(store):
         state, floor = start_state(
-            evidence.fit, base, evidence.hold, evidence.noise_rms, offered
+            evidence.fit, base, evidence.input_hold, evidence.noise_rms, offered
         )
         ranking = rank(state, make_score(state, floor.rms))
     return [

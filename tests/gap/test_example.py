@@ -107,7 +107,7 @@ def named(settings, twin, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         # What would tell likely effects apart takes long and decides nothing.
         patch.setattr("hystbench.gap.decision.tell_apart", lambda *given: (None, ""))
-        content = search(evidence.name, evidence.fit, base, evidence.hold).content
+        content = search(evidence.name, evidence.fit, base, evidence.input_hold).content
     assert content["verdict"] == "named"
     return {item["name"]: item["parameters"] for item in content["effects"]}
 

@@ -6,8 +6,8 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
+from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.model_score import make_score
-from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.outcome import with_what_was_asked
 from hystbench.gap.naming.built_in import build_in
 from hystbench.gap.naming.rank import rank
@@ -49,7 +49,7 @@ def test_an_effect_that_is_not_offered_is_not_tried(tiny):
     evidence = load_evidence(data)
     offered = ("creep", "sensor-lag")
     state, floor = start_state(
-        evidence.fit, load_model(base), evidence.hold, evidence.noise_rms, offered
+        evidence.fit, load_model(base), evidence.input_hold, evidence.noise_rms, offered
     )
     ranking = rank(state, make_score(state, floor.rms), folds=False)
     assert {item.effect for item in ranking} == {*offered}

@@ -16,11 +16,11 @@ from hystbench.gap.effects import among
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
-from hystbench.gap.fitting.compare import compare
+from hystbench.gap.fitting.base_on_records import start_state
+from hystbench.gap.fitting.compared_records import compared_records
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
-from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.step_error import floor_with_steps, step_error
 from hystbench.gap.fitting.uncertainty import (
@@ -263,9 +263,9 @@ def judge_and_tell(
         named = named.taken_back()
         left = what_is_left(start, named.state, floor.rms)
     records, state = start.records, named.state
-    compared = compare(start)
+    compared = compared_records(start)
     box = black_box(compared, floor.rms)
-    after = compared if state is start else compare(state)
+    after = compared if state is start else compared_records(state)
     lone = lone_share([item.residual for item in after])
     differs = unrepeated(after, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, unnamed_share)

@@ -15,10 +15,10 @@ from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
 from hystbench.gap.decision import Decision, search
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.compare import compare
+from hystbench.gap.fitting.base_on_records import run_base, start_state
+from hystbench.gap.fitting.compared_records import compared_records
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
-from hystbench.gap.fitting.start import run_base, start_state
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.inside.named_inside import quantities_if_linear
@@ -127,16 +127,16 @@ def closed_gap(
     """
     check_units(evidence, base, place)
     # Whether the base runs on the inputs held out is known before the search is paid.
-    run_base(base, evidence.hold_out, evidence.hold)
+    run_base(base, evidence.hold_out, evidence.input_hold)
     keep_back(evidence)
     decision, built_in = found_on_fit(
         evidence, base, limits, say, unnamed_share, vocabulary
     )
-    evidence, shown = shown_on_hold_out(
+    evidence, result = shown_on_hold_out(
         evidence, base, decision, decision.content, vocabulary, built_in, say
     )
-    decision = replace(decision, model=shown.model, content=shown.content)
-    return Closed(decision, shown, evidence)
+    decision = replace(decision, model=result.model, content=result.content)
+    return Closed(decision, result, evidence)
 
 
 def found_on_fit(
@@ -159,7 +159,7 @@ def found_on_fit(
         evidence.name,
         evidence.fit,
         base,
-        evidence.hold,
+        evidence.input_hold,
         evidence.noise_rms,
         limits,
         say,
@@ -341,14 +341,14 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)
     own = OwnValues.of_mapping(decided["record_values"])
-    fit = own.taken_off(evidence.fit, evidence.hold)
+    fit = own.taken_off(evidence.fit, evidence.input_hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
     rungs = tuple(
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     )
-    start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
-    box = black_box(compare(start), floor.rms)
+    start, _ = start_state(fit, base, evidence.input_hold, evidence.noise_rms)
+    box = black_box(compared_records(start), floor.rms)
     fitted = FitResult(base, state, floor, box, rungs, own)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None

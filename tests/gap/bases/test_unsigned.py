@@ -68,7 +68,7 @@ def test_the_sensor_is_named_and_the_rest_is_noise():
     found, _ = evidence(np.abs)
     base, note = load_base("linear", found)
     assert "a sign that the sensor may not show" in note
-    answer = search("drive", found.fit, base, found.hold)
+    answer = search("drive", found.fit, base, found.input_hold)
     (effect,) = answer.content["effects"]
     assert effect["name"] == "sensor-nonlinearity"
     assert effect["blocks"] == ["unsigned-sensor"]

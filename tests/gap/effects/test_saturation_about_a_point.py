@@ -27,7 +27,7 @@ def test_a_strong_one_behind_an_identified_base_is_named_and_leaves_noise():
         records.append(Record(f"run-{k}", DT, u, y, FLOW, ACID, "measured", "fit"))
     evidence = Evidence("mixer", tuple(records), (), "zero-order")
     base, _ = load_base("linear", evidence)
-    answer = search("mixer", evidence.fit, base, evidence.hold)
+    answer = search("mixer", evidence.fit, base, evidence.input_hold)
     (effect,) = answer.content["effects"]
     assert effect["name"] == "saturation"
     left = [record.y - answer.model.simulate(record.u, record.dt) for record in records]

@@ -10,10 +10,10 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Declined
+from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
-from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.variant_search import Attempt, coarse
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.model import load_model
@@ -29,7 +29,9 @@ def tiny(tmp_path_factory):
     data, base = write_tiny(tmp_path_factory.mktemp("tiny"))
     evidence = load_evidence(data, "fit")
     model = load_model(base)
-    return model, *start_state(evidence.fit, model, evidence.hold, evidence.noise_rms)
+    return model, *start_state(
+        evidence.fit, model, evidence.input_hold, evidence.noise_rms
+    )
 
 
 CHAINED = sorted(name for name, item in effects().items() if item.place != "inside")

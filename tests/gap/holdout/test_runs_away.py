@@ -12,9 +12,9 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.compare import compare
+from hystbench.gap.fitting.base_on_records import start_state
+from hystbench.gap.fitting.compared_records import compared_records
 from hystbench.gap.fitting.edit_chain import with_effect
-from hystbench.gap.fitting.start import start_state
 from hystbench.gap.holdout.show import FAR, FitResult, bounded, reach, score_hold_out
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung
@@ -196,7 +196,7 @@ def test_what_is_beyond_any_use_runs_away_though_it_is_a_number(size):
     u = np.where(np.arange(600) < 300, 0.5, size)
     held = (record(u, 12 * u, name="far", use="hold-out"),)
     rungs = (Rung("base", start), Rung("asymmetry", after))
-    box = black_box(compare(start), floor.rms)
+    box = black_box(compared_records(start), floor.rms)
     shown = score_hold_out(FitResult(base, after, floor, box, rungs), held)
     assert [item["record"] for item in shown.content["runs_away"]] == ["far"]
     assert shown.content["runs_away"][0]["from_s"] == pytest.approx(0.3)
@@ -214,7 +214,7 @@ def test_a_simulator_may_refuse_what_an_effect_sends_it():
         for name, size in (("near", 0.5), ("far", 1.0))
     )
     rungs = (Rung("base", start), Rung("asymmetry", after))
-    box = black_box(compare(start), floor.rms)
+    box = black_box(compared_records(start), floor.rms)
     shown = score_hold_out(FitResult(base, after, floor, box, rungs), held)
     (away,) = shown.content["runs_away"]
     assert (away["record"], away["from_s"]) == ("far", 0.0)

@@ -249,7 +249,9 @@ def test_a_window_knows_which_of_its_samples_were_measured():
 
 def test_where_the_place_does_not_matter_no_force_depends_on_it():
     moved = Moved(reach=1.0, speed=1.0, force=1.0, step=DT, anywhere=True)
-    offered = {name for name, item in effects().items() if any(item.inside(moved))}
+    offered = {
+        name for name, item in effects().items() if any(item.in_mechanism(moved))
+    }
     assert {"friction", "drag", "hysteretic-force"} <= offered
     assert not {"stop", "stiffness-hardening", "gravity"} & offered
 
@@ -257,9 +259,11 @@ def test_where_the_place_does_not_matter_no_force_depends_on_it():
 def test_what_is_offered_does_not_need_a_spring_that_pulls_back():
     """The stiffness of an impedance that was fitted may be a little below zero."""
     moved = Moved(reach=1.0, speed=1.0, force=1.0, step=DT, stiffness=-0.3)
-    offered = {name for name, item in effects().items() if any(item.inside(moved))}
+    offered = {
+        name for name, item in effects().items() if any(item.in_mechanism(moved))
+    }
     assert {"friction", "hysteretic-force", "slider-with-gap"} <= offered
-    assert all(len(list(effects()[name].inside(moved))) for name in offered)
+    assert all(len(list(effects()[name].in_mechanism(moved))) for name in offered)
 
 
 def test_a_weight_that_swings_far_is_told_as_gravity_and_not_as_a_softer_spring():

@@ -9,7 +9,7 @@ import yaml
 from hystbench.blocks.calls import Calls, counted
 from hystbench.errors import InputError
 from hystbench.gap.bases.load import load_base
-from hystbench.gap.fitting.start import start_state
+from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.naming.forecast_calls import calls_of_a_round, foretell
 from hystbench.gap.records.evidence import Evidence
 from tests.gap.closing import close_gap
@@ -160,7 +160,7 @@ def test_what_slow_work_will_take_is_told_before():
     given = evidence()
     with counted(Calls(bound=700, clock=Clock(0.1))) as calls:
         base, _ = load_base(NAME, given)
-        start, _ = start_state(given.fit, base, given.hold)
+        start, _ = start_state(given.fit, base, given.input_hold)
         foretell(start, said.append)
         one = calls_of_a_round(start)
     (line,) = said
@@ -175,7 +175,7 @@ def test_quick_work_is_not_told_of():
     given = evidence()
     with counted(Calls(clock=Clock(1e-4))):
         base, _ = load_base(NAME, given)
-        start, _ = start_state(given.fit, base, given.hold)
+        start, _ = start_state(given.fit, base, given.input_hold)
         foretell(start, said.append)
     assert not said
 
@@ -183,5 +183,5 @@ def test_quick_work_is_not_told_of():
 def test_a_model_without_a_function_has_no_calls():
     given = evidence()
     base, _ = load_base("linear", given)
-    start, _ = start_state(given.fit, base, given.hold)
+    start, _ = start_state(given.fit, base, given.input_hold)
     assert calls_of_a_round(start) == 0

@@ -35,7 +35,7 @@ def test_roles_hold_and_noise_come_from_the_file(tmp_path):
     found = load_evidence(folder)
     assert [item.name for item in found.fit] == ["a"]
     assert [item.name for item in found.hold_out] == ["b"]
-    assert (found.hold, found.noise_rms) == ("zero-order", 0.01)
+    assert (found.input_hold, found.noise_rms) == ("zero-order", 0.01)
     assert (found.input, found.output) == (
         Channel("current", "A"),
         Channel("displacement", "um"),

@@ -6,7 +6,7 @@ from hystbench import options
 from hystbench.files import write_text
 from hystbench.gap.bases.kinds import IDENTIFIED, check_base
 from hystbench.gap.bases.load import given_base
-from hystbench.gap.fitting.start import run_base
+from hystbench.gap.fitting.base_on_records import run_base
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.job import DatasetFile, Out, job
 
@@ -23,7 +23,7 @@ def gap_check(dataset: DatasetFile, *, model: str, out: Out | None = None) -> No
     options.warn(evidence.warnings)
     if model not in IDENTIFIED:
         base, _ = given_base(model, evidence)
-        run_base(base, evidence.hold_out, evidence.hold)
+        run_base(base, evidence.hold_out, evidence.input_hold)
     told = (
         f"{evidence.name}: {len(evidence.fit)} records to fit and "
         f"{len(evidence.hold_out)} held out can be used"

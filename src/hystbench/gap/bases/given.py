@@ -48,7 +48,7 @@ def split_given(model: Model, evidence: Evidence) -> tuple[Model, str]:
         return model, ""
     scale, ratio = _ratio(block)
     whole = tuple(record.counted for record in evidence.fit)
-    task = HalvesError(evidence.fit, whole, evidence.hold, scale, block.start)
+    task = HalvesError(evidence.fit, whole, evidence.input_hold, scale, block.start)
     ends = [task.bent(way) for way in ways_at_ends(ratio)]
     ways = [task.bent(way) for way in ways_inside(ratio)]
     best = min(ways, key=lambda way: way.cost, default=None)
@@ -114,7 +114,7 @@ def _with(model: Model, blocks: tuple[Block, ...]) -> Model:
 
 
 def _same(model: Model, split: Model, evidence: Evidence) -> bool:
-    model, split = (each.with_hold(evidence.hold) for each in (model, split))
+    model, split = (each.with_hold(evidence.input_hold) for each in (model, split))
     for record in evidence.fit:
         y, other = (each.simulate(record.u, record.dt) for each in (model, split))
         if float(np.abs(y - other).max()) > SAME * float(np.ptp(y)):

@@ -61,7 +61,7 @@ def without_lead(
         return evidence
     of_use = evidence.fit if use == "fit" else evidence.hold_out
     told = use.replace("_", "-")
-    records = leads_left_out(of_use, base, evidence.hold, told, say, found)
+    records = leads_left_out(of_use, base, evidence.input_hold, told, say, found)
     if use == "fit":
         return replace(evidence, fit=records)
     return replace(evidence, hold_out=records)

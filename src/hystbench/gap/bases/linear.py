@@ -15,7 +15,7 @@ from hystbench.blocks.input_delay import InputDelay
 from hystbench.errors import InputError
 from hystbench.gap.bases.orders import (
     HIGHEST,
-    PAYS,
+    NUMBER_PAYS,
     ROUNDS,
     Found,
     Judged,
@@ -101,7 +101,7 @@ def identified_linear(evidence: Evidence) -> Linear:
             constant = best.constant_rms
             best = other._replace(note=note, constant_rms=constant, signed=True)
     fold, still = best.fold_rms, best.constant_rms
-    if fold > (1 - PAYS) * still:
+    if fold > (1 - NUMBER_PAYS) * still:
         raise InputError(
             f"{evidence.name}: linear: on folds of the fit records the best linear "
             f"model is {fold:.4g} {unit} off, a constant {still:.4g}; expected an "
@@ -187,7 +187,7 @@ def linear_of(evidence: Evidence) -> Linear:
         half = "half " if abs(orders.late) < 1 else ""
         when = "late" if orders.late > 0 else "early"
         note += f"; its input is taken {half}a sample {when}"
-        delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.hold)
+        delay = InputDelay.by(orders.late * evidence.fit[0].dt, evidence.input_hold)
         chain = (delay, *chain)
     model = Model(LINEAR, evidence.input, evidence.output, chain)
     return Linear(model, note, fit, fold, still)
@@ -200,7 +200,7 @@ def _coarse(evidence: Evidence) -> Evidence:
     """
     if evidence.quantities.causality == "motion to force":
         return evidence
-    records = coarser(evidence.fit, evidence.hold)
+    records = coarser(evidence.fit, evidence.input_hold)
     if all(a is b for a, b in zip(records, evidence.fit, strict=True)):
         return evidence
     return replace(evidence, fit=records)

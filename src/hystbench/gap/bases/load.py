@@ -71,7 +71,7 @@ def _kept(
         lambda: [
             *about,
             records_digest(evidence.fit),
-            evidence.hold,
+            evidence.input_hold,
             evidence.identification,
         ],
         compute,
@@ -152,7 +152,7 @@ def checked_base(model: Model, place: str, evidence: Evidence) -> Model:
         )
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
-    held = model.with_hold(evidence.hold)
+    held = model.with_hold(evidence.input_hold)
     _check_bounded(held, evidence, place)
     check_repeats(held, evidence)
     return model
@@ -228,7 +228,7 @@ def check_repeats(model: Model, evidence: Evidence) -> None:
         if not isinstance(block, Simulator):
             continue
         inputs = [
-            Simulation(model.chain[:k], (item,), evidence.hold).output[0]
+            Simulation(model.chain[:k], (item,), evidence.input_hold).output[0]
             if k
             else item.u
             for item in evidence.fit

@@ -37,7 +37,7 @@ BEGUN_DAMPING = 0.01
 PEAKS = 3
 #: A number is needed if it lowers both errors, of fit and of folds, by more than this
 #: share: a gain on folds alone is their luck.
-PAYS = 0.02
+NUMBER_PAYS = 0.02
 #: A further one of many modes has a band of its own, of which it may take all while it
 #: takes little of the whole: it is needed from this share on.
 MODE_PAYS = 0.005
@@ -68,7 +68,7 @@ class Judged(Protocol):
         """Error on the folds."""
 
 
-def lowers(better: Judged, item: Judged, share: float = PAYS) -> bool:
+def lowers(better: Judged, item: Judged, share: float = NUMBER_PAYS) -> bool:
     """Tell whether one model lowers both errors of another by more than a share."""
     most = 1 - share
     return better.fit < most * item.fit and better.folds < most * item.folds
@@ -122,7 +122,7 @@ class Orders:
         each = ((item.u, item.y, item.dt) for item in self.evidence.fit)
         if self.evidence.own_offsets:  # a constant makes one, but for a transient
             each = ((u - u.mean(), y - y.mean(), dt) for u, y, dt in each)
-        return Spectra.of([Stretch(*item) for item in each], self.evidence.hold)
+        return Spectra.of([Stretch(*item) for item in each], self.evidence.input_hold)
 
     @cached_property
     def decay_s(self) -> float | None:
@@ -142,7 +142,7 @@ class Orders:
         evidence = self.evidence
         task = OutputError(
             evidence.fit,
-            evidence.hold,
+            evidence.input_hold,
             self.spectra.scale,
             own_offsets=evidence.own_offsets,
             held=int(self.decay_s is not None),
@@ -204,7 +204,7 @@ class Orders:
 
     def moved(self, late: float, step: float) -> Orders:
         """Give them with the input so many sampling intervals of a step later."""
-        block = InputDelay.by(late * step, self.evidence.hold)
+        block = InputDelay.by(late * step, self.evidence.input_hold)
         fit = tuple(
             replace(item, u=block.simulate(item.u, item.u, item.dt))
             for item in self.evidence.fit

@@ -93,9 +93,9 @@ def impedance(
     if about.causality != "motion to force" or about.input not in INPUTS:
         return None
     signals = [
-        Impedance.columns(about.input, evidence.hold, record.u, record.dt)
+        Impedance.columns(about.input, evidence.input_hold, record.u, record.dt)
         for record in evidence.fit
     ]
     found = summed(signals, evidence, whole, folds)
     numbers: dict[str, Any] = dict(zip(NUMBERS, found.numbers, strict=True))
-    return found, Impedance(**numbers, input=about.input, hold=evidence.hold)
+    return found, Impedance(**numbers, input=about.input, hold=evidence.input_hold)

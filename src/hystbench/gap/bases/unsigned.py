@@ -94,7 +94,7 @@ def _signed(evidence: Evidence, signs: tuple[FloatArray, ...]) -> Evidence:
 def _simulated(orders: Orders) -> list[FloatArray]:
     """Fit a ratio of one order and simulate it, one output a record."""
     evidence, first = orders.evidence, fit_ratio(orders.spectra, ORDER, ORDER - 1)
-    task = OutputError(evidence.fit, evidence.hold, orders.spectra.scale)
+    task = OutputError(evidence.fit, evidence.input_hold, orders.spectra.scale)
     task = with_plainest_start(task, first)
     return task.simulate(task.refined(first, orders.whole, FEW))
 

@@ -13,7 +13,7 @@ from hystbench.gap.effects.base import (
     Values,
     Variant,
     logarithmic,
-    places_inside,
+    places_between_halves,
 )
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
@@ -39,7 +39,7 @@ class Asymmetry(Effect):
         The field has a square of its own (a magnetic circuit about its working point),
         a constant bias, or the square of it that lags (a butterfly).
         """
-        for place in (simulation.behind_hysteresis, *places_inside(simulation)):
+        for place in (simulation.behind_hysteresis, *places_between_halves(simulation)):
             yield self._square(simulation, place, "square")
         if simulation.hysteresis is not None:
             yield self._bias(simulation, simulation.hysteresis)
@@ -48,7 +48,7 @@ class Asymmetry(Effect):
         if simulation.loop is None:
             yield from self._exponential(simulation)
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer two curves before the mechanism.
 
         The square, as of a force by the square of a current, and an exponential curve.

@@ -26,7 +26,7 @@ class Backlash(Effect):
             grids={"half_width": logarithmic(3e-4 * largest, largest / 3, 4)},
         )
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer narrow and wide play behind the mechanism."""
         for share in (0.01, 0.1):
             yield self.curve("behind", half_width=share * moved.shown)

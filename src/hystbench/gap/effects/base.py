@@ -208,7 +208,7 @@ class Effect(ABC):
 
         return Variant(
             self.name,
-            INSIDE if place in places_inside(simulation) else self.place,
+            INSIDE if place in places_between_halves(simulation) else self.place,
             form,
             start,
             build,
@@ -246,8 +246,8 @@ class Effect(ABC):
             charge=charge,
         )
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
-        """Give the laws by which the effect acts inside a mechanism, with starts.
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
+        """Give the laws by which it acts in, before or behind a mechanism, with starts.
 
         Parameters
         ----------
@@ -265,7 +265,7 @@ class Effect(ABC):
         """
         yield from ()
 
-    def beside_mechanism(
+    def around_mechanism(
         self, moved: Moved, name: str, place: Literal["before", "behind"], **given: str
     ) -> Law:
         """Give the effect's filter before or behind a mechanism.
@@ -311,7 +311,7 @@ class Effect(ABC):
         raise NotImplementedError
 
 
-def places_inside(simulation: Simulation) -> list[int]:
+def places_between_halves(simulation: Simulation) -> list[int]:
     """Give the places between the transfer functions of a chain: before all but one.
 
     A linear base that is written as two in series may hide a static nonlinearity
@@ -407,5 +407,5 @@ class ForceEffect(InsideEffect):
     """An effect that acts inside a mechanism."""
 
     @abstractmethod
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Give the laws, as every effect may."""

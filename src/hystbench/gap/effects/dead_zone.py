@@ -8,8 +8,8 @@ from hystbench.gap.effects.base import (
     Effect,
     Variant,
     logarithmic,
+    places_between_halves,
     places_in_drive,
-    places_inside,
 )
 from hystbench.gap.effects.law import Law, Moved
 from hystbench.gap.simulation.simulation import Simulation
@@ -24,12 +24,12 @@ class DeadZone(Effect):
 
     def variants(self, simulation: Simulation) -> Iterator[Variant]:
         """Offer the dead zone in the drive, and inside a linear base."""
-        for place in (*places_in_drive(simulation), *places_inside(simulation)):
+        for place in (*places_in_drive(simulation), *places_between_halves(simulation)):
             largest = simulation.largest(place)
             widths = logarithmic(1e-3 * largest, 0.5 * largest, 4)
             yield self.inserted(simulation, place, grids={"half_width": widths})
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer narrow and wide ones before the mechanism."""
         for share in (0.02, 0.15):
             yield self.curve("before", half_width=share * moved.given)

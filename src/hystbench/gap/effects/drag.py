@@ -15,7 +15,7 @@ class Drag(ForceEffect):
     name = "drag"
     shows = "rate"
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it weak."""
         block = DragBlock(coefficient=0.03 * moved.force / moved.speed**2)
         yield Law("", block, ("coefficient",))

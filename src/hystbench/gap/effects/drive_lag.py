@@ -22,6 +22,6 @@ class DriveLag(Effect):
         for place in places_in_drive(simulation, linear=True):
             yield self.inserted(simulation, place, grids={"time_constant_s": times})
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it before the mechanism."""
-        yield self.beside_mechanism(moved, "time_constant_s", "before")
+        yield self.around_mechanism(moved, "time_constant_s", "before")

@@ -25,7 +25,7 @@ class DriveSaturation(Effect):
             limits = simulation.largest(place) * share
             yield self.inserted(simulation, place, grids={"limit": limits})
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer limits before the mechanism, met seldom and often."""
         for share in (0.9, 0.6):
             yield self.curve("before", limit=share * moved.given)

@@ -41,7 +41,7 @@ class Friction(Effect):
             unit={"coulomb": 1e-3 * simulation.largest(end)},
         )
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer dry friction that holds, or gives way before it slides."""
         for share in (0.03, 0.3):
             dry = FrictionForce(

@@ -16,7 +16,7 @@ class Gravity(ForceEffect):
     shows = "amplitude"
     special = True
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a weight that makes half of the spring, and one that works against it.
 
         The coordinate is an angle. It is counted from the vertical, or from any angle.

@@ -25,7 +25,7 @@ class HystereticForce(ForceEffect):
     laws = ("bouc-wen-force", "iwan-force")
     vanishing = "beta"
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it weak, with short and long ways to yield, or as one that stiffens."""
         names = ("largest", "yield_distance", "sharing")
         for share, way in ((0.03, 0.03), (0.1, 0.3), (0.3, 1.0)):

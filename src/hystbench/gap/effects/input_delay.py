@@ -26,6 +26,6 @@ class InputDelay(Effect):
             },
         )
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it before the mechanism."""
-        yield self.beside_mechanism(moved, "delay_s", "before")
+        yield self.around_mechanism(moved, "delay_s", "before")

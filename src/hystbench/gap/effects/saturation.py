@@ -14,7 +14,7 @@ from hystbench.gap.effects.base import (
     Values,
     Variant,
     logarithmic,
-    places_inside,
+    places_between_halves,
 )
 from hystbench.gap.simulation.simulation import Simulation
 
@@ -40,7 +40,7 @@ class Saturation(Effect):
         Of the output, or of the field that drives the hysteresis. A linear base does
         not say where in it the material is: before it, inside or behind it.
         """
-        places = {simulation.behind_hysteresis, *places_inside(simulation)}
+        places = {simulation.behind_hysteresis, *places_between_halves(simulation)}
         if simulation.loop is None and not _is_static(simulation):
             places |= {simulation.behind_mechanics, _before_the_offset(simulation)}
             yield self._about_a_point(simulation, _before_the_offset(simulation))

@@ -52,7 +52,7 @@ class SensorNonlinearity(Effect):
                 form="magnitude",
             )
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer it behind the mechanism with both terms, the cube of either sign."""
         for sign in (1.0, -1.0):
             quadratic, cubic = 0.03 / moved.shown, sign * 0.03 / moved.shown**2

@@ -16,7 +16,7 @@ class SliderWithGap(ForceEffect):
     shows = "branch"
     vanishing = "gap"
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer narrow and wide clearances."""
         names = ("contact_stiffness", "slip_force", "gap")
         for share in (0.03, 0.3):

@@ -52,7 +52,7 @@ class StiffnessHardening(Effect):
         if not found:
             raise Declined("the chain has no mode whose spring could harden")
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer a cube of either sign, a square beside it, and a steep spring."""
         if moved.anywhere:
             return

@@ -16,7 +16,7 @@ class Stop(ForceEffect):
     name = "stop"
     shows = "amplitude"
 
-    def inside(self, moved: Moved) -> Iterator[Law]:
+    def in_mechanism(self, moved: Moved) -> Iterator[Law]:
         """Offer both sides, and either one, met early and late."""
         stiffness = moved.force / moved.reach
         for sides in () if moved.anywhere else SIDES:

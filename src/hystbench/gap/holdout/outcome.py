@@ -14,7 +14,7 @@ from typing import Any
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.start import run_base
+from hystbench.gap.fitting.base_on_records import run_base
 from hystbench.gap.holdout.show import (
     FitResult,
     as_recorded,
@@ -107,7 +107,7 @@ def as_asked(
     content = with_what_was_asked(shown.content, vocabulary)
     if built_in is not None:
         records = evidence.hold_out
-        outputs = run_base(built_in.alone, records, evidence.hold)
+        outputs = run_base(built_in.alone, records, evidence.input_hold)
         mine = as_recorded(fitted.own, records, outputs, fitted.floor)
         nuisance = nuisance_of(fitted.state, fitted.own)
         alone = left_rms(records, mine, nuisance)

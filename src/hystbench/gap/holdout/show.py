@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hystbench.errors import InputError
+from hystbench.gap.fitting.base_on_records import run_base
 from hystbench.gap.fitting.own_values import NONE, OwnValues
-from hystbench.gap.fitting.start import run_base
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.shrink import RecordShrink, Shrink, left_rms, shrink
 from hystbench.gap.judging.black_box import BlackBox

@@ -88,7 +88,9 @@ def laws_for(
         every = {name: tuple(x.stored(filled)) for name, x in among(offered).items()}
     else:
         moved = how_it_moves(host.state, turns)
-        every = {name: tuple(x.inside(moved)) for name, x in among(offered).items()}
+        every = {
+            name: tuple(x.in_mechanism(moved)) for name, x in among(offered).items()
+        }
     return {name: own for name, own in every.items() if own}
 
 

@@ -14,12 +14,12 @@ from typing import Any
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
+from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.start import start_state
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
 from hystbench.gap.fitting.variant_search import Trial
@@ -94,7 +94,9 @@ def build_in(
     """
     if not names:
         return base, None
-    state, floor = start_state(evidence.fit, base, evidence.hold, evidence.noise_rms)
+    state, floor = start_state(
+        evidence.fit, base, evidence.input_hold, evidence.noise_rms
+    )
     # Without directions: a wrong shape of the hysteresis is no excuse here. Numbers are
     # those with which the simulator fits the records best.
     score = Score.plain(state.sample, floor.rms**2)

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.compare import compare
+from hystbench.gap.fitting.compared_records import compared_records
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate import Contribution
 from hystbench.gap.naming.add_effects import Named
@@ -65,7 +65,9 @@ def contributions(
     simulated : mapping of ModelState to list of Compared
         States that were simulated before; any other is simulated here.
     """
-    outputs = [simulated.get(rung.state) or compare(rung.state) for rung in ladder]
+    outputs = [
+        simulated.get(rung.state) or compared_records(rung.state) for rung in ladder
+    ]
     found = []
     for (old, new), (before, after) in zip(
         pairwise(ladder), pairwise(outputs), strict=True

@@ -33,7 +33,7 @@ class Evidence:
         What models are fitted to; folds of these decide what pays.
     hold_out : tuple of Record
         Checked with the others; compared with a model only after all is decided.
-    hold : {"zero-order", "linear", "band-limited"}
+    input_hold : {"zero-order", "linear", "band-limited"}
         How the input moves between samples.
     noise_rms : float, optional
         As declared, in the output's unit.
@@ -53,7 +53,7 @@ class Evidence:
     name: str
     fit: tuple[Record, ...]
     hold_out: tuple[Record, ...]
-    hold: Hold = "band-limited"
+    input_hold: Hold = "band-limited"
     noise_rms: float | None = None
     identification: str | None = None
     simulated_column: str | None = None

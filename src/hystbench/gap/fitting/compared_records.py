@@ -10,7 +10,7 @@ from hystbench.gap.simulation.simulation import Simulation
 from hystbench.record import FloatArray
 
 
-def compare(state: ModelState) -> list[Compared]:
+def compared_records(state: ModelState) -> list[Compared]:
     """Simulate a model on its records, in free run, with what lies beside it."""
     outputs = Simulation(state.chain, state.records, state.hold, fine=True).output
     offsets = _beside_signals(state) if state.beside else None
