@@ -33,9 +33,14 @@ BEHAVIOURS: Mapping[str, str] = {"eddy-diffusion": "diffusion-like lag"}
 @cache
 def causes() -> Mapping[str, Mapping[str, Sequence[DeviceKind]]]:
     """Read the table: by effect, then by cause, the kinds of devices."""
-    table: Mapping[str, Mapping[str, Sequence[DeviceKind]]]
     table = load_yaml(Path(__file__).with_suffix(".yaml"))["causes"]
-    return table
+    return {
+        effect: {
+            cause: DEVICE_KINDS if kinds == ["any"] else kinds
+            for cause, kinds in rows.items()
+        }
+        for effect, rows in table.items()
+    }
 
 
 def causes_of(effect: str, kind: DeviceKind | None = None) -> tuple[str, ...]:

@@ -18,6 +18,9 @@ from hystbench.record import FloatArray, Record
 
 Start = Literal["rest", "settled", "moving", "repeating"]
 STARTS: tuple[Start, ...] = ("rest", "settled", "moving", "repeating")
+CLEARLY = 1.01
+"""The plainest start is taken whose squares of errors are within this factor of the
+best."""
 PASTS = {"moving": TURNED, "repeating": REPEATED}
 """Starts that depend on samples to come, and what came before."""
 
@@ -115,6 +118,23 @@ def stable(denominator: Sequence[float]) -> tuple[float, ...]:
 def possible_starts(records: Sequence[Record]) -> tuple[Start, ...]:
     """Give the starts that records may have: only whole periods repeat."""
     return STARTS if all(record.repeats for record in records) else STARTS[:-1]
+
+
+def plainest_start(costs: Sequence[float]) -> int:
+    """Choose among possible starts, the plainest first, by what each leaves.
+
+    Parameters
+    ----------
+    costs : sequence of float
+        Squares of the errors, in the order of :func:`possible_starts`.
+
+    Returns
+    -------
+    int
+        Place of the first that is as good as the best, to a hundredth.
+    """
+    most = CLEARLY * min(costs)
+    return next(k for k, cost in enumerate(costs) if cost <= most)
 
 
 def path_from(z: FloatArray, start: str) -> tuple[FloatArray, float]:

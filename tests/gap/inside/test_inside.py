@@ -32,7 +32,7 @@ from hystbench.gap.inside.search import (
     starts,
     with_one_fewer,
 )
-from hystbench.gap.records.evidence import decay_of_free_mass, windows
+from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.nuisance import left_over
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.model import Model

@@ -13,7 +13,8 @@ from hystbench.gap.fitting.state import Added
 from hystbench.gap.inside.named_inside import Inside, _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
 from hystbench.gap.naming.add_effects import Named, add_effects
-from hystbench.gap.records.evidence import Evidence, windows
+from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.free_mass import windows
 from hystbench.model import Model
 from hystbench.quantities import Quantities
 from hystbench.record import Channel, Record

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from hystbench.blocks.input_delay import InputDelay
-from hystbench.blocks.transfer_function import possible_starts
+from hystbench.blocks.transfer_function import plainest_start, possible_starts
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import (
     Ratio,
@@ -49,8 +49,6 @@ IN_VAIN = 2
 #: Share of each record at its beginning that does not count: what it remembers of the
 #: time before would pull the poles.
 LEAD = 0.1
-#: The plainest start is taken whose sum of squares is within this factor of the best.
-CLEARLY = 1.01
 #: Steps of least squares on simulation: of all records, then of each fold.
 ROUNDS = 20
 FOLD_ROUNDS = 4
@@ -308,11 +306,7 @@ def with_plainest_start(task: OutputError, ratio: Ratio) -> OutputError:
     everything = [record.counted for record in task.records]
     tasks = [replace(task, start=start) for start in possible_starts(task.records)]
     costs = [task.squares(ratio, everything) for task in tasks]
-    return next(
-        task
-        for task, cost in zip(tasks, costs, strict=True)
-        if cost <= CLEARLY * min(costs)
-    )
+    return tasks[plainest_start(costs)]
 
 
 def behind_the_lead(records: Sequence[Record]) -> tuple[Mask, ...]:

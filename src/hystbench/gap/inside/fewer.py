@@ -10,7 +10,11 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.transfer_function import TransferFunction, possible_starts
+from hystbench.blocks.transfer_function import (
+    TransferFunction,
+    plainest_start,
+    possible_starts,
+)
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -20,9 +24,6 @@ from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray
-
-CLEARLY = 1.01
-"""The plainest start is taken whose squares are within this factor of the best."""
 
 
 def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
@@ -105,9 +106,7 @@ class OnAll:
             float(np.sum((wanted - _simulated(whole, starting(host.chain, own))) ** 2))
             for own in starts
         ]
-        most = CLEARLY * min(costs)
-        chosen = next(x for x, cost in zip(starts, costs, strict=True) if cost <= most)
-        return cls(whole, score, chosen)
+        return cls(whole, score, starts[plainest_start(costs)])
 
     def state(self, found: ModelState) -> ModelState:
         """Give a model with all samples, as it was fitted to fewer."""

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
-from numpy.typing import NDArray
 
 from hystbench.blocks.held import Hold
 from hystbench.dataset import load_dataset
@@ -15,10 +12,11 @@ from hystbench.device_kinds import DeviceKind
 from hystbench.doubts import doubts
 from hystbench.errors import InputError
 from hystbench.gap.records import folds, nuisance
+from hystbench.gap.records.free_mass import decay_of_free_mass, windows
 from hystbench.gap.records.usable import check_usable
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
-from hystbench.record import Channel, FloatArray, Record, Use
+from hystbench.record import Channel, Record, Use
 from hystbench.units import check_same_unit
 
 
@@ -186,129 +184,3 @@ def check_units(evidence: Evidence, model: Model, place: str) -> None:
         whose = f"the {data_have.name} of {evidence.name}"
         where = f"{place}: {key}: unit"
         check_same_unit(where, model_has.unit, whose, data_have.unit)
-
-
-SPRING = 0.1
-"""Share of the input's rms below which a spring's force is none."""
-LEFT = 0.5
-"""Share of the input's power that a law of motion may leave."""
-LASTS = 1e6
-"""Time constant, in seconds, of a mass that nothing brakes."""
-LEAST = 100
-"""Samples of a window, at least."""
-NEIGHBOURS = 5
-"""Samples on either side through which a parabola gives velocity and acceleration."""
-
-
-def decay_of_free_mass(
-    records: Iterable[Record], quantities: Quantities
-) -> float | None:
-    """Give the time constant of a mass that a force moves and no spring holds.
-
-    The input of the fit records is put down to acceleration, velocity, position, dry
-    friction and a constant, by least squares. The time constant is that with which the
-    velocity dies out: mass over damping, in seconds.
-
-    Parameters
-    ----------
-    records : iterable of Record
-        Only those with ``use: fit`` are looked at.
-    quantities : Quantities
-
-    Returns
-    -------
-    float or None
-        None where it is another device.
-    """
-    if quantities.causality != "force to motion" or quantities.output != "position":
-        return None
-    columns, wanted = [], []
-    for record in records:
-        if record.use != "fit" or len(record) < 2 * LEAST:
-            continue
-        velocity, acceleration = _derivatives(record)
-        position = record.y - np.mean(record.y)
-        columns.append(
-            np.column_stack(
-                [
-                    acceleration,
-                    velocity,
-                    position,
-                    np.sign(velocity),
-                    np.ones(len(record)),
-                ]
-            )
-        )
-        wanted.append(record.u)
-    if not columns:
-        return None
-    stacked, u = np.vstack(columns), np.concatenate(wanted)
-    sizes = np.maximum(np.sqrt(np.mean(stacked**2, axis=0)), 1e-300)
-    found = np.linalg.lstsq(stacked / sizes, u, rcond=1e-10)[0]
-    left = float(np.mean((u - (stacked / sizes) @ found) ** 2))
-    total = float(np.var(u))
-    if left >= LEFT * total or abs(found[2]) > SPRING * np.sqrt(total):
-        return None
-    mass, damping = found[:2] / sizes[:2]
-    return float(mass / damping) if mass > 0 and damping > 0 else LASTS
-
-
-def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
-    """Cut a record where its motion turns; each window starts at zero.
-
-    Parameters
-    ----------
-    record : Record
-    decay_s : float, optional
-        Time constant with which an unknown velocity at its first sample dies out.
-
-    Returns
-    -------
-    tuple of Record
-        One, of the whole record, where it does not turn.
-    """
-    starts = _starts(record)
-    ends, mask = [*starts[1:], len(record)], record.interpolated
-    return tuple(
-        replace(
-            record,
-            name=f"{record.name}-{k + 1}",
-            u=record.u[a:b].copy(),
-            y=record.y[a:b] - record.y[a],
-            period_samples=None,
-            simulated=None,
-            interpolated=None if mask is None else mask[a:b].copy(),
-            decay_s=decay_s,
-        )
-        for k, (a, b) in enumerate(zip(starts, ends, strict=True))
-        if b - a >= LEAST or len(starts) == 1
-    )
-
-
-def _starts(record: Record) -> list[int]:
-    """Give the samples where a window begins: the first, and those of no velocity."""
-    if len(record) < 2 * LEAST:
-        return [0]
-    velocity, _ = _derivatives(record)
-    turns: NDArray[np.intp] = np.flatnonzero(np.diff(np.sign(velocity)) != 0)
-    starts = [0]
-    for turn in turns.tolist():
-        nearer = turn + int(abs(velocity[turn + 1]) < abs(velocity[turn]))
-        if nearer - starts[-1] >= LEAST and len(record) - nearer >= LEAST:
-            starts.append(nearer)
-    return starts
-
-
-def _derivatives(record: Record) -> tuple[FloatArray, FloatArray]:
-    """Velocity and acceleration of the output, by parabolas through its neighbours.
-
-    Towards the ends the first and the last parabola go on.
-    """
-    place = np.arange(-NEIGHBOURS, NEIGHBOURS + 1)
-    parabolas = np.linalg.pinv(np.vander(place, 3, increasing=True))
-    slope = np.correlate(record.y, parabolas[1], "valid")
-    bend = 2 * np.correlate(record.y, parabolas[2], "valid")
-    before, after = place[:NEIGHBOURS], place[NEIGHBOURS + 1 :]
-    velocity = [slope[0] + bend[0] * before, slope, slope[-1] + bend[-1] * after]
-    acceleration = np.pad(bend, NEIGHBOURS, mode="edge")
-    return np.concatenate(velocity) / record.dt, acceleration / record.dt**2
