@@ -106,7 +106,9 @@ def named(settings, twin, tmp_path_factory):
     base, _ = load_base(str(folder / "base.yaml"), evidence)
     with pytest.MonkeyPatch.context() as patch:
         # What would tell likely effects apart takes long and decides nothing.
-        patch.setattr("hystbench.gap.decision.tell_apart", lambda *given: (None, ""))
+        patch.setattr(
+            "hystbench.gap.judge_and_tell.tell_apart", lambda *given: (None, "")
+        )
         content = search(evidence.name, evidence.fit, base, evidence.input_hold).content
     assert content["verdict"] == "named"
     return {item["name"]: item["parameters"] for item in content["effects"]}

@@ -106,7 +106,9 @@ def test_where_nothing_is_hidden_nothing_is_named(family):
 def decided(monkeypatch):
     """What gap.json says of one hidden effect, by all that decides."""
     # What would tell likely effects apart takes long and decides nothing.
-    monkeypatch.setattr("hystbench.gap.decision.tell_apart", lambda *given: (None, ""))
+    monkeypatch.setattr(
+        "hystbench.gap.judge_and_tell.tell_apart", lambda *given: (None, "")
+    )
 
     def decide(name, family):
         return search("hidden", *hidden((name,), family)).content

@@ -13,7 +13,7 @@ from typing import Any
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
-from hystbench.gap.decision import Decision, search
+from hystbench.gap.decision import search
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.base_on_records import run_base, start_state
 from hystbench.gap.fitting.compared_records import compared_records
@@ -22,6 +22,7 @@ from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.inside.named_inside import quantities_if_linear
+from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.built_in import BuiltIn, build_in
 from hystbench.gap.naming.forecast_calls import keep_back

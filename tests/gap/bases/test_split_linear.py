@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hystbench.gap import decision
 from hystbench.gap.bases.load import checked_base, load_base
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Spectra, Stretch, fit_ratio
@@ -16,6 +17,7 @@ from hystbench.gap.effects.base import INSIDE
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model
+from hystbench.quantities import Quantities
 from tests.gap.made import CURRENT, DISPLACEMENT, multisine, record, steady
 from tests.gap.small import block
 
@@ -127,6 +129,21 @@ def test_the_curve_is_named_in_its_place(split, clipped_records):
         for each in (model, found.model)
     )
     assert after < 0.3 * before
+
+
+def test_no_force_is_looked_for_where_the_curve_leaves_nothing(
+    split, clipped_records, monkeypatch
+):
+    def look(*_):
+        raise AssertionError("forces were looked for")
+
+    monkeypatch.setattr(decision, "named_inside", look)
+    model = split[0].with_hold("band-limited")
+    kinds = Quantities("force", "position")
+    found = search(
+        "made", clipped_records.fit, model, unnamed_share=0.1, quantities=kinds
+    )
+    assert found.content["effects"][0]["name"] == "saturation"
 
 
 @pytest.mark.parametrize("name", ["saturation", "asymmetry", "dead-zone"])

@@ -1,0 +1,249 @@
+"""The verdict on what fit records named, and all that gap.json says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from hystbench.blocks.calls import USED_UP, Calls, current
+from hystbench.gap.experiment.excitations import Limits
+from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
+from hystbench.gap.fitting.augmented_model import augmented, blocks_of
+from hystbench.gap.fitting.compared_records import compared_records
+from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.own_values import NONE, OwnValues
+from hystbench.gap.fitting.parameters import at_ends, base_parameters
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.step_error import floor_with_steps, step_error
+from hystbench.gap.fitting.uncertainty import (
+    on_more_samples,
+    size_error,
+    standard_errors,
+)
+from hystbench.gap.fitting.uncertainty_beside import beside_errors
+from hystbench.gap.holdout.show import FitResult
+from hystbench.gap.judging.black_box import black_box
+from hystbench.gap.judging.gap_json import (
+    effect_mapping,
+    not_tried,
+    ranking_rows,
+    simulator_mapping,
+)
+from hystbench.gap.judging.unnamed import what_is_unnamed
+from hystbench.gap.judging.verdict import (
+    Left,
+    judge,
+    may_be_of_base,
+    what_is_left,
+    what_mends,
+)
+from hystbench.gap.locate import locate
+from hystbench.gap.naming.add_effects import LITTLE, Named
+from hystbench.gap.naming.ladder import contributions, rungs
+from hystbench.gap.progress import Say, silent
+from hystbench.gap.records.floor import Floor, lone_share, unrepeated
+from hystbench.gap.thresholds import UNNAMED_SHARE
+from hystbench.model import Model
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decision(FitResult):
+    """What the fit records decide; hold-out records have not been read.
+
+    Parameters
+    ----------
+    model : Model
+        The base with the effects that were added.
+    left : Left
+    content : mapping
+        What gap.json holds, but for what the hold-out records show.
+    curves : mapping
+        What the pictures of where the gap is are drawn from.
+    experiment : Experiment, optional
+        What would tell likely effects apart best.
+    """
+
+    model: Model
+    left: Left
+    content: Mapping[str, Any]
+    curves: Mapping[str, Any]
+    experiment: Experiment | None
+
+
+def judge_and_tell(
+    dataset: str,
+    base: Model,
+    start: ModelState,
+    floor: Floor,
+    named: Named,
+    say: Say = silent,
+    limits: Limits | None = None,
+    own: OwnValues = NONE,
+    unnamed_share: float = UNNAMED_SHARE,
+) -> Decision:
+    """Locate the gap, and give the verdict on what was named.
+
+    Parameters
+    ----------
+    dataset : str
+        Its name.
+    base : Model
+    start : ModelState
+        The base on the fit records.
+    floor : Floor
+    named : Named
+    say : callable
+        Told a line of progress at a time.
+    limits : Limits, optional
+        Of the next experiment; those of the records where none are given.
+    own : OwnValues
+        What was taken off the records of ``start``, as it is their own.
+    unnamed_share : float
+        Share of the power of the gap that may stay unnamed beside a name.
+    """
+    left = what_is_left(start, named.state, floor.rms)
+    if named.state.added and left.little_named:
+        say(f"{LITTLE}: none named")
+        named = named.taken_back()
+        left = what_is_left(start, named.state, floor.rms)
+    records, state = start.records, named.state
+    compared = compared_records(start)
+    box = black_box(compared, floor.rms)
+    after = compared if state is start else compared_records(state)
+    lone = lone_share([item.residual for item in after])
+    differs = unrepeated(after, floor.rms)
+    unnamed = what_is_unnamed(start, state, floor.rms, unnamed_share)
+    verdict, reason = judge(
+        left,
+        bool(state.added),
+        box.explained_on_folds,
+        bool(start.free),
+        floor.method == "upper-bound",
+        lone,
+        differs,
+        unnamed,
+        unnamed_share,
+        what_mends(start.records),
+    )
+    trust = unnamed.trust(unnamed_share, may_be_of_base(left, lone, differs))
+    untried = not_tried(named)
+    reason += _untried(untried) if state.added else ""
+    ends = at_ends(state)
+    reason += f"; {ends}" if ends else ""
+    used_up = _used_up(current())
+    reason += f"; beside {own.words} of some records' own" if own.records else ""
+    reason += _predicts_nothing(state)
+    reason += f"; {used_up}" if used_up else ""
+    ladder = rungs(start, named)
+    simulated = {start: compared, state: after}
+    contributed = contributions(ladder, simulated) if verdict == "named" else ()
+    where = locate(compared, floor, contributed)
+    say(where.views[0].sentence)
+    say(f"{verdict}: {reason}")
+    finer = on_more_samples(state)
+    score = make_score(finer, floor.rms, forms=False)
+    errors = standard_errors(finer, score)
+    of_beside = beside_errors(finer, score)
+    by_effect = named.reasons
+    model = augmented(base, state)
+    experiment, why_none = tell_apart(base, named, records, floor.rms, limits)
+    content: dict[str, Any] = {
+        "dataset": dataset,
+        "model": base.name,
+        "unit": records[0].output.unit,
+        "verdict": verdict,
+        "reason": reason,
+        "effects": [
+            effect_mapping(
+                item,
+                state,
+                errors,
+                of_beside,
+                by_effect.get(item.effect, ()),
+                left,
+                size_error(finer, floor.rms, number),
+                trust,
+            )
+            | {"blocks": blocks_of(item, state, model)}
+            for number, item in enumerate(state.added)
+        ],
+        "fit": _fit(start, state, floor)
+        | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
+        "unnamed": unnamed.mapping(unnamed_share),
+        "where": [view.to_mapping() for view in where.views],
+        "ranking": ranking_rows(named),
+        "record_values": own.mapping(records[0].output.unit),
+        "not_tried": untried,
+        "taken_out": [item._asdict() for item in named.gone],
+        "next_experiment": None if experiment is None else experiment.mapping(),
+        "base_parameters": base_parameters(base, state),
+        "simulator": simulator_mapping(model, records),
+        "black_box": {"explained_on_folds": box.explained_on_folds},
+    }
+    if why_none:
+        content["no_experiment"] = why_none
+    if used_up:
+        content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
+    return Decision(
+        base,
+        state,
+        floor,
+        box,
+        ladder,
+        own,
+        model=model,
+        left=left,
+        content=content,
+        curves=where.curves(),
+        experiment=experiment,
+    )
+
+
+def _predicts_nothing(state: ModelState) -> str:
+    """Say which effects have no number in common to the records: a path of drift.
+
+    A tone has one, its frequency.
+    """
+    names = sorted({beside.effect for beside, values in state.beside if not values})
+    if not names:
+        return ""
+    return f"; {' and '.join(names)} of each record's own predicts no other record"
+
+
+def _untried(names: Sequence[str]) -> str:
+    """Tell which effects a name was not held against."""
+    if not names:
+        return ""
+    why = USED_UP if current().refused() else "the simulator cannot be run again"
+    return f"; not tried, as {why}: {', '.join(names)}"
+
+
+def _used_up(calls: Calls) -> str:
+    """Tell that a bound on calls has ended the search, if so."""
+    if not calls.refused():
+        return ""
+    return (
+        f"the search ended early, as the {calls.bound} calls of the simulator that "
+        "--calls allows were used up"
+    )
+
+
+def _fit(start: ModelState, state: ModelState, floor: Floor) -> dict[str, Any]:
+    """Tell what is gone on the fit records, and how much no other record knows."""
+    square = floor.rms**2
+    before, after = (each.power(square) for each in (start, state))
+    alone = replace(state, beside=()).power(square)
+    there = before > 0
+    error = step_error(state)
+    return {
+        "before": float(np.sqrt(before + square)),
+        "after": float(np.sqrt(after + square)),
+        "explained": (before - after) / before if there else None,
+        "new_in_every_record": (alone - after) / before if there else 0.0,
+        "noise": floor.rms,
+        "step_error": error,
+        "floor": floor_with_steps(floor.rms, error),
+    }
