@@ -23,12 +23,11 @@ from hystbench.gap.inside.hosts import (
     is_seen_moving,
     one_coordinate,
 )
+from hystbench.gap.inside.laws import how_it_moves, laws_for
 from hystbench.gap.inside.named_inside import chosen, named_inside
 from hystbench.gap.inside.put_in import evened, with_law
 from hystbench.gap.inside.search import (
     Hypothesis,
-    how_it_moves,
-    laws_for,
     starts,
     with_one_fewer,
 )

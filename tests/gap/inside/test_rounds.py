@@ -10,6 +10,7 @@ from hystbench.gap import decision
 from hystbench.gap.bases.load import load_base
 from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.state import Added
+from hystbench.gap.inside import search as inside_search
 from hystbench.gap.inside.named_inside import Inside, _rounds, chosen
 from hystbench.gap.inside.search import Hypothesis
 from hystbench.gap.naming.add_effects import Named, add_effects
@@ -101,6 +102,32 @@ def test_of_a_tie_a_weight_that_turns_is_likelier_than_a_softer_spring(behind, n
         measured(-900.0 + behind, 0.1, "gravity"),
     ]
     assert chosen(found, 0.0).effects == (name,)
+
+
+@pytest.mark.parametrize(
+    ("single", "pair", "levels"),
+    [(-900.0, -950.0, 1), (-900.0, -1050.0, 2), (-30.0, -50.0, 2)],
+)
+def test_threes_are_tried_where_a_pair_pays_or_no_single_does(
+    single, pair, levels, monkeypatch
+):
+    """Forces that gain little alone may gain much together."""
+    tried_levels = []
+
+    def one_more(carried, *_):
+        tried_levels.append(len(carried[0].effects) + 1)
+        return [chained(pair, *carried[0].effects, "drag")]
+
+    def chained(score, *effects):
+        state = SimpleNamespace(chain=(), added=[], freedom=0.0)
+        return Hypothesis(effects, ("",) * len(effects), Fitted(state, score))
+
+    monkeypatch.setattr(inside_search, "_one_more", one_more)
+    monkeypatch.setattr(inside_search, "with_one_fewer", lambda *_: [])
+    score = SimpleNamespace(least=lambda freedom: -5000.0)
+    found = [chained(0.0), chained(single, "friction")]
+    inside_search.together(found, lambda _: {}, score)
+    assert tried_levels == [2, 3][:levels]
 
 
 @pytest.mark.parametrize(("share", "chain"), [(0.01, False), (1e-6, True)])

@@ -16,6 +16,7 @@ from hystbench.gap.fitting.least_squares import fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
+from hystbench.gap.inside.laws import Offer
 from hystbench.gap.inside.modes import (
     NONE,
     NUMBERS,
@@ -27,7 +28,6 @@ from hystbench.gap.inside.modes import (
 from hystbench.gap.inside.put_in import host_of
 from hystbench.gap.inside.search import (
     Hypothesis,
-    Offer,
     fitted_likely,
     may_gain,
     starts,

@@ -25,9 +25,9 @@ from hystbench.gap.inside.further_modes import (
     with_modes,
 )
 from hystbench.gap.inside.hosts import hosts
+from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.inside.search import (
     Hypothesis,
-    laws_for,
     may_gain,
     singles,
     together,

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import ceil
-from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.parameter import HUGE
-from hystbench.blocks.store import Store
-from hystbench.gap.effects import among, effects
-from hystbench.gap.effects.law import Changed, Law, Moved
+from hystbench.gap.effects import effects
+from hystbench.gap.effects.law import Changed, Law
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.least_squares import (
     QUICK,
@@ -26,8 +22,9 @@ from hystbench.gap.fitting.least_squares import (
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.beginnings import Beginnings, with_numbers_of
-from hystbench.gap.inside.put_in import evened, host_of, with_law
-from hystbench.gap.inside.stores import how_it_fills, with_changed
+from hystbench.gap.inside.laws import Offer, of_stores
+from hystbench.gap.inside.put_in import evened, with_law
+from hystbench.gap.inside.stores import with_changed
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.thresholds import FURTHER, PAYS, SCALE
 from hystbench.record import FloatArray
@@ -62,38 +59,6 @@ class Hypothesis:
         return self.fitted.score
 
 
-Laws = Mapping[str, Sequence[Law | Changed]]
-"""What may be put into a host, by effect."""
-Offer = Callable[[Fitted], Laws]
-"""Gives what may be put into a fitted host."""
-
-
-def laws_for(
-    host: Fitted, turns: bool = False, offered: Iterable[str] | None = None
-) -> Laws:
-    """Give what may be put into a host.
-
-    Parameters
-    ----------
-    host : Fitted
-        With or without effects inside already.
-    turns : bool
-        Whether its coordinate is an angle.
-    offered : iterable of str, optional
-        Effects that may be named; all by default.
-    """
-    every: dict[str, tuple[Law | Changed, ...]]
-    if of_stores(host):
-        filled = how_it_fills(host.state)
-        every = {name: tuple(x.stored(filled)) for name, x in among(offered).items()}
-    else:
-        moved = how_it_moves(host.state, turns)
-        every = {
-            name: tuple(x.in_mechanism(moved)) for name, x in among(offered).items()
-        }
-    return {name: own for name, own in every.items() if own}
-
-
 def singles(
     host: Fitted,
     offer: Offer,
@@ -113,7 +78,10 @@ def singles(
 def together(
     found: Sequence[Hypothesis], offer: Offer, score: Score, say: Say = silent
 ) -> list[Hypothesis]:
-    """Go on from singles to pairs and threes.
+    """Go on from singles to pairs, and to threes.
+
+    Forces that gain little alone may gain much together. But where one pays alone and
+    no second one pays beside it, no three are tried.
 
     Returns
     -------
@@ -122,16 +90,32 @@ def together(
     """
     every, alone, carried = list(found), found[0].score, list(found[1:])
     for keep in (PAIRS, 1):
-        if not may_gain(min(every, key=lambda item: item.score), score):
+        if not may_gain(least(every), score) or _in_vain(every, carried):
             break
         if not of_stores(found[0].fitted):
             carried = [item for item in carried if item.score < alone]
         carried = _one_more(carried, offer, score, keep, alone, say)
         every += carried
-    best = min(every, key=lambda item: item.score)
+    best = least(every)
     if not of_stores(best.fitted):
         every += with_one_fewer(best, every, score)
     return best_of_each(every)
+
+
+def least(found: Sequence[Hypothesis]) -> Hypothesis:
+    """Give the hypothesis that scores least."""
+    return min(found, key=lambda item: item.score)
+
+
+def _in_vain(every: Sequence[Hypothesis], pairs: Sequence[Hypothesis]) -> bool:
+    """Tell whether an effect pays alone, and none pays beside it."""
+    one = least([item for item in every if len(item.effects) < 2])
+    tried = [item for item in pairs if len(item.effects) == 2]
+    if not (tried and one.effects) or of_stores(one.fitted):
+        return False
+    return (
+        every[0].score - one.score > PAYS and least(tried).score > one.score - FURTHER
+    )
 
 
 def with_one_fewer(
@@ -157,15 +141,6 @@ def with_one_fewer(
         begun = without_effect(state, place)
         left.append(Hypothesis(others, forms, Fitted(begun, np.inf)))
     return _to_the_end(left, score)
-
-
-def of_stores(item: Fitted) -> bool:
-    """Tell whether a model is of stores: all their laws are tried with each other.
-
-    They are few, and the root of the level, which may be worse than a linear outflow
-    alone, may be better than any other law with an overflow.
-    """
-    return any(isinstance(block, Store) for block in item.state.chain)
 
 
 def best_of_each(found: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -370,32 +345,3 @@ def _vanishes(item: Hypothesis, score: Score) -> bool:
             if judged(state.with_chain(tuple(chain)), score) < item.score + SCALE:
                 return True
     return False
-
-
-def how_it_moves(state: ModelState, turns: bool) -> Moved:
-    """Look how far, how fast and by what force a host moves on its records."""
-    place = host_of(state)
-    host: Any = state.chain[place]
-    reach = speed = force = 0.0
-    for record, z in zip(state.records, state.simulation.driving(place), strict=True):
-        motion = host.motion(z, record.dt, ())
-        q = motion.position
-        reach = max(reach, float(np.ptp(q)) / 2)
-        speed = max(speed, float(np.max(np.abs(motion.velocity))))
-        driving = record.y if host.name == "impedance" else z
-        force = max(force, float(np.max(np.abs(driving - np.mean(driving)))))
-    tiny = 1.0 / HUGE
-    step = min(record.dt for record in state.records)
-    given = [record.u for record in state.records]
-    shown = state.simulation.output
-    anywhere = isinstance(host, Mechanism) and host.stiffness == 0.0
-    return Moved(
-        max(reach, tiny),
-        max(speed, tiny),
-        max(force, tiny),
-        step,
-        turns,
-        anywhere,
-        host.stiffness,
-        *(max(float(np.max(np.abs(x))) for x in signals) for signals in (given, shown)),
-    )
