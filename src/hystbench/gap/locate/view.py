@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hystbench.gap.locate.forms import FittedForm, p_value_of
+from hystbench.gap.locate.forms import FittedForm
 from hystbench.gap.locate.picture import Picture
-from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.view_kinds import ViewKind
 
 SIGNIFICANT = 0.01
@@ -75,40 +74,32 @@ class View:
 
 
 def view_of(
-    samples: ViewSamples,
     view: ViewKind,
     form: FittedForm,
     axis: str,
     ends: tuple[float | str, float | str],
     unit: str,
-    sentence: str,
-    tests: Sequence[FittedForm] = (),
-    pictures: Sequence[Picture] = (),
-    not_drawn: Sequence[str] = (),
+    told: str,
     share: float | None = None,
-    p_value: float | None = None,
+    **drawn: Sequence[Any],
 ) -> View:
     """Give the view that a form tells.
 
     Parameters
     ----------
-    samples, view, axis, unit
+    view, axis, unit
         As for :class:`View`.
     form : FittedForm
     ends : tuple of (float or str, float or str)
         Of the range.
-    sentence : str
-        What it says behind "so much of the gap".
-    tests : sequence of FittedForm
-        Whose p-value counts where no effect is named; by default the form's own.
-    pictures, not_drawn
-        As for :class:`View`.
-    share, p_value : float, optional
-        Those of the form and its tests by default.
+    told : str
+        What the sentence says behind "so much of the gap".
+    share : float, optional
+        That of the form by default.
+    **drawn
+        ``pictures`` and ``not_drawn`` of :class:`View`.
     """
     share = form.share if share is None else share
-    if p_value is None or form.named:
-        p_value = p_value_of(samples, form, tests)
     return View(
         view=view,
         axis=axis,
@@ -116,12 +107,11 @@ def view_of(
         end=ends[1],
         unit=unit,
         share_of_gap_power=share,
-        p_value=p_value,
-        sentence=f"{percent(share)} of the gap {sentence}",
+        p_value=form.p_value,
+        sentence=f"{percent(share)} of the gap {told}",
         saved=form.saved,
         named=form.named,
-        pictures=tuple(pictures),
-        not_drawn=tuple(not_drawn),
+        **{name: tuple(each) for name, each in drawn.items()},
     )
 
 
