@@ -19,8 +19,8 @@ from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import run_base, start_state
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
-from hystbench.gap.holdout.show import FitResult
+from hystbench.gap.holdout.outcome import as_asked, outcome
+from hystbench.gap.holdout.show import FitResult, Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.built_in import BuiltIn, build_in

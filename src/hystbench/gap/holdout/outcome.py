@@ -7,16 +7,16 @@ keep those of its effects that do better there would be to choose by hold-out re
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
-from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.start import run_base
 from hystbench.gap.holdout.show import (
     FitResult,
+    Outcome,
     as_recorded,
     nuisance_of,
     score_hold_out,
@@ -26,27 +26,6 @@ from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import Vocabulary, with_device
-from hystbench.model import Model
-from hystbench.record import FloatArray
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """A decision after the hold-out records were read.
-
-    Parameters
-    ----------
-    model : Model
-        The base, where they took the names back.
-    content : dict
-        What gap.json holds.
-    outputs : list of (ndarray, ndarray)
-        Outputs before and after, of each record; NaN where the model runs away on it.
-    """
-
-    model: Model
-    content: dict[str, Any]
-    outputs: list[tuple[FloatArray, FloatArray]]
 
 
 def outcome(
@@ -68,8 +47,6 @@ def outcome(
         **shown.content,
         "warnings": list(evidence.warnings),
     }
-    base, state = fitted.base, fitted.state
-    model = augmented(base, state).with_hold(state.hold)
     taken = withdrawal(content)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
@@ -78,12 +55,11 @@ def outcome(
         alone = score_hold_out(unchanged, evidence.hold_out)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **kept}, taken)
-        model = base.with_hold(state.hold)
-        shown = alone
+        shown = replace(alone, model=fitted.base.with_hold(fitted.state.hold))
     elif content["effects"] or content["verdict"] == "parameters":
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
     content["shortfall"] = shortfall(content)
-    return Outcome(model, content, shown.outputs)
+    return replace(shown, content=content)
 
 
 def as_asked(
