@@ -10,7 +10,7 @@ import pytest
 
 from hystbench.gap.locate import locate
 from hystbench.gap.locate.distortion import EITHER, EVEN, ODD, take_distortion
-from hystbench.gap.locate.over_axis import COLUMNS, FEWEST, over_plane, rate_edges
+from hystbench.gap.locate.picture import COLUMNS, FEWEST, over_plane, rate_edges
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.floor import noise_floor
 from hystbench.gap.records.scored_samples import Compared

@@ -18,7 +18,7 @@ from hystbench.gap.locate.forms import (
     narrowest,
     narrowest_bins,
 )
-from hystbench.gap.locate.over_axis import (
+from hystbench.gap.locate.picture import (
     NOT_OVER_PLANE,
     block_means,
     over_input,
