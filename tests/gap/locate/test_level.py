@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -132,7 +133,7 @@ def test_where_levels_show_nothing_there_is_no_view(oscillators, compared):
     assert moving(found) == ()
     found = locate(found, noise_floor(found))
     assert "level" not in {view.view for view in found.views}
-    assert any("modes by level" in line for line in found.not_drawn)
+    assert any("modes by level" in line for line in found.curves()["not_drawn"])
 
 
 def test_levels_that_are_alike_are_one(oscillators):
@@ -152,7 +153,7 @@ def test_the_view_is_as_gap_json_has_it(oscillators):
     assert view.share_of_gap_power > 0.7
     assert "micro-slip" in view.sentence
     (picture,) = view.pictures
-    json.dumps(picture.to_mapping(), allow_nan=False)
+    json.dumps(asdict(picture), allow_nan=False)
 
 
 def test_a_mode_that_stays_is_no_evidence(oscillators):

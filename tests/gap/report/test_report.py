@@ -1,6 +1,7 @@
 import base64
 import json
 import re
+from dataclasses import asdict
 from html.parser import HTMLParser
 
 import numpy as np
@@ -260,7 +261,7 @@ PICTURES = (
 
 
 def curves(*names):
-    drawn = [one.to_mapping() for one in PICTURES if not names or one.name in names]
+    drawn = [asdict(one) for one in PICTURES if not names or one.name in names]
     return {"pictures": drawn, "not_drawn": []}
 
 

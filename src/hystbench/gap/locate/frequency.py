@@ -31,7 +31,6 @@ BANDS = 12
 """With a gain and a phase of their own."""
 BINS = 401
 """Edges of the common axis, evenly spaced in the logarithm of frequency."""
-NO_DISTORTION = "distortion, as no record repeats with a gap above the noise"
 
 
 def frequency(samples: ViewSamples) -> View:
@@ -66,16 +65,11 @@ def frequency(samples: ViewSamples) -> View:
         f"{number(end)} Hz."
     )
     drawn = [_spectrum(samples, spectra), _response(spectra)]
-    lacks = [] if distortion else [NO_DISTORTION]
     if distortion is not None:
         told += distortion.told + distortion.told_repeating
         drawn.append(distortion.picture(samples.units[1]))
     ends = (start, end)
-    return view_of(
-        *("frequency", form, "frequency", ends, "Hz", told),
-        pictures=drawn,
-        not_drawn=lacks,
-    )
+    return view_of("frequency", form, "frequency", ends, "Hz", told, drawn)
 
 
 def _bands(samples: ViewSamples, spectra: Spectra) -> list[list[list[FloatArray]]]:

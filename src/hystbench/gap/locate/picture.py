@@ -5,7 +5,7 @@ Below are those of the residual over the axis of a view: input, rate, time, reco
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -86,10 +86,6 @@ class Picture:
     words: str
     panels: tuple[Panel, ...]
 
-    def to_mapping(self) -> dict[str, Any]:
-        """Give what curves.json holds."""
-        return asdict(self)
-
 
 FREQUENCY = Axis("frequency", "Hz", logarithmic=True)
 
@@ -143,7 +139,6 @@ FEWEST = 5
 """Samples of a cell that is shown: the mean of fewer is mostly noise."""
 BLOCKS = 25
 """Means of a record over slow time, at most."""
-NOT_OVER_PLANE = "the residual by rate, as the input rests"
 
 
 def over_input(samples: ViewSamples) -> Picture:

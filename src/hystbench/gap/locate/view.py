@@ -42,8 +42,6 @@ class View:
     named : bool
         Whether it shows what a named effect adds.
     pictures : tuple of Picture
-    not_drawn : tuple of str
-        Pictures that these records do not give, and why.
     """
 
     view: ViewKind
@@ -57,7 +55,6 @@ class View:
     saved: float
     named: bool = False
     pictures: tuple[Picture, ...] = ()
-    not_drawn: tuple[str, ...] = ()
 
     def to_mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``where``."""
@@ -80,14 +77,14 @@ def view_of(
     ends: tuple[float | str, float | str],
     unit: str,
     told: str,
+    pictures: Sequence[Picture] = (),
     share: float | None = None,
-    **drawn: Sequence[Any],
 ) -> View:
     """Give the view that a form tells.
 
     Parameters
     ----------
-    view, axis, unit
+    view, axis, unit, pictures
         As for :class:`View`.
     form : FittedForm
     ends : tuple of (float or str, float or str)
@@ -96,8 +93,6 @@ def view_of(
         What the sentence says behind "so much of the gap".
     share : float, optional
         That of the form by default.
-    **drawn
-        ``pictures`` and ``not_drawn`` of :class:`View`.
     """
     share = form.share if share is None else share
     return View(
@@ -111,7 +106,7 @@ def view_of(
         sentence=f"{percent(share)} of the gap {told}",
         saved=form.saved,
         named=form.named,
-        **{name: tuple(each) for name, each in drawn.items()},
+        pictures=tuple(pictures),
     )
 
 

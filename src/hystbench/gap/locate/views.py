@@ -19,7 +19,6 @@ from hystbench.gap.locate.forms import (
     narrowest_bins,
 )
 from hystbench.gap.locate.picture import (
-    NOT_OVER_PLANE,
     block_means,
     over_input,
     over_plane,
@@ -99,7 +98,7 @@ def branch(samples: ViewSamples) -> View:
         "rising" if rising > ONE_SIDED else "falling",
     )
     drawn = [over_input(samples)]
-    return view_of("branch", form, "branch", ends, "", told, pictures=drawn)
+    return view_of("branch", form, "branch", ends, "", told, drawn)
 
 
 def rate(samples: ViewSamples) -> View:
@@ -117,10 +116,7 @@ def rate(samples: ViewSamples) -> View:
         f"{number(ends[0])} to {number(ends[1])} {unit}."
     )
     axis, plane = "magnitude of the input's rate", over_plane(samples)
-    drawn, lacks = ([plane], []) if plane else ([], [NOT_OVER_PLANE])
-    return view_of(
-        "rate", form, axis, ends, unit, told, pictures=drawn, not_drawn=lacks
-    )
+    return view_of("rate", form, axis, ends, unit, told, [plane] if plane else [])
 
 
 def slow_time(samples: ViewSamples) -> View:
@@ -144,7 +140,7 @@ def slow_time(samples: ViewSamples) -> View:
         f"{number(ends[0])} and {number(ends[1])} s."
     )
     axis, drawn = "time in the record", [over_time(samples)]
-    return view_of("slow-time", form, axis, ends, "s", told, pictures=drawn)
+    return view_of("slow-time", form, axis, ends, "s", told, drawn)
 
 
 def _passed(
@@ -249,7 +245,7 @@ def record(samples: ViewSamples) -> View:
         + (f" It leaves {alone} alone." if quiet else "")
     )
     ends, drawn = (names[first], names[last]), [over_records(names, shares)]
-    return view_of("record", form, "record", ends, "", told, share, pictures=drawn)
+    return view_of("record", form, "record", ends, "", told, drawn, share)
 
 
 def _share_of(power: FloatArray, part: Mask) -> float:
