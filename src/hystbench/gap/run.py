@@ -19,7 +19,7 @@ from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import run_base, start_state
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.holdout.outcome import as_asked, outcome
+from hystbench.gap.holdout.outcome import outcome
 from hystbench.gap.holdout.show import FitResult, Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judging.black_box import black_box
@@ -139,8 +139,7 @@ def closed_gap(
     # may take back what was named.
     evidence = without_lead(evidence, base, "hold_out", say)
     evidence = _as_found(evidence, decision.base, decision.state, say)
-    shown = outcome(decision, decision.content, evidence)
-    shown = as_asked(shown, decision, evidence, vocabulary, built_in)
+    shown = outcome(decision, decision.content, evidence, vocabulary, built_in)
     decision = replace(decision, model=shown.model, content=shown.content)
     return Closed(decision, shown, evidence)
 
@@ -327,10 +326,9 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(compare(start), floor.rms)
     fitted = FitResult(base, state, floor, box, rungs, own)
-    shown = outcome(fitted, decided, evidence)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     vocabulary = vocabulary.in_device(evidence.device_kind)
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
-    shown = as_asked(shown, fitted, evidence, vocabulary, built_in)
+    shown = outcome(fitted, decided, evidence, vocabulary, built_in)
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

@@ -29,7 +29,11 @@ from hystbench.gap.vocabulary import Vocabulary, with_device
 
 
 def outcome(
-    fitted: FitResult, decided: Mapping[str, Any], evidence: Evidence
+    fitted: FitResult,
+    decided: Mapping[str, Any],
+    evidence: Evidence,
+    vocabulary: Vocabulary,
+    built_in: BuiltIn | None,
 ) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
@@ -39,6 +43,10 @@ def outcome(
     decided : mapping
         What gap.json holds, but for what the hold-out records show.
     evidence : Evidence
+    vocabulary : Vocabulary
+        What the user put in or left out, which is told.
+    built_in : BuiltIn or None
+        None where no effect was put in.
     """
     shown = score_hold_out(fitted, evidence.hold_out)
     content = {
@@ -59,38 +67,21 @@ def outcome(
     elif content["effects"] or content["verdict"] == "parameters":
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
     content["shortfall"] = shortfall(content)
-    return replace(shown, content=content)
-
-
-def as_asked(
-    shown: Outcome,
-    fitted: FitResult,
-    evidence: Evidence,
-    vocabulary: Vocabulary,
-    built_in: BuiltIn | None,
-) -> Outcome:
-    """Tell which effects the user put in or left out, and what the device makes of all.
-
-    Parameters
-    ----------
-    shown : Outcome
-    fitted : FitResult
-    evidence : Evidence
-    vocabulary : Vocabulary
-    built_in : BuiltIn or None
-        None where no effect was put in.
-    """
-    content = with_what_was_asked(shown.content, vocabulary)
+    content = with_what_was_asked(content, vocabulary)
     if built_in is not None:
-        records = evidence.hold_out
-        outputs = run_base(built_in.alone, records, evidence.hold)
-        mine = as_recorded(fitted.own, records, outputs, fitted.floor)
-        nuisance = nuisance_of(fitted.state, fitted.own)
-        alone = left_rms(records, mine, nuisance)
-        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
-        content = with_built_in(content, built_in, alone)
+        content = with_built_in(content, built_in, _alone(built_in, fitted, evidence))
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
+
+
+def _alone(built_in: BuiltIn, fitted: FitResult, evidence: Evidence) -> float:
+    """RMS residual, on the hold-out records, of the simulator with nothing put in."""
+    records = evidence.hold_out
+    outputs = run_base(built_in.alone, records, evidence.hold)
+    mine = as_recorded(fitted.own, records, outputs, fitted.floor)
+    size = left_rms(records, mine, nuisance_of(fitted.state, fitted.own))
+    assert size is not None  # noqa: S101  (run_base refuses what has no bound)
+    return size
 
 
 LEAST = 5e-4
