@@ -141,7 +141,7 @@ def gap(name):
 
 def test_a_bad_contact_is_what_the_input_does_not_explain():
     compared = gap("random-telegraph")
-    first = locate(compared, noise_floor(compared)).views[0]
+    first = locate(compared, noise_floor(compared))[0]
     assert first.view == "unexplained"
     assert first.share_of_gap_power > 0.5
 

@@ -13,9 +13,7 @@ from hystbench.gap.example import slow_loop_model
 from hystbench.gap.records.evidence import load_evidence
 from hystbench.gap.report.tables import (
     write_adds,
-    write_effects,
-    write_records,
-    write_summary,
+    write_table,
 )
 from hystbench.gap.run import BASE as BASE_FILE
 from hystbench.gap.run import DECISION, decide_in, show_in
@@ -97,8 +95,8 @@ def test_tables_hold_what_gap_json_holds(decided, tmp_path):
     _, data, base, out = decided
     show_in(out, load_evidence(data), load_model(base))
     content = json.loads((out / "gap.json").read_text())
-    write_summary([content, content], tmp_path / "summary.csv")
-    write_effects([content], tmp_path / "effects.csv")
+    write_table("summary", [content, content], tmp_path / "summary.csv")
+    write_table("effects", [content], tmp_path / "effects.csv")
     one, other = rows(tmp_path / "summary.csv")
     assert one == other
     assert (one["dataset"], one["verdict"], one["effects"]) == (
@@ -108,7 +106,7 @@ def test_tables_hold_what_gap_json_holds(decided, tmp_path):
     )
     for key in ("before", "after", "noise_floor"):
         assert float(one[key]) == pytest.approx(content["gap"][key], rel=1e-3)
-    write_records([content], tmp_path / "records.csv")
+    write_table("records", [content], tmp_path / "records.csv")
     (record,) = rows(tmp_path / "records.csv")
     assert (record["record"], record["outside"]) == ("unseen", "")
     assert float(record["before"]) == pytest.approx(content["gap"]["before"], rel=1e-3)

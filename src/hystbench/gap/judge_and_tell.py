@@ -40,7 +40,7 @@ from hystbench.gap.judging.verdict import (
     what_is_left,
     what_mends,
 )
-from hystbench.gap.locate import locate
+from hystbench.gap.locate import curves, locate
 from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.progress import Say, silent
@@ -141,7 +141,7 @@ def judge_and_tell(
     simulated = {start: compared, state: after}
     contributed = contributions(ladder, simulated) if verdict == "named" else ()
     where = locate(compared, floor, contributed)
-    say(where.views[0].sentence)
+    say(where[0].sentence)
     say(f"{verdict}: {reason}")
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
@@ -173,7 +173,7 @@ def judge_and_tell(
         "fit": _fit(start, state, floor)
         | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
         "unnamed": unnamed.mapping(unnamed_share),
-        "where": [view.to_mapping() for view in where.views],
+        "where": [view.to_mapping() for view in where],
         "ranking": ranking_rows(named),
         "record_values": own.mapping(records[0].output.unit),
         "not_tried": untried,
@@ -197,7 +197,7 @@ def judge_and_tell(
         model=model,
         left=left,
         content=content,
-        curves=where.curves(),
+        curves=curves(where),
         experiment=experiment,
     )
 

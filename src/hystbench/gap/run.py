@@ -19,8 +19,8 @@ from hystbench.gap.fitting.base_on_records import run_base, start_state
 from hystbench.gap.fitting.compared_records import compared_records
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
-from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
-from hystbench.gap.holdout.show import FitResult
+from hystbench.gap.holdout.outcome import outcome
+from hystbench.gap.holdout.show import FitResult, Outcome
 from hystbench.gap.inside.named_inside import quantities_if_linear
 from hystbench.gap.judge_and_tell import Decision
 from hystbench.gap.judging.black_box import black_box
@@ -208,8 +208,7 @@ def shown_on_hold_out(
         model = augmented(found, fitted.state)
         evidence = without_lead(evidence, found, "hold_out", say, model)
     vocabulary = vocabulary.in_device(evidence.device_kind)
-    shown = outcome(fitted, decided, evidence)
-    return evidence, as_asked(shown, fitted, evidence, vocabulary, built_in)
+    return evidence, outcome(fitted, decided, evidence, vocabulary, built_in)
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:

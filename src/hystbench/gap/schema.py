@@ -1,4 +1,8 @@
-"""What gap.json holds, as a JSON Schema: the contract with readers and judges."""
+"""What gap.json holds, as a JSON Schema: the contract with readers and judges.
+
+What each key means, and when it is null, stands in ``docs/gap-json.md``; a test holds
+the two together.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +12,38 @@ from hystbench.device_kinds import DEVICE_KINDS
 from hystbench.gap.view_kinds import ViewKind
 from hystbench.quantities import QUANTITIES
 
+Part = dict[str, Any]
+
 NUMBER = {"type": "number"}
+SHARE = {"type": "number", "minimum": 0, "maximum": 1}
 OPTIONAL = {"type": ["number", "null"]}
+FLAG = {"type": "boolean"}
 WORDS = {"type": "string"}
-NAMES = {"type": "array", "items": {"type": "string"}}
+WORDS_OR_NULL = {"type": ["string", "null"]}
 
 
-def _object(required: dict[str, Any], **optional: Any) -> dict[str, Any]:
+def _whole(least: int) -> Part:
+    return {"type": "integer", "minimum": least}
+
+
+def _one_of(*words: str | None) -> Part:
+    return {"enum": list(words)}
+
+
+def _list(items: Part, **more: int) -> Part:
+    return {"type": "array", "items": items} | more
+
+
+def _named(values: Part) -> Part:
+    """Give an object of any keys."""
+    return {"type": "object", "additionalProperties": values}
+
+
+def _or_null(part: Part) -> Part:
+    return {"oneOf": [part, {"type": "null"}]}
+
+
+def _object(required: Part, **optional: Any) -> Part:
     return {
         "type": "object",
         "required": list(required),
@@ -23,175 +52,88 @@ def _object(required: dict[str, Any], **optional: Any) -> dict[str, Any]:
     }
 
 
+NAMES = _list(WORDS)
+VERDICT = _one_of("named", "parameters", "no-gap", "unnamed")
+INTERVAL = _list(NUMBER, minItems=2, maxItems=2)
+# A range where the floor is only an upper bound.
+EXPLAINED = {"oneOf": [OPTIONAL, _list(NUMBER, minItems=2)]}
+
 VALUE = _object(
     {
         "value": {"type": ["number", "string", "array"]},
         "standard_error": {"type": ["number", "null", "array"]},
-        "unit": {"type": "string"},
+        "unit": WORDS,
     }
 )
-
 EFFECT = _object(
     {
-        "name": {"type": "string"},
-        "place": {"type": "string"},
-        "parameters": {"type": "object", "additionalProperties": VALUE},
-        "confidence": {"type": "number", "minimum": 0, "maximum": 1},
+        "name": WORDS,
+        "place": WORDS,
+        "parameters": _named(VALUE),
+        "confidence": SHARE,
         "cannot_be_told_from": NAMES,
     },
-    # Standard error of what it adds to the output, in times of it; null where that
-    # cannot be told.
     size_error=OPTIONAL,
-    # Labels of the blocks of model.yaml that stand for it.
     blocks=NAMES,
-    # What it is called by what it does, and what usually causes it: in such a device,
-    # where its kind is known.
     behaviour=WORDS,
     causes=NAMES,
 )
-
 VIEW = _object(
     {
-        "view": {"enum": list(get_args(ViewKind))},
-        "axis": {"type": "string"},
+        "view": _one_of(*get_args(ViewKind)),
+        "axis": WORDS,
         "from": {"type": ["number", "string"]},
         "to": {"type": ["number", "string"]},
-        "unit": {"type": "string"},
+        "unit": WORDS,
         "share_of_gap_power": NUMBER,
-        "p_value": {"type": "number", "minimum": 0, "maximum": 1},
-        "sentence": {"type": "string"},
+        "p_value": SHARE,
+        "sentence": WORDS,
     }
 )
-
-# Share of the power above the floor that is gone; a range where the floor is only an
-# upper bound; null where there is no power above it; zero where the model runs away on
-# a hold-out record.
-EXPLAINED = {"oneOf": [OPTIONAL, {"type": "array", "items": NUMBER, "minItems": 2}]}
-
-INTERVAL = {"type": "array", "items": NUMBER, "minItems": 2, "maxItems": 2}
 
 GAP = _object(
     {
         "before": NUMBER,
-        # Null where the model runs away on a hold-out record: it has no bound there.
         "after": OPTIONAL,
         "noise_floor": NUMBER,
-        "floor_method": {"enum": ["repeats", "declared", "upper-bound"]},
+        "floor_method": _one_of("repeats", "declared", "upper-bound"),
         "explained": EXPLAINED,
     },
-    # 95 % of the draws of one bootstrap: of both rms, and of what is explained.
     before_interval=INTERVAL,
     after_interval=INTERVAL,
     interval=INTERVAL,
 )
-
-# A hold-out record on which the model with its effects has no bounded output.
-AWAY = _object(
-    {
-        "record": {"type": "string"},
-        "from_s": NUMBER,
-        # What a simulator of somebody's own said that refused the record.
-        "refused": {"type": ["string", "null"]},
-        "sentence": WORDS,
-    }
-)
-
 FIT = _object(
     {
-        # RMS over the fit records alike, of the base and of the model with its effects.
         "before": NUMBER,
         "after": NUMBER,
-        # The share of the power above the floor that is gone there, and how much of it
-        # went to signals that are new in every record and predict no other.
         "explained": OPTIONAL,
         "new_in_every_record": NUMBER,
-        # RMS of the noise, of what the simulation of the model with its effects misses
-        # by its own steps, and of both: where that is reached no effect is added. Null
-        # where a simulator whose inside is not seen is in the chain.
         "noise": NUMBER,
         "step_error": OPTIONAL,
         "floor": NUMBER,
-        # Share of the gap that no effect takes away; it lowers every confidence. Of the
-        # whole gap, or of what no wrong hysteresis could do, whichever is less.
         "left": NUMBER,
-        # Share of the power of what is left that stands in lone samples; and how much
-        # of it differs between periods of the same input, above the noise's power and
-        # in units of that. Null where no record repeats.
         "lone_share": NUMBER,
         "unrepeated": OPTIONAL,
     }
 )
-
-# What the named effects cannot own of what they leave on the fit records, as shares of
-# the power of the gap.
-UNNAMED = _object(
-    {
-        # As the user allows it: more of `structured` withdraws the names; `changing`
-        # decides nothing.
-        "allowed": NUMBER,
-        # What follows known signals; what goes if the effects may change in time (null
-        # where none acts on the input); what follows no known signal.
-        "structured": NUMBER,
-        "changing": OPTIONAL,
-        "unrelated": NUMBER,
-        # Of what sort it is, and in words; null where no more stays than may.
-        "sort": {"enum": ["strength", "history", "memory", "curve", "unrelated", None]},
-        "sentence": {"type": ["string", "null"]},
-        # The effects' strength in each fit record, as a multiple of what it is in all.
-        "factors": {"type": "array", "items": NUMBER},
-    }
-)
-
-# Where the hold-out records show far less than the fit records promised: both shares
-# of the power above the floor that are gone, and what the reader is told.
-SHORTFALL = _object(
-    {"fit": OPTIONAL, "hold_out": OPTIONAL, "sentence": {"type": "string"}}
-)
-
-# A delay, a gain or an offset that some fit records have of their own, by record: no
-# effect. `share_of_gap_power` is above the noise floor, on the fit records.
-RECORD_VALUES = _object(
-    {
-        "kinds": {
-            "type": "array",
-            "items": {"enum": ["delay", "gain", "offset"]},
-            "minItems": 1,
-        },
-        "records": {
-            "type": "array",
-            "items": _object(
-                {"name": WORDS, "delay_s": NUMBER, "gain": NUMBER, "offset": NUMBER}
-            ),
-        },
-        "share_of_gap_power": NUMBER,
-        "sentence": WORDS,
-    }
-)
-
-# A hold-out record before and after; null where the model runs away on it.
 HOLD_OUT = {"name": WORDS, "before": NUMBER, "after": OPTIONAL}
-
-# Names that the hold-out records took back: the model with them is worse there than
-# the base. RMS over the hold-out records of the base and of that model, null where it
-# has no bounded output.
+RUNG = _object({"name": WORDS, "rms": OPTIONAL})
+AWAY = _object(
+    {"record": WORDS, "from_s": NUMBER, "refused": WORDS_OR_NULL, "sentence": WORDS}
+)
 WITHDRAWN = _object(
     {
         "names": NAMES,
-        # The word of the fit records, and what they decided.
-        "verdict": {"enum": ["named", "parameters", "no-gap", "unnamed"]},
-        "effects": {"type": "array", "items": EFFECT},
+        "verdict": VERDICT,
+        "effects": _list(EFFECT),
         "before": NUMBER,
         "after": OPTIONAL,
-        "records": {
-            "type": "array",
-            "items": _object(HOLD_OUT),
-        },
+        "records": _list(_object(HOLD_OUT)),
         "why": WORDS,
     }
 )
-
-# A flexible model of the residual, beside which the named effects stand; `outside` are
-# the records that lie outside what was fitted, together.
+SHORTFALL = _object({"fit": OPTIONAL, "hold_out": OPTIONAL, "sentence": WORDS})
 BLACK_BOX = _object(
     {},
     explained_on_folds=OPTIONAL,
@@ -199,191 +141,151 @@ BLACK_BOX = _object(
     explained=EXPLAINED,
     after_interval=INTERVAL,
     interval=INTERVAL,
-    records={
-        "type": "array",
-        "items": _object(
-            HOLD_OUT | {"named": OPTIONAL, "outside": NAMES}, explained=EXPLAINED
-        ),
-    },
-    outside={
-        "oneOf": [
-            _object({"before": NUMBER, "after": OPTIONAL, "named": OPTIONAL}),
-            {"type": "null"},
-        ]
-    },
+    records=_list(
+        _object(HOLD_OUT | {"named": OPTIONAL, "outside": NAMES}, explained=EXPLAINED)
+    ),
+    outside=_or_null(_object({"before": NUMBER, "after": OPTIONAL, "named": OPTIONAL})),
 )
 
-# Null where the model of a rung runs away on a hold-out record.
-RUNG = _object({"name": {"type": "string"}, "rms": OPTIONAL})
+UNNAMED = _object(
+    {
+        "allowed": NUMBER,
+        "structured": NUMBER,
+        "changing": OPTIONAL,
+        "unrelated": NUMBER,
+        "sort": _one_of("strength", "history", "memory", "curve", "unrelated", None),
+        "sentence": WORDS_OR_NULL,
+        "factors": _list(NUMBER),
+    }
+)
+RECORD_VALUES = _object(
+    {
+        "kinds": _list(_one_of("delay", "gain", "offset"), minItems=1),
+        "records": _list(
+            _object(
+                {"name": WORDS, "delay_s": NUMBER, "gain": NUMBER, "offset": NUMBER}
+            )
+        ),
+        "share_of_gap_power": NUMBER,
+        "sentence": WORDS,
+    }
+)
 
-# A place and form of an effect; its block's place in the chain, none beside it.
 TESTED = _object(
     {
-        "place": {"type": "string"},
-        "form": {"type": "string"},
+        "place": WORDS,
+        "form": WORDS,
         "position": {"type": ["integer", "null"], "minimum": 0},
         "score": NUMBER,
     }
 )
-
-# An effect that was added and went out again.
-TAKEN_OUT = _object({"name": {"type": "string"}, "reason": {"type": "string"}})
-
-# A row of a ranking. `round` and `look` number the rankings: look 0 is the round
-# itself, 1 and on are the second looks after it.
+TAKEN_OUT = _object({"name": WORDS, "reason": WORDS})
 RANK = _object(
     {
-        "round": {"type": "integer", "minimum": 1},
-        "look": {"type": "integer", "minimum": 0},
-        # The effect in whose place this one was tried; null in the round itself.
-        "instead_of": {"type": ["string", "null"]},
-        # The effects that were in the model beside which it was tried.
+        "round": _whole(1),
+        "look": _whole(0),
+        "instead_of": WORDS_OR_NULL,
         "beside": NAMES,
-        "name": {"type": "string"},
-        "place": {"type": "string"},
-        # Whether it is in the model by this ranking, added or kept.
-        "taken": {"type": "boolean"},
-        # Whether it was refitted with the whole model: only those can be a tie.
-        "refitted": {"type": "boolean"},
-        # The gain on records held back from the fit, of each likely effect that pays
-        # on all fit records.
+        "name": WORDS,
+        "place": WORDS,
+        "taken": FLAG,
+        "refitted": FLAG,
         "held_back": OPTIONAL,
     },
-    form={"type": "string"},
+    form=WORDS,
     score=NUMBER,
     gain=NUMBER,
-    declined={"type": "string"},
-    variants={"type": "array", "items": TESTED},
+    declined=WORDS,
+    variants=_list(TESTED),
 )
 
-# The excitation that tells the named effects from those that they cannot be told from
-# best, over all of them at once. Separations are in noise floors: of the pair that is
-# hardest, and of each pair.
+SETTING = _object(
+    {"value": {"type": ["number", "array"], "items": NUMBER}, "unit": WORDS}
+)
+PAIR = _object(
+    {
+        "of": WORDS,
+        "names": _list(WORDS, minItems=2, maxItems=2),
+        "separation": NUMBER,
+        "existing_separation": NUMBER,
+        "largest_separation": NUMBER,
+    }
+)
 EXPERIMENT = _object(
     {
-        "excitation": {"type": "string"},
-        "parameters": {
-            "type": "object",
-            "additionalProperties": _object(
-                {
-                    "value": {"type": ["number", "array"], "items": NUMBER},
-                    "unit": {"type": "string"},
-                }
-            ),
-        },
+        "excitation": WORDS,
+        "parameters": _named(SETTING),
         "sampling_interval_s": NUMBER,
         "separation": NUMBER,
         "existing_separation": NUMBER,
-        "pairs": {
-            "type": "array",
-            "items": _object(
-                {
-                    # The named effect in whose place both are, or which one of them is.
-                    "of": {"type": "string"},
-                    "names": NAMES | {"minItems": 2, "maxItems": 2},
-                    "separation": NUMBER,
-                    # By the existing record, and the excitation, best for this pair.
-                    "existing_separation": NUMBER,
-                    "largest_separation": NUMBER,
-                }
-            ),
-        },
-        # What is new in every record: no input brings it out.
-        "left_out": {
-            "type": "array",
-            "items": _object({"of": {"type": "string"}, "name": {"type": "string"}}),
-        },
+        "pairs": _list(PAIR),
+        "left_out": _list(_object({"of": WORDS, "name": WORDS})),
         "sentence": WORDS,
     }
 ) | {"type": ["object", "null"]}
 
-# Effects that the user put into the simulator, as they were fitted before the search,
-# and the RMS residual on the hold-out records without and with them. `gap` begins with
-# them: its `before` is this `after`.
+PUT_IN = _object(
+    {"name": WORDS, "place": WORDS, "form": WORDS, "parameters": _named(VALUE)},
+    behaviour=WORDS,
+    causes=NAMES,
+)
 BUILT_IN = _object(
+    {"effects": _list(PUT_IN), "before": NUMBER, "after": NUMBER, "sentence": WORDS}
+)
+DEVICE = _object(
     {
-        "effects": {
-            "type": "array",
-            "items": _object(
-                {
-                    "name": WORDS,
-                    "place": WORDS,
-                    "form": WORDS,
-                    "parameters": {"type": "object", "additionalProperties": VALUE},
-                },
-                behaviour=WORDS,
-                causes=NAMES,
-            ),
-        },
-        "before": NUMBER,
-        "after": NUMBER,
-        "sentence": WORDS,
+        "kind": _one_of(*DEVICE_KINDS, None),
+        "input": _one_of(*QUANTITIES),
+        "output": _one_of(*QUANTITIES),
+        "causality": WORDS,
+    }
+)
+CHANNEL = _object({"name": WORDS, "unit": WORDS})
+SIMULATOR = _object(
+    {
+        "input": CHANNEL,
+        "output": CHANNEL,
+        "functions": NAMES,
+        "runs_again": FLAG,
+        "sampling_interval_s": NUMBER,
     }
 )
 
 SCHEMA = _object(
     {
-        "dataset": {"type": "string"},
-        "model": {"type": "string"},
-        "unit": {"type": "string"},
-        "verdict": {"enum": ["named", "parameters", "no-gap", "unnamed"]},
-        "reason": {"type": "string"},
-        "effects": {"type": "array", "items": EFFECT},
-        "where": {"type": "array", "items": VIEW},
+        "dataset": WORDS,
+        "model": WORDS,
+        "unit": WORDS,
+        "verdict": VERDICT,
+        "reason": WORDS,
+        "effects": _list(EFFECT),
+        "where": _list(VIEW),
         "gap": GAP,
-        "ranking": {"type": "array", "items": RANK},
+        "ranking": _list(RANK),
         "next_experiment": EXPERIMENT,
     },
-    records={"type": "array", "items": _object(HOLD_OUT, explained=EXPLAINED)},
-    # The base, the base re-tuned within what it leaves free, then effect by effect.
-    ladder={"type": "array", "items": RUNG},
+    records=_list(_object(HOLD_OUT, explained=EXPLAINED)),
+    ladder=_list(RUNG),
     fit=FIT,
     unnamed=UNNAMED,
-    runs_away={"type": "array", "items": AWAY},
-    record_values={"oneOf": [RECORD_VALUES, {"type": "null"}]},
-    withdrawn={"oneOf": [WITHDRAWN, {"type": "null"}]},
-    # Where the user put effects in or left some out, or the kind of device leaves some
-    # out as impossible.
+    runs_away=_list(AWAY),
+    record_values=_or_null(RECORD_VALUES),
+    withdrawn=_or_null(WITHDRAWN),
     asked=_object(
         {"without": NAMES, "with": NAMES, "sentence": WORDS}, impossible=NAMES
     ),
-    # What the device is: its kind as dataset.yaml tells it, and what its units tell.
-    device=_object(
-        {
-            "kind": {"enum": [*DEVICE_KINDS, None]},
-            "input": {"enum": list(QUANTITIES)},
-            "output": {"enum": list(QUANTITIES)},
-            "causality": WORDS,
-        }
-    ),
+    device=DEVICE,
     built_in=BUILT_IN,
-    # What hystbench gap was called with, as typed, so that the page can show how to run
-    # it again.
     command=_object({"dataset": WORDS, "model": WORDS, "out": WORDS}),
-    # Effects that need a simulator that can be run again, where it cannot.
-    not_tried={"type": "array", "items": {"type": "string"}},
-    taken_out={"type": "array", "items": TAKEN_OUT},
-    shortfall={"oneOf": [SHORTFALL, {"type": "null"}]},
-    black_box={"oneOf": [BLACK_BOX, {"type": "null"}]},
+    not_tried=NAMES,
+    taken_out=_list(TAKEN_OUT),
+    shortfall=_or_null(SHORTFALL),
+    black_box=_or_null(BLACK_BOX),
     base_parameters={"type": "object"},
-    # The model with its effects: what it takes and gives, how to run it.
-    simulator=_object(
-        {
-            "input": _object({"name": WORDS, "unit": WORDS}),
-            "output": _object({"name": WORDS, "unit": WORDS}),
-            # Functions that must be importable where it runs.
-            "functions": NAMES,
-            # Whether it answers to other inputs than those of the records.
-            "runs_again": {"type": "boolean"},
-            "sampling_interval_s": NUMBER,
-        }
-    ),
-    # Where --calls ended the search: how many were allowed.
+    simulator=SIMULATOR,
     calls_used_up=_object({"bound": {"type": "integer"}, "sentence": WORDS}),
-    # What of the dataset is hardly meant: copies, strange times, sizes and units.
-    warnings={"type": "array", "items": WORDS},
-    # Why next_experiment is null though effects cannot be told apart.
-    no_experiment={"type": "string"},
+    warnings=NAMES,
+    no_experiment=WORDS,
 )
 
 _NOTHING: dict[str, Any] = {"array": [], "string": ""}

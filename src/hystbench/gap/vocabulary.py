@@ -7,7 +7,7 @@ that is the name of one cause among several, sentences call it by what it does.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -140,7 +140,7 @@ def say_in_words(say: Say) -> Say:
 def for_readers(content: Mapping[str, Any]) -> dict[str, Any]:
     """Give what gap.json holds as the page shows it: every name in words."""
     return {
-        key: value if key in _OF_THE_USER else _each_text(value, in_words)
+        key: value if key in _OF_THE_USER else _worded(value, every=True)
         for key, value in content.items()
     }
 
@@ -164,7 +164,7 @@ def with_device(
         With ``device``, with ``behaviour`` and ``causes`` of each effect, and with
         sentences that call effects by what they do.
     """
-    told = {key: _sentences(value, key) for key, value in content.items()}
+    told: dict[str, Any] = _worded(content, every=False)
     told.pop("device", None)  # told where the fit records decided: it goes last
     told["effects"] = _with_causes(told["effects"], kind)
     for part in ("withdrawn", "built_in"):
@@ -191,19 +191,12 @@ def _with_causes(effects: list[dict[str, Any]], kind: DeviceKind | None) -> list
     ]
 
 
-def _sentences(value: Any, key: str = "") -> Any:
-    """Word the sentences at any depth; names stay."""
+def _worded(value: Any, every: bool, key: str = "") -> Any:
+    """Word texts at any depth: every one, or sentences alone; keys stay."""
     if isinstance(value, Mapping):
-        return {name: _sentences(item, name) for name, item in value.items()}
+        return {name: _worded(item, every, name) for name, item in value.items()}
     if isinstance(value, list):
-        return [_sentences(item, key) for item in value]
-    worded = isinstance(value, str) and key in _SENTENCES
-    return in_words(value) if worded else value
-
-
-def _each_text(value: Any, change: Callable[[str], str]) -> Any:
-    if isinstance(value, Mapping):
-        return {name: _each_text(item, change) for name, item in value.items()}
-    if isinstance(value, list):
-        return [_each_text(item, change) for item in value]
-    return change(value) if isinstance(value, str) else value
+        return [_worded(item, every, key) for item in value]
+    if isinstance(value, str) and (every or key in _SENTENCES):
+        return in_words(value)
+    return value

@@ -19,7 +19,7 @@ from hystbench.gap.holdout.show import FAR, FitResult, bounded, reach, score_hol
 from hystbench.gap.judging.black_box import black_box
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.evidence import Evidence
-from hystbench.gap.report.tables import write_summary
+from hystbench.gap.report.tables import write_table
 from hystbench.model import Model, load_model
 from tests.gap.closing import close_gap
 from tests.gap.conftest import without_rendering
@@ -133,7 +133,7 @@ def test_tables_and_page_tell_it(written, tmp_path):
     assert content["runs_away"][0]["sentence"] in page
     headline = page.index("Stiffness hardening was withdrawn")
     assert headline < page.index("<h2>Effects")
-    write_summary([content], tmp_path / "summary.csv")
+    write_table("summary", [content], tmp_path / "summary.csv")
     with (tmp_path / "summary.csv").open(newline="") as stream:
         (row,) = csv.DictReader(stream)
     assert (row["verdict"], row["effects"]) == ("unnamed", "none")

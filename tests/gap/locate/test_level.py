@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from hystbench.gap.locate import locate
+from hystbench.gap.locate import curves, locate
 from hystbench.gap.locate.level import WORDS, picture_of, take_levels
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.evidence import load_evidence
@@ -131,8 +132,8 @@ def test_where_levels_show_nothing_there_is_no_view(oscillators, compared):
     found = compared(oscillators)
     assert moving(found) == ()
     found = locate(found, noise_floor(found))
-    assert "level" not in {view.view for view in found.views}
-    assert any("modes by level" in line for line in found.not_drawn)
+    assert "level" not in {view.view for view in found}
+    assert any("modes by level" in line for line in curves(found)["not_drawn"])
 
 
 def test_levels_that_are_alike_are_one(oscillators):
@@ -144,7 +145,7 @@ def test_levels_that_are_alike_are_one(oscillators):
 def test_the_view_is_as_gap_json_has_it(oscillators):
     compared = records(oscillators["hysteresis"])
     floor = noise_floor(compared)
-    (view,) = (item for item in locate(compared, floor).views if item.view == "level")
+    (view,) = (item for item in locate(compared, floor) if item.view == "level")
     check_against_schema(view.to_mapping(), VIEW, "view")
     assert (view.start, view.end) == pytest.approx((LEVELS[0], LEVELS[-1]))
     assert view.p_value < 1e-6
@@ -152,12 +153,12 @@ def test_the_view_is_as_gap_json_has_it(oscillators):
     assert view.share_of_gap_power > 0.7
     assert "micro-slip" in view.sentence
     (picture,) = view.pictures
-    json.dumps(picture.to_mapping(), allow_nan=False)
+    json.dumps(asdict(picture), allow_nan=False)
 
 
 def test_a_mode_that_stays_is_no_evidence(oscillators):
     compared = records(oscillators["linear"])
-    views = locate(compared, noise_floor(compared)).views
+    views = locate(compared, noise_floor(compared))
     (view,) = (item for item in views if item.view == "level")
     assert view.p_value > 0.05
 

@@ -13,8 +13,7 @@ from jsonschema import validate
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects as vocabulary
-from hystbench.gap.locate import Contribution, View, ranked
-from hystbench.gap.locate import locate as located
+from hystbench.gap.locate import Contribution, View, locate, ranked
 from hystbench.gap.locate.distortion import BETWEEN, EVEN, ODD, take_distortion
 from hystbench.gap.locate.forms import narrowest_bins
 from hystbench.gap.locate.samples import take_samples
@@ -72,10 +71,6 @@ CASES = [
 AS_WELL = {"slew-limit": "frequency", "rate-dependent-hysteresis": "frequency"}
 
 
-def locate(compared, floor):
-    return located(compared, floor).views
-
-
 @cache
 def views_of(name, plant, ratio_db=20.0, seed=0):
     compared, _ = gap_of(name, PLANTS[plant], ratio_db, seed)
@@ -88,7 +83,7 @@ def named_views_of(name, plant, ratio_db=20.0, seed=0):
     compared, _ = gap_of(name, PLANTS[plant], ratio_db, seed)
     bare, _ = gap_of(name, PLANTS[plant], 200.0, seed)
     adds = Contribution(name, FIRST[name], tuple(one.residual for one in bare), 2)
-    return located(compared, noise_floor(compared), [adds]).views
+    return locate(compared, noise_floor(compared), [adds])
 
 
 def test_every_effect_shows_in_a_view():
@@ -127,7 +122,7 @@ def test_of_several_effects_the_larger_comes_first_and_behind_them_the_rest():
         Contribution("creep", "slow-time", tuple(0.1 * one**2 for one in whole)),
         Contribution("of-tomorrow", None, tuple(whole)),
     ]
-    found = located(compared, noise_floor(compared), parts).views
+    found = locate(compared, noise_floor(compared), parts)
     assert [view.view for view in found[:2]] == ["amplitude", "slow-time"]
     assert [view.named for view in found] == [True, True] + 6 * [False]
     assert "is what drive-saturation adds" in found[0].sentence
@@ -160,7 +155,7 @@ def test_a_mode_is_found_around_its_frequency():
     compared = [compare(name, u, y, straight(u), period)]
     adds = Contribution("resonance", "frequency", (clean - straight(u),), 3)
     for contributions in ((), (adds,)):
-        views = located(compared, noise_floor(compared), contributions).views
+        views = locate(compared, noise_floor(compared), contributions)
         (view,) = [one for one in views if one.view == "frequency"]
         assert 50 < view.start < 70 < view.end < 100
     assert views[0] is view

@@ -5,7 +5,7 @@ import csv
 import pytest
 
 from hystbench.errors import InputError
-from hystbench.gap.report.tables import write_gallery, write_sentences
+from hystbench.gap.report.tables import write_gallery, write_table
 from hystbench.gap.report.words import verdict_text
 from tests.gap.report.test_report import GAP, write_folder
 
@@ -45,7 +45,9 @@ def test_where_there_is_no_gap_the_reason_is_in_the_sentence():
 
 
 def test_sentences_of_several_stand_in_one_table(tmp_path):
-    write_sentences([GAP, GAP | {"dataset": "other"}], tmp_path / "sentences.csv")
+    write_table(
+        "sentences", [GAP, GAP | {"dataset": "other"}], tmp_path / "sentences.csv"
+    )
     with (tmp_path / "sentences.csv").open(newline="") as stream:
         rows = list(csv.reader(stream))
     sentence = "The simulator lacks resonance and creep."

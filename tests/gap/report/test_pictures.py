@@ -8,9 +8,10 @@ import re
 import numpy as np
 import pytest
 
+from hystbench.gap.locate import curves as curves_of
 from hystbench.gap.locate import locate
 from hystbench.gap.locate.distortion import EITHER, EVEN, ODD, take_distortion
-from hystbench.gap.locate.over_axis import COLUMNS, FEWEST, over_plane, rate_edges
+from hystbench.gap.locate.picture import COLUMNS, FEWEST, over_plane, rate_edges
 from hystbench.gap.locate.samples import take_samples
 from hystbench.gap.records.floor import noise_floor
 from hystbench.gap.records.scored_samples import Compared
@@ -28,7 +29,7 @@ from tests.gap.made import record
 
 
 def picture(compared, name, floor=None):
-    curves = locate(compared, noise_floor(compared, floor)).curves()
+    curves = curves_of(locate(compared, noise_floor(compared, floor)))
     return next(one for one in curves["pictures"] if one["name"] == name)
 
 
@@ -48,7 +49,7 @@ def lists_of(value):
 
 def test_curves_are_small_and_are_json():
     compared, _ = gap_of("backlash", hysteretic)
-    found = locate(compared, noise_floor(compared)).curves()
+    found = curves_of(locate(compared, noise_floor(compared)))
     assert len(json.dumps(found, allow_nan=False)) < 60_000
     assert max(len(one) for one in lists_of(found)) <= 200
     names = {one["name"] for one in found["pictures"]}

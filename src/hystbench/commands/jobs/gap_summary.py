@@ -1,12 +1,6 @@
 """``hystbench job gap-summary``: the verdicts on several datasets as tables."""
 
-from hystbench.gap.report.tables import (
-    write_adds,
-    write_effects,
-    write_records,
-    write_sentences,
-    write_summary,
-)
+from hystbench.gap.report.tables import write_adds, write_table
 from hystbench.job import In, Json, Out, job
 from hystbench.model import load_model
 
@@ -26,9 +20,9 @@ def gap_summary(
 
     ADDS is a table of what the TWIN, a model file, adds to its hysteresis.
     """
-    write_effects(gaps, effects)
-    write_records(gaps, records)
-    write_sentences(gaps, sentences)
-    write_summary(gaps, out)
+    write_table("summary", gaps, out)
+    write_table("effects", gaps, effects)
+    write_table("records", gaps, records)
+    write_table("sentences", gaps, sentences)
     if twin is not None and adds is not None:
         write_adds(load_model(twin), adds)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +24,12 @@ PERIODS = 3
 FREQUENCIES = 12
 AMPLITUDES = (0.25, 0.5, 1.0)
 BIASES = 5
+#: Units by the end of a parameter's name; without one it has the input's.
+UNITS = {"hz": "Hz", "s": "s"}
+
+Numbers = Mapping[str, float | list[float]]
+#: Kind, signal about the middle of the range, and what makes it.
+Offer = tuple[str, FloatArray, Numbers]
 
 
 @dataclass(frozen=True)
@@ -186,11 +193,20 @@ def candidates(limits: Limits, unit: str) -> tuple[Excitation, ...]:
         # What is slow is sampled more coarsely, so that it lasts as long as it may.
         makers.append((_slow, replace(limits, dt=limits.duration_s / LONGEST)))
     return tuple(
-        item
+        Excitation(kind, _with_units(numbers, unit, len(u) * own.dt), own.dt, u)
         for make, own in makers
-        for item in make(own, unit)
-        if _feasible(item.u, own)
+        for kind, about_middle, numbers in make(own)
+        for u in [own.middle + about_middle]
+        if _feasible(u, own)
     )
+
+
+def _with_units(numbers: Numbers, unit: str, seconds: float) -> dict[str, Any]:
+    """Give each number its unit: the end of its name tells, else it is the input's."""
+    return {
+        name: (value, UNITS.get(name.rpartition("_")[2], unit))
+        for name, value in {**numbers, "duration_s": seconds}.items()
+    }
 
 
 def _feasible(u: FloatArray, limits: Limits) -> bool:
@@ -200,81 +216,61 @@ def _feasible(u: FloatArray, limits: Limits) -> bool:
     return bool(within and 0 < fastest <= limits.rate * limits.dt * (1 + 1e-6))
 
 
-def _made(
-    kind: str,
-    limits: Limits,
-    u: FloatArray,
-    **about: tuple[float | list[float], str],
-) -> Excitation:
-    """Put a signal about the middle of the range."""
-    parameters = {**about, "duration_s": (len(u) * limits.dt, "s")}
-    return Excitation(kind, parameters, limits.dt, limits.middle + u)
-
-
-def _sines(limits: Limits, unit: str) -> Iterator[Excitation]:
-    bias = (limits.middle, unit)
+def _sines(limits: Limits) -> Iterator[Offer]:
     for frequency in limits.frequencies.tolist():
         most = min(limits.half, limits.rate / (2 * np.pi * frequency))
         wave = np.sin(2 * np.pi * frequency * limits.time)
-        own = {"frequency_hz": (frequency, "Hz")}
-        for part in AMPLITUDES:
-            size = (part * most, unit)
-            yield _made(
-                "sine", limits, part * most * wave, **own, amplitude=size, bias=bias
-            )
+        for size in (part * most for part in AMPLITUDES):
+            own = {"frequency_hz": frequency, "amplitude": size, "bias": limits.middle}
+            yield "sine", size * wave, own
         # Half of the rate moves between levels, half is left for the loops.
-        amplitude = min(limits.half / BIASES, most / 2)
-        levels = np.linspace(-1, 1, BIASES) * (limits.half - amplitude)
-        u = _through(levels, limits, part=0.5) + amplitude * wave
-        at = ((limits.middle + levels).tolist(), unit)
-        size = (amplitude, unit)
-        yield _made(
-            "biased-minor-loops", limits, u, **own, amplitude=size, bias_levels=at
+        size = min(limits.half / BIASES, most / 2)
+        levels = np.linspace(-1, 1, BIASES) * (limits.half - size)
+        loops = {
+            "frequency_hz": frequency,
+            "amplitude": size,
+            "bias_levels": (limits.middle + levels).tolist(),
+        }
+        yield (
+            "biased-minor-loops",
+            _through(levels, limits, part=0.5) + size * wave,
+            loops,
         )
 
 
-def _wide_bands(limits: Limits, unit: str) -> Iterator[Excitation]:
-    frequencies, bias = limits.frequencies, (limits.middle, unit)
+def _wide_bands(limits: Limits) -> Iterator[Offer]:
+    frequencies = limits.frequencies
     low, high = float(frequencies[0]), float(frequencies[-1])
-    amplitude = min(limits.half, limits.rate / (2 * np.pi * high))
+    size = min(limits.half, limits.rate / (2 * np.pi * high))
+    ends = {"from_hz": low, "to_hz": high, "amplitude": size}
     u = Chirp.samples(
-        from_hz=low,
-        to_hz=high,
-        amplitude=amplitude,
+        **ends,
         duration_s=len(limits.time) * limits.dt,
         sampling_frequency_hz=1 / limits.dt,
     )
-    ends = {"from_hz": (low, "Hz"), "to_hz": (high, "Hz")}
-    yield _made("chirp", limits, u, **ends, amplitude=(amplitude, unit), bias=bias)
+    yield "chirp", u, {**ends, "bias": limits.middle}
     raw = np.sin(2 * np.pi * np.outer(limits.time, frequencies)).sum(axis=1)
     fastest = float(np.abs(np.diff(raw)).max()) / limits.dt
-    each = min(limits.half / float(np.abs(raw).max()), limits.rate / fastest)
-    lines = (frequencies.tolist(), "Hz")
-    size = (each, unit)
-    yield _made(
-        "multisine",
-        limits,
-        each * raw,
-        frequencies_hz=lines,
-        amplitude_each=size,
-        bias=bias,
-    )
+    size = min(limits.half / float(np.abs(raw).max()), limits.rate / fastest)
+    lines = {"frequencies_hz": frequencies.tolist(), "amplitude_each": size}
+    yield "multisine", size * raw, {**lines, "bias": limits.middle}
 
 
-def _slow(limits: Limits, unit: str) -> Iterator[Excitation]:
+def _slow(limits: Limits) -> Iterator[Offer]:
     count = len(limits.time)
     seconds = count * limits.dt
-    for part in AMPLITUDES:
-        levels = part * limits.half * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
-        at = ((limits.middle + levels).tolist(), unit)
-        hold = (seconds / len(levels), "s")
-        u = _through(levels, limits)
-        yield _made("steps-with-holds", limits, u, levels=at, hold_s=hold)
+    for size in (part * limits.half for part in AMPLITUDES):
+        levels = size * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
+        at = (limits.middle + levels).tolist()
+        hold = seconds / len(levels)
+        yield (
+            "steps-with-holds",
+            _through(levels, limits),
+            {"levels": at, "hold_s": hold},
+        )
         corners = np.linspace(0, count - 1, len(levels))
-        u = np.interp(np.arange(count), corners, levels)
-        size, bias = (part * limits.half, unit), (limits.middle, unit)
-        period = (seconds, "s")
-        yield _made("slow-ramp", limits, u, amplitude=size, bias=bias, period_s=period)
+        ramp = {"amplitude": size, "bias": limits.middle, "period_s": seconds}
+        yield "slow-ramp", np.interp(np.arange(count), corners, levels), ramp
 
 
 def _through(levels: FloatArray, limits: Limits, part: float = 1.0) -> FloatArray:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,16 +17,6 @@ from hystbench.record import FloatArray
 
 CHANGE = 1e-3
 """Relative change of a parameter in a refit; of 0 an absolute one."""
-
-
-class Runnable(Protocol):
-    """What runs from an input: a model."""
-
-    def simulate_near(
-        self, others: Sequence[Any], u: FloatArray, dt: float
-    ) -> list[FloatArray]:
-        """Compute the output, and those of others with numbers near."""
-        ...
 
 
 class Run(NamedTuple):
@@ -42,13 +32,13 @@ class Rival:
 
     Parameters
     ----------
-    model : Runnable
-    neighbours : tuple of Runnable
+    model : Model
+    neighbours : tuple of Model
         What a refit of it may move towards, besides another gain and offset.
     """
 
-    model: Runnable
-    neighbours: tuple[Runnable, ...] = ()
+    model: Model
+    neighbours: tuple[Model, ...] = ()
 
     @classmethod
     def of(cls, model: Model, names: Sequence[str]) -> Rival:

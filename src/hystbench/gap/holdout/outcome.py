@@ -7,16 +7,16 @@ keep those of its effects that do better there would be to choose by hold-out re
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
-from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.base_on_records import run_base
 from hystbench.gap.holdout.show import (
     FitResult,
+    Outcome,
     as_recorded,
     nuisance_of,
     score_hold_out,
@@ -26,31 +26,14 @@ from hystbench.gap.naming.built_in import BuiltIn
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.gap.vocabulary import Vocabulary, with_device
-from hystbench.model import Model
-from hystbench.record import FloatArray
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """A decision after the hold-out records were read.
-
-    Parameters
-    ----------
-    model : Model
-        The base, where they took the names back.
-    content : dict
-        What gap.json holds.
-    outputs : list of (ndarray, ndarray)
-        Outputs before and after, of each record; NaN where the model runs away on it.
-    """
-
-    model: Model
-    content: dict[str, Any]
-    outputs: list[tuple[FloatArray, FloatArray]]
 
 
 def outcome(
-    fitted: FitResult, decided: Mapping[str, Any], evidence: Evidence
+    fitted: FitResult,
+    decided: Mapping[str, Any],
+    evidence: Evidence,
+    vocabulary: Vocabulary,
+    built_in: BuiltIn | None,
 ) -> Outcome:
     """Show a decision on the hold-out records; take back what is worse there.
 
@@ -60,6 +43,10 @@ def outcome(
     decided : mapping
         What gap.json holds, but for what the hold-out records show.
     evidence : Evidence
+    vocabulary : Vocabulary
+        What the user put in or left out, which is told.
+    built_in : BuiltIn or None
+        None where no effect was put in.
     """
     shown = score_hold_out(fitted, evidence.hold_out)
     content = {
@@ -68,8 +55,6 @@ def outcome(
         **shown.content,
         "warnings": list(evidence.warnings),
     }
-    base, state = fitted.base, fitted.state
-    model = augmented(base, state).with_hold(state.hold)
     taken = withdrawal(content)
     if taken is not None:
         # The ladder and what runs away stay: they tell why.
@@ -78,43 +63,25 @@ def outcome(
         alone = score_hold_out(unchanged, evidence.hold_out)
         kept = {key: alone.content[key] for key in ("gap", "records", "black_box")}
         content = without_names({**content, **kept}, taken)
-        model = base.with_hold(state.hold)
-        shown = alone
+        shown = replace(alone, model=fitted.base.with_hold(fitted.state.hold))
     elif content["effects"] or content["verdict"] == "parameters":
         content["reason"] = f"{first_figure(content)}; {content['reason']}"
     content["shortfall"] = shortfall(content)
-    return Outcome(model, content, shown.outputs)
-
-
-def as_asked(
-    shown: Outcome,
-    fitted: FitResult,
-    evidence: Evidence,
-    vocabulary: Vocabulary,
-    built_in: BuiltIn | None,
-) -> Outcome:
-    """Tell which effects the user put in or left out, and what the device makes of all.
-
-    Parameters
-    ----------
-    shown : Outcome
-    fitted : FitResult
-    evidence : Evidence
-    vocabulary : Vocabulary
-    built_in : BuiltIn or None
-        None where no effect was put in.
-    """
-    content = with_what_was_asked(shown.content, vocabulary)
+    content = with_what_was_asked(content, vocabulary)
     if built_in is not None:
-        records = evidence.hold_out
-        outputs = run_base(built_in.alone, records, evidence.input_hold)
-        mine = as_recorded(fitted.own, records, outputs, fitted.floor)
-        nuisance = nuisance_of(fitted.state, fitted.own)
-        alone = left_rms(records, mine, nuisance)
-        assert alone is not None  # noqa: S101  (run_base refuses what has no bound)
-        content = with_built_in(content, built_in, alone)
+        content = with_built_in(content, built_in, _alone(built_in, fitted, evidence))
     content = with_device(content, evidence.device_kind, evidence.quantities)
     return replace(shown, content=content)
+
+
+def _alone(built_in: BuiltIn, fitted: FitResult, evidence: Evidence) -> float:
+    """RMS residual, on the hold-out records, of the simulator with nothing put in."""
+    records = evidence.hold_out
+    outputs = run_base(built_in.alone, records, evidence.input_hold)
+    mine = as_recorded(fitted.own, records, outputs, fitted.floor)
+    size = left_rms(records, mine, nuisance_of(fitted.state, fitted.own))
+    assert size is not None  # noqa: S101  (run_base refuses what has no bound)
+    return size
 
 
 LEAST = 5e-4

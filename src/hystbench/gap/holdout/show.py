@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hystbench.errors import InputError
+from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.base_on_records import run_base
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.holdout.shrink import RecordShrink, Shrink, left_rms, shrink
+from hystbench.gap.holdout.shrink import Shrink, left_rms, shrink
 from hystbench.gap.judging.black_box import BlackBox
 from hystbench.gap.naming.ladder import Rung
 from hystbench.gap.records.floor import Floor
@@ -54,32 +55,32 @@ class FitResult:
 
 
 @dataclass(frozen=True)
-class Shown:
+class Outcome:
     """What the hold-out records show.
 
     Parameters
     ----------
+    model : Model
+        The base with its effects; the base, where the records took the names back.
     content : dict
-        ``gap``, ``records``, ``ladder``, ``runs_away`` and ``black_box`` of gap.json.
+        Of gap.json: ``gap``, ``records``, ``ladder``, ``runs_away`` and ``black_box``,
+        then all of it.
     outputs : list of (ndarray, ndarray)
         Outputs before and after, of each record; NaN where the model runs away on it.
     """
 
+    model: Model
     content: dict[str, Any]
     outputs: list[tuple[FloatArray, FloatArray]]
 
 
-def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Shown:
+def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Outcome:
     """Compare base and model on hold-out records.
 
     Parameters
     ----------
     fitted : FitResult
     records : tuple of Record
-
-    Returns
-    -------
-    Shown
 
     Raises
     ------
@@ -91,36 +92,40 @@ def score_hold_out(fitted: FitResult, records: tuple[Record, ...]) -> Shown:
     nuisance = nuisance_of(state, own)
     plain = run_base(base, records, state.hold)
     usual = reach(plain, floor.rms)
-    mine = as_recorded(own, records, plain, floor)
-    before = [output for output in mine if output is not None]
-    found_after, lost = _run(_name(base, state), state, records, usual)
-    after = as_recorded(own, records, found_after, floor)
-    found: Shrink = shrink(records, before, after, floor.rms, floor.method, nuisance)
+    before = [y for y in as_recorded(own, records, plain, floor) if y is not None]
+
+    def run(state: ModelState) -> tuple[list[FloatArray | None], list[RunsAway]]:
+        outputs, lost = _run(base, state, records, usual)
+        return as_recorded(own, records, outputs, floor), lost
+
+    after, lost = run(state)
+    found = shrink(records, before, after, floor.rms, floor.method, nuisance)
     content = {
         "gap": found.mapping(),
         "records": [item.mapping() for item in found.records],
         "ladder": [
-            {"name": rung.name, "rms": left_rms(records, outputs, nuisance)}
+            {
+                "name": rung.name,
+                "rms": left_rms(records, run(rung.state)[0], nuisance),
+            }
             for rung in fitted.rungs
-            for ran, _ in [_run(_name(base, rung.state), rung.state, records, usual)]
-            for outputs in [as_recorded(own, records, ran, floor)]
         ],
         "runs_away": [item.mapping() for item in lost],
         "black_box": black_box_mapping(
             fitted.black_box, records, before, found, nuisance
         ),
     }
-    outputs = [
-        (record.y - item.residual_before, _after(record, item))
+    shown = [
+        (
+            record.y - item.residual_before,
+            np.full(len(record), np.nan)
+            if item.residual_after is None
+            else record.y - item.residual_after,
+        )
         for record, item in zip(records, found.records, strict=True)
     ]
-    return Shown(content, outputs)
-
-
-def _after(record: Record, item: RecordShrink) -> FloatArray:
-    if item.residual_after is None:
-        return np.full(len(record), np.nan)
-    return record.y - item.residual_after
+    model = augmented(base, state).with_hold(state.hold)
+    return Outcome(model, content, shown)
 
 
 def nuisance_of(state: ModelState, own: OwnValues) -> Nuisance | None:
@@ -164,7 +169,7 @@ def what_is_new(state: ModelState) -> Nuisance | None:
 
 
 def _run(
-    name: str, state: ModelState, records: tuple[Record, ...], usual: float
+    base: Model, state: ModelState, records: tuple[Record, ...], usual: float
 ) -> tuple[list[FloatArray | None], list[RunsAway]]:
     outputs: list[FloatArray] = []
     refused: dict[str, str] = {}
@@ -175,12 +180,9 @@ def _run(
         except InputError as error:  # a simulator may not take what an effect sends it
             refused[record.name] = str(error)
             outputs.append(np.full(len(record), np.nan))
-    return bounded(name, records, outputs, usual, refused)
-
-
-def _name(base: Model, state: ModelState) -> str:
     effects = " and ".join(item.effect for item in state.added)
-    return f"{base.name} with {effects}" if effects else base.name
+    name = f"{base.name} with {effects}" if effects else base.name
+    return bounded(name, records, outputs, usual, refused)
 
 
 FAR = 1e6

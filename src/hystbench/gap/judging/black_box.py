@@ -123,14 +123,14 @@ class BlackBox:
             In the unit of the output.
         """
         signals = self.signals
-        lines, blocks = signals.columns(Compared(record, simulated), slice(None))
+        blocks = signals.columns(Compared(record, simulated), slice(None))
         weights = self.weights / signals.spreads
-        ends = np.cumsum([len(lines), *(block.shape[1] for block in blocks)])
-        own, *others = np.split(weights, ends[:-1])
-        predicted = own @ lines - np.sum(signals.middles * weights)
-        for block, part in zip(blocks, others, strict=True):
+        ends = np.cumsum([block.shape[1] for block in blocks])
+        # All columns in one would take twice the memory.
+        predicted = np.full(len(record), -np.sum(signals.middles * weights))
+        for block, part in zip(blocks, np.split(weights, ends[:-1]), strict=True):
             predicted += block @ part
-        return np.asarray(predicted)
+        return predicted
 
     def outside(self, record: Record) -> tuple[str, ...]:
         """Tell in what a record lies outside the records that were fitted.
@@ -227,7 +227,7 @@ class BoxInputs:
         left, size, right = np.linalg.svd(found.near_landmarks(cloud[chosen]))
         root = np.sqrt(np.maximum(size, LEAST))
         found = replace(found, whitening=(left / root) @ right)
-        raw = np.concatenate([_table(*found.columns(*pair)) for pair in pairs])
+        raw = np.concatenate([np.hstack(found.columns(*pair)) for pair in pairs])
         middles, spreads = raw.mean(axis=0), raw.std(axis=0)
         middles[-1] = 0.0  # the last column is a constant
         spreads[spreads == 0] = 1.0
@@ -235,9 +235,7 @@ class BoxInputs:
         raw /= spreads
         return replace(found, middles=middles, spreads=spreads), raw
 
-    def columns(
-        self, compared: Compared, rows: Any
-    ) -> tuple[FloatArray, list[FloatArray]]:
+    def columns(self, compared: Compared, rows: Any) -> list[FloatArray]:
         """Give all columns: linear in the past, and nonlinear in the present.
 
         Parameters
@@ -248,10 +246,8 @@ class BoxInputs:
 
         Returns
         -------
-        lines : ndarray, shape (k, rows)
-            The first columns, one a row.
-        blocks : list of ndarray, shape (rows, m) each
-            Those that follow; the last is a constant.
+        list of ndarray, shape (rows, m) each
+            The last is a constant.
         """
         dt = compared.record.dt
         u, s = self._scaled(compared)
@@ -269,10 +265,14 @@ class BoxInputs:
         plays, _ = play(u, self.excursion * np.array(THRESHOLDS))
         state = self.state(compared, rows)
         first, second = np.triu_indices(state.shape[1])
-        blocks = [np.tanh(state / width) for width in TURNS]
-        blocks += [plays[rows], state[:, first] * state[:, second]]
-        blocks += [self.near_landmarks(state), np.ones((len(state), 1))]
-        return np.array(lines), blocks
+        return [
+            np.array(lines).T,
+            *(np.tanh(state / width) for width in TURNS),
+            plays[rows],
+            state[:, first] * state[:, second],
+            self.near_landmarks(state),
+            np.ones((len(state), 1)),
+        ]
 
     def near_landmarks(self, state: FloatArray) -> FloatArray:
         """Give a Gaussian of the distance from each landmark, shape (rows, k)."""
@@ -295,11 +295,6 @@ class BoxInputs:
             np.gradient(x, dt) / r for x, r in zip((u, s), self.rates, strict=True)
         ]
         return np.column_stack([x[rows] for x in (u, s, *rates, middle[:, 0])])
-
-
-def _table(lines: FloatArray, blocks: Sequence[FloatArray]) -> FloatArray:
-    """Give all columns in one."""
-    return np.hstack([lines.T, *blocks])
 
 
 def ridges(table: FloatArray, target: FloatArray) -> FloatArray:

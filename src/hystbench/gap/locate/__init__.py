@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict
 from typing import Any
 
 from hystbench.gap.locate.frequency import frequency
@@ -22,42 +22,23 @@ from hystbench.gap.locate.views import (
 from hystbench.gap.records.floor import Floor
 from hystbench.gap.records.scored_samples import Compared
 
-__all__ = ["LEVEL", "Contribution", "View", "Where", "locate", "ranked"]
+__all__ = ["LEVEL", "Contribution", "View", "curves", "locate", "ranked"]
 
 LEVEL = 0.05
 """Of a view's p-value times the number of views, for more than chance."""
-NO_LEVELS = "modes by level, as no three levels of a broadband input show one"
-
-
-@dataclass(frozen=True)
-class Where:
-    """Where the gap lies.
-
-    Parameters
-    ----------
-    views : tuple of View
-        The most telling first.
-    not_drawn : tuple of str
-        Pictures that these records do not give, and why.
-    """
-
-    views: tuple[View, ...]
-    not_drawn: tuple[str, ...]
-
-    def curves(self) -> dict[str, Any]:
-        """Give what curves.json holds: pictures as data, in the order of the views."""
-        drawn = [picture for view in self.views for picture in view.pictures]
-        return {
-            "pictures": [picture.to_mapping() for picture in drawn],
-            "not_drawn": list(self.not_drawn),
-        }
+NOT_DRAWN = {
+    "distortion": "distortion, as no record repeats with a gap above the noise",
+    "over-plane": "the residual by rate, as the input rests",
+    "levels": "modes by level, as no three levels of a broadband input show one",
+}
+"""Why a picture may be missing, by its name."""
 
 
 def locate(
     compared: Sequence[Compared],
     floor: Floor,
     contributions: Sequence[Contribution] = (),
-) -> Where:
+) -> tuple[View, ...]:
     """Say where the residual is, in views that an engineer reads.
 
     Parameters
@@ -70,7 +51,7 @@ def locate(
 
     Returns
     -------
-    Where
+    tuple of View
         One view of each kind that the records allow. Those in which named effects show
         come first, the largest first. Behind them stand the others, by what they save;
         last those whose p-value, times the number of views, is not below 0.05.
@@ -104,9 +85,20 @@ def locate(
         record(samples),
         *(() if by_level is None else (by_level,)),
     )
-    missing = tuple(line for view in views for line in view.not_drawn)
-    missing += () if by_level else (NO_LEVELS,)
-    return Where(ranked(views), missing)
+    return ranked(views)
+
+
+def curves(views: Sequence[View]) -> dict[str, Any]:
+    """Give what curves.json holds: pictures as data, in the order of the views.
+
+    And which these records do not give, and why.
+    """
+    drawn = [asdict(picture) for view in views for picture in view.pictures]
+    names = {picture["name"] for picture in drawn}
+    return {
+        "pictures": drawn,
+        "not_drawn": [why for name, why in NOT_DRAWN.items() if name not in names],
+    }
 
 
 def ranked(views: Sequence[View]) -> tuple[View, ...]:

@@ -47,6 +47,9 @@ class FittedForm:
         Of the last record, where each has its own.
     added : tuple of ndarray
         What a named effect adds to each record; none of a form of the view's own.
+    p_value : float
+        How often a residual without this structure, but of the same colour, would
+        look as much like it.
     """
 
     words: str
@@ -57,6 +60,7 @@ class FittedForm:
     share: float
     weights: FloatArray
     added: tuple[FloatArray, ...] = ()
+    p_value: float = 1.0
 
     @property
     def named(self) -> bool:
@@ -124,15 +128,24 @@ def _least_squares(rows: FloatArray, wanted: FloatArray) -> tuple[FloatArray, in
     return vectors @ along / size, int(there.sum())
 
 
-def best(forms: Sequence[FittedForm]) -> FittedForm:
-    """Give the form that saves most."""
-    return max(forms, key=lambda form: form.saved)
-
-
 def named_or(
-    samples: ViewSamples, view: ViewKind, forms: Sequence[FittedForm]
+    samples: ViewSamples,
+    view: ViewKind,
+    forms: Sequence[FittedForm],
+    tests: Sequence[FittedForm] = (),
 ) -> FittedForm:
-    """Give what named effects add in a view; without any the best form of its own."""
+    """Give what named effects add in a view; without any the best form of its own.
+
+    Parameters
+    ----------
+    samples : ViewSamples
+    view : str
+    forms : sequence of FittedForm
+        The view's own.
+    tests : sequence of FittedForm
+        Whose p-value counts where no effect is named, none of them with a searched
+        parameter; by default the forms.
+    """
     named = [
         replace(
             fit_form(samples, f"what {item.effect} adds", [column], item.freedom - 1),
@@ -142,22 +155,15 @@ def named_or(
         if item.view == view
         for column in [samples.thinned(item.added)]
     ]
-    return best(named or forms)
+    found = max(named or forms, key=lambda form: form.saved)
+    tested = [found] if named else tests or forms
+    # The least of several is multiplied by their number.
+    chance = len(tested) * min(_p_value(samples, one) for one in tested)
+    return replace(found, p_value=min(1.0, chance))
 
 
-def p_value_of(
-    samples: ViewSamples, form: FittedForm, tests: Sequence[FittedForm] = ()
-) -> float:
-    """Give the F test's p-value: of what is named, or the least of some forms.
-
-    The tests have no searched parameters; the least of several is multiplied by their
-    number.
-    """
-    used = [form] if form.named or not tests else tests
-    return min(1.0, len(used) * min(_fitted_p_value(samples, one) for one in used))
-
-
-def _fitted_p_value(samples: ViewSamples, form: FittedForm) -> float:
+def _p_value(samples: ViewSamples, form: FittedForm) -> float:
+    """Give the F test's p-value, for as many samples as are independent."""
     rest = samples.residual - form.fitted
     count = effective_count(samples, rest, form.fitted)
     share = form.explained / max(samples.power, 1e-300)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -31,7 +31,6 @@ BANDS = 12
 """With a gain and a phase of their own."""
 BINS = 401
 """Edges of the common axis, evenly spaced in the logarithm of frequency."""
-NO_DISTORTION = "distortion, as no record repeats with a gap above the noise"
 
 
 def frequency(samples: ViewSamples) -> View:
@@ -42,42 +41,38 @@ def frequency(samples: ViewSamples) -> View:
     """
     spectra, distortion = take_spectra(samples), take_distortion(samples)
     bands = _bands(samples, spectra)
-    pairs = [(band, [samples.thinned(of()) for of in band]) for band in bands]
-    whole = [of for band in bands for of in band]
-    filtered = fit_form(samples, "linear", [c for _, columns in pairs for c in columns])
+    whole = [signals for band in bands for signals in band]
     # A mode that is missing lies in one band.
-    found = [(fit_form(samples, "linear", c, 1), band) for band, c in pairs]
-    own, passed = max([(filtered, whole), *found], key=lambda one: one[0].saved)
-    form = named_or(samples, "frequency", [own])
+    passed = {0: whole, **dict(enumerate(bands, start=1))}
+    linear = "linear in the simulated output"
+    filters = {
+        key: fit_form(samples, linear, list(map(samples.thinned, each)), bool(key))
+        for key, each in passed.items()
+    }
+    best = max(filters, key=lambda key: filters[key].saved)
+    form = named_or(samples, "frequency", [filters[best]], [filters[0]])
     signals = form.added or [
-        np.sum([w * x for w, x in zip(own.weights, parts, strict=True)], axis=0)
-        for parts in zip(*(of() for of in passed), strict=True)
+        np.tensordot(form.weights, parts, axes=1)
+        for parts in zip(*passed[best], strict=True)
     ]
     power, edges = _power(samples, signals)
     first, last = narrowest_bins(power)
     start, end = float(edges[first]), float(edges[last + 1])
     held = float(np.sum(power[first : last + 1])) / max(float(power.sum()), 1e-300)
     inside = percent(form.share * held)
-    like = form.words if form.named else "linear in the simulated output"
     told = (
-        f"is {like}; {inside} of the gap lies between {number(start)} and "
+        f"is {form.words}; {inside} of the gap lies between {number(start)} and "
         f"{number(end)} Hz."
     )
     drawn = [_spectrum(samples, spectra), _response(spectra)]
-    lacks = [] if distortion else [NO_DISTORTION]
     if distortion is not None:
         told += distortion.told + distortion.told_repeating
         drawn.append(distortion.picture(samples.units[1]))
-    axis, ends = "frequency", (start, end)
-    return view_of(
-        samples, "frequency", form, axis, ends, "Hz", told, [filtered], drawn, lacks
-    )
+    ends = (start, end)
+    return view_of("frequency", form, "frequency", ends, "Hz", told, drawn)
 
 
-Passed = Callable[[], list[FloatArray]]
-
-
-def _bands(samples: ViewSamples, spectra: Spectra) -> list[list[Passed]]:
+def _bands(samples: ViewSamples, spectra: Spectra) -> list[list[list[FloatArray]]]:
     """Give what passes each excited band, and the same a quarter of a period later."""
     lines = [
         (fft.rfft(item.simulated), fft.rfftfreq(len(item.record), item.record.dt))
@@ -91,10 +86,10 @@ def _bands(samples: ViewSamples, spectra: Spectra) -> list[list[Passed]]:
 
     excited = np.flatnonzero(spectra.excited)
     if not len(excited):
-        return [[partial(passed, 0.0, np.inf, 1.0)]]
+        return [[passed(0.0, np.inf, 1.0)]]
     low, high = spectra.low[excited[0]], spectra.high[excited[-1]]
     bands = pairwise(np.geomspace(low, high, BANDS + 1))
-    return [[partial(passed, *ends, turn) for turn in (1, 1j)] for ends in bands]
+    return [[passed(*ends, turn) for turn in (1, 1j)] for ends in bands]
 
 
 def _power(

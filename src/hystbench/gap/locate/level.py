@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from scipy import special
@@ -30,17 +29,7 @@ from hystbench.gap.records.scored_samples import Compared
 from hystbench.quantities import quantity_of
 from hystbench.record import FloatArray
 
-Class = Literal[
-    "hardening",
-    "softening",
-    "clearance",
-    "micro-slip or hysteresis",
-    "Coulomb friction",
-    "damping that grows with speed",
-    "a static curve before or behind",
-    "none",
-]
-WORDS: dict[Class, str] = {
+WORDS = {
     "hardening": "hardening, as of a spring that stiffens or a stop",
     "softening": "softening, as of a spring that yields",
     "clearance": "a clearance, as the frequency rises from the lowest levels",
@@ -50,6 +39,7 @@ WORDS: dict[Class, str] = {
     "a static curve before or behind": "a static curve before or behind the dynamics",
     "none": "a linear mode, as far as these levels show",
 }
+"""Each class of what is missing, in words."""
 
 SURE = 3.0
 """Standard errors by which a number has to move."""
@@ -123,7 +113,7 @@ class Moving:
         return frequency, damping, gain
 
     @property
-    def kind(self) -> Class:
+    def kind(self) -> str:
         """The class that follows from what moves."""
         frequency, damping, gain = self.moved
         if damping < 0:

@@ -1,13 +1,17 @@
-"""What a picture shows, as data: the page draws it, and curves.json holds it."""
+"""What a picture shows, as data: the page draws it, and curves.json holds it.
+
+Below are those of the residual over the axis of a view: input, rate, time, record.
+"""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hystbench.gap.locate.samples import ViewSamples
 from hystbench.record import FloatArray
 
 POINTS = 200
@@ -82,10 +86,6 @@ class Picture:
     words: str
     panels: tuple[Panel, ...]
 
-    def to_mapping(self) -> dict[str, Any]:
-        """Give what curves.json holds."""
-        return asdict(self)
-
 
 FREQUENCY = Axis("frequency", "Hz", logarithmic=True)
 
@@ -110,9 +110,14 @@ def thinned(*values: FloatArray) -> list[FloatArray]:
     """Average neighbours, so that at most :data:`POINTS` are left."""
     count = len(values[0])
     size = max(1, -(-count // POINTS))
-    starts = np.arange(0, count, size)
-    held = np.diff(np.append(starts, count))
-    return [np.add.reduceat(each, starts) / held for each in values]
+    return [block_means(each, size) for each in values]
+
+
+def block_means(values: FloatArray, size: int) -> FloatArray:
+    """Average blocks of as many samples each; the last may be shorter."""
+    starts = np.arange(0, len(values), size)
+    counts = np.diff(np.append(starts, len(values)))
+    return np.add.reduceat(values, starts) / counts
 
 
 def mean_in(edges: FloatArray, at: FloatArray, values: FloatArray) -> FloatArray:
@@ -120,3 +125,114 @@ def mean_in(edges: FloatArray, at: FloatArray, values: FloatArray) -> FloatArray
     held, _ = np.histogram(at, edges)
     total, _ = np.histogram(at, edges, weights=values)
     return np.where(held > 0, total / np.maximum(held, 1), np.nan)
+
+
+CELLS = 40
+"""Of the picture over the input."""
+COLUMNS = 18
+"""Cells of the map along the input, of one width."""
+ROWS = 6
+"""Cells along the rate's magnitude, for each sign, of about as many samples each.
+
+Fewer where the input rests."""
+FEWEST = 5
+"""Samples of a cell that is shown: the mean of fewer is mostly noise."""
+BLOCKS = 25
+"""Means of a record over slow time, at most."""
+
+
+def over_input(samples: ViewSamples) -> Picture:
+    """Draw the residual over the input, branch by branch."""
+    u, residual = samples.input, samples.residual
+    top = max(float(u.max()), u.min() + 1e-300)
+    edges = np.linspace(float(u.min()), top, CELLS + 1)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    lines = [
+        series(role, middle, mean_in(edges, u[way], residual[way]), role)
+        for role, sign in (("rising", 1), ("falling", -1))
+        for way in [samples.direction == sign]
+    ]
+    rms = series("noise", middle, np.sqrt(mean_in(edges, u, residual**2)), "rms")
+    given, made = samples.units
+    panel = Panel(Axis("input", given), Axis("mean residual", made), (*lines, rms))
+    return Picture("over-input", "Mean residual over the input, by branch", (panel,))
+
+
+def over_plane(samples: ViewSamples) -> Picture | None:
+    """Average the residual over cells of the input and of its rate together.
+
+    What depends on both, as a loop that widens with rate and amplitude, shows neither
+    over the input alone nor over the rate alone. The share that is told is that of the
+    gap's power that the cells' means hold.
+
+    Returns
+    -------
+    Picture, optional
+        None where the input never moves.
+    """
+    u, residual = samples.input, samples.residual
+    rows = rate_edges(samples.speed)
+    if rows is None:
+        return None
+    columns = np.linspace(float(u.min()), float(u.max()), COLUMNS + 1)
+    at, edges = (u, samples.speed), (columns, rows)
+    held, _, _ = np.histogram2d(*at, edges)
+    total, _, _ = np.histogram2d(*at, edges, weights=residual)
+    enough = held >= FEWEST
+    mean = np.where(enough, total / np.maximum(held, 1), np.nan)
+    explained = float(np.sum(held * np.nan_to_num(mean) ** 2)) / len(u)
+    share = samples.share(explained, int(enough.sum()))
+    given, made = samples.units
+    shown = Axis("measured − simulated", made)  # noqa: RUF001  (a minus sign)
+    values = [listed(row) for row in mean.T]
+    panel = Panel(
+        Axis("input", given),
+        Axis("rate of the input", f"{given}/s"),
+        title="mean residual by the input and its rate",
+        cells=Cells(listed(columns), listed(rows), values, shown),
+    )
+    words = (
+        "How to read it: a cell shows by how much the measurement lies above (red) or "
+        "below (blue) the simulation, in the mean, where the input had that value and "
+        "moved at that rate; above zero it rises, below it falls; grey cells have few "
+        f"samples. These cells hold {100 * share:.0f} % of the gap"
+    )
+    return Picture("over-plane", words, (panel,))
+
+
+def rate_edges(speed: FloatArray) -> FloatArray | None:
+    """Give edges that are alike for both signs; fast records do not hide slow ones."""
+    size = np.abs(speed)
+    found = np.unique(np.quantile(size, np.linspace(0, 1, ROWS + 1)[1:]))
+    found = found[found > 0]
+    return np.concatenate([-found[::-1], [0.0], found]) if len(found) else None
+
+
+def over_time(samples: ViewSamples) -> Picture:
+    """Draw the mean residual over blocks of whole periods, record behind record."""
+    lines, start = [], 0.0
+    for k, item in enumerate(samples.compared):
+        n, dt = len(item.record), item.record.dt
+        main = float(samples.main_frequencies[k])
+        period = item.record.period_samples or round(1 / max(main * dt, 1 / n))
+        # Whole periods, so that what repeats cancels alike in every block.
+        size = min(n, max(1, period) * max(1, -(-n // (BLOCKS * max(1, period)))))
+        means = block_means(item.residual[: n // size * size], size)
+        at = start + (np.arange(len(means)) + 0.5) * size * dt
+        lines.append(series(("first", "second")[k % 2], at, means, item.record.name))
+        start += len(means) * size * dt
+    panel = Panel(
+        Axis("time, record behind record", "s"),
+        Axis("mean residual", samples.units[1]),
+        tuple(lines),
+        labelled_above=True,
+    )
+    words = "Mean of the residual over slow time, record behind record"
+    return Picture("slow", words, (panel,))
+
+
+def over_records(names: list[str], shares: FloatArray) -> Picture:
+    """Draw a bar a record."""
+    bars = Bars(names, listed(100 * shares))
+    panel = Panel(Axis("share of the gap's power", "%"), Axis("record"), bars=bars)
+    return Picture("records", "Share of the gap's power in each fit record", (panel,))

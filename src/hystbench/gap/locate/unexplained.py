@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import cast
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hystbench.gap.locate.forms import best, fit_form, named_or, narrowest, p_value_of
+from hystbench.gap.locate.forms import fit_form, named_or, narrowest
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.locate.view import View, number, view_of
 from hystbench.gap.records.floor import periodogram
@@ -44,21 +44,17 @@ def unexplained(samples: ViewSamples) -> View:
     hertz, line_p = find_line(samples)
     paths = _drift_columns(samples)
     drift = fit_form(samples, DRIFT, paths, by_record=True)
-    slope = fit_form(samples, DRIFT, paths[:1], by_record=True)
-    ramp = samples.time * _shown(samples)
-    common = fit_form(samples, DRIFT, [np.ones_like(ramp), ramp])
-    forms = [drift, slope, common]
+    forms = [drift, fit_form(samples, DRIFT, paths[:1], by_record=True)]
     if hertz is not None:
         phase = 2 * np.pi * hertz * samples.time
         wave = [np.cos(phase), np.sin(phase)]
-        both = "a lone line and a drift"
         forms += [
-            fit_form(samples, LINE, wave, 1, by_record=True),
-            fit_form(samples, both, [*wave, paths[0]], 1, by_record=True),
+            fit_form(samples, words, columns, 1, by_record=True)
+            for words, columns in ((LINE, wave), (f"{LINE} and {DRIFT}", wave + paths))
         ]
-    form = best(forms)
-    again = fit_form(samples, form.words, [form.fitted], form.freedom - 1)
-    form = named_or(samples, "unexplained", [form, again])
+    form = named_or(samples, "unexplained", forms, [drift])
+    if not form.named:
+        form = replace(form, p_value=min(1.0, 2 * min(line_p, form.p_value)))
     named = [one.effect for one in samples.contributions if one.view == "unexplained"]
     slow = named == ["drift"] if form.named else form.words == DRIFT
     if slow or hertz is None:
@@ -69,15 +65,11 @@ def unexplained(samples: ViewSamples) -> View:
         resolution = float(1 / np.min(samples.durations))
         start, end = max(hertz - resolution, 0.0), hertz + resolution
         axis, unit, within = "frequency", "Hz", f"at {number(hertz)} Hz"
-    p_value = min(1.0, 2 * min(line_p, p_value_of(samples, drift)))
     told = (
         f"is {form.words}, which the input does not explain, between {number(start)} "
         f"and {number(end)} {unit} {within}."
     )
-    ends = (start, end)
-    return view_of(
-        samples, "unexplained", form, axis, ends, unit, told, p_value=p_value
-    )
+    return view_of("unexplained", form, axis, (start, end), unit, told)
 
 
 def _drift_columns(samples: ViewSamples) -> list[FloatArray]:
@@ -93,20 +85,13 @@ def _drift_columns(samples: ViewSamples) -> list[FloatArray]:
         total = np.cumsum(power[1:])
         slowest = frequency[1:][np.searchsorted(total, 0.01 * total[-1])]
         duration[part], halves[part] = seconds, max(seconds * slowest, 1.0)
-    halves *= _shown(samples)
+        halves[part] *= shows_a_path(item.record)
     return [
         np.where(
             order <= halves, 1 - np.cos(np.pi * order * samples.time / duration), 0.0
         )
         for order in range(1, ORDERS + 1)
     ]
-
-
-def _shown(samples: ViewSamples) -> BoolArray:
-    """Mark the samples of records that show a path beside what the input does."""
-    counts = [len(places) for places in samples.places]
-    shown = [shows_a_path(item.record) for item in samples.compared]
-    return np.repeat(np.array(shown), counts)
 
 
 def find_line(samples: ViewSamples) -> tuple[float | None, float]:
@@ -163,7 +148,7 @@ def _level(power: FloatArray) -> FloatArray:
     medians = np.median(power[first[:, None] + np.arange(size)], axis=1)
     levels = np.log(np.maximum(medians / np.log(2), 1e-300))
     centres = first + size / 2
-    return cast(FloatArray, np.exp(np.interp(np.arange(len(power)), centres, levels)))
+    return np.asarray(np.exp(np.interp(np.arange(len(power)), centres, levels)))
 
 
 def _lines_of(cause: FloatArray) -> BoolArray:

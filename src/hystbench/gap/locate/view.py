@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from hystbench.gap.locate.forms import FittedForm, p_value_of
+from hystbench.gap.locate.forms import FittedForm
 from hystbench.gap.locate.picture import Picture
-from hystbench.gap.locate.samples import ViewSamples
 from hystbench.gap.view_kinds import ViewKind
 
 SIGNIFICANT = 0.01
@@ -43,8 +42,6 @@ class View:
     named : bool
         Whether it shows what a named effect adds.
     pictures : tuple of Picture
-    not_drawn : tuple of str
-        Pictures that these records do not give, and why.
     """
 
     view: ViewKind
@@ -58,7 +55,6 @@ class View:
     saved: float
     named: bool = False
     pictures: tuple[Picture, ...] = ()
-    not_drawn: tuple[str, ...] = ()
 
     def to_mapping(self) -> dict[str, Any]:
         """Give what gap.json holds under ``where``."""
@@ -75,40 +71,30 @@ class View:
 
 
 def view_of(
-    samples: ViewSamples,
     view: ViewKind,
     form: FittedForm,
     axis: str,
     ends: tuple[float | str, float | str],
     unit: str,
-    sentence: str,
-    tests: Sequence[FittedForm] = (),
+    told: str,
     pictures: Sequence[Picture] = (),
-    not_drawn: Sequence[str] = (),
     share: float | None = None,
-    p_value: float | None = None,
 ) -> View:
     """Give the view that a form tells.
 
     Parameters
     ----------
-    samples, view, axis, unit
+    view, axis, unit, pictures
         As for :class:`View`.
     form : FittedForm
     ends : tuple of (float or str, float or str)
         Of the range.
-    sentence : str
-        What it says behind "so much of the gap".
-    tests : sequence of FittedForm
-        Whose p-value counts where no effect is named; by default the form's own.
-    pictures, not_drawn
-        As for :class:`View`.
-    share, p_value : float, optional
-        Those of the form and its tests by default.
+    told : str
+        What the sentence says behind "so much of the gap".
+    share : float, optional
+        That of the form by default.
     """
     share = form.share if share is None else share
-    if p_value is None or form.named:
-        p_value = p_value_of(samples, form, tests)
     return View(
         view=view,
         axis=axis,
@@ -116,12 +102,11 @@ def view_of(
         end=ends[1],
         unit=unit,
         share_of_gap_power=share,
-        p_value=p_value,
-        sentence=f"{percent(share)} of the gap {sentence}",
+        p_value=form.p_value,
+        sentence=f"{percent(share)} of the gap {told}",
         saved=form.saved,
         named=form.named,
         pictures=tuple(pictures),
-        not_drawn=tuple(not_drawn),
     )
 
 

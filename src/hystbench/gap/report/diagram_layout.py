@@ -12,6 +12,9 @@ from itertools import pairwise
 from textwrap import wrap
 from typing import NamedTuple
 
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
+
 from hystbench.gap.report.parts import Part, Stage, Whose
 
 #: Type of names and of numbers (points), and the height of a line (inches).
@@ -19,9 +22,6 @@ NAME, NUMBER = 8.0, 7.0
 NAME_LINE, NUMBER_LINE = 0.15, 0.13
 #: Letters of a line, at most: longer words are broken.
 NAME_LETTERS, NUMBER_LETTERS = 18, 24
-#: Widths of letters, in times of the type's size. Most are narrower than this says.
-NARROW, USUAL, BROAD = 0.42, 0.67, 1.0
-_NARROW, _BROAD = frozenset("ijltfrI.,:;'|()[]/- ·"), frozenset("mwMWOQ@%&")
 
 PAD = 0.07
 """Between a box and what stands in it."""
@@ -121,12 +121,12 @@ def _moved(shapes: Sequence[Shape], x: float, y: float) -> tuple[Shape, ...]:
 
 
 def text_width(text: str, size: float) -> float:
-    """Tell how wide a line of text is at most, in inches, for type of some points."""
-    letters = (
-        NARROW if letter in _NARROW else BROAD if letter in _BROAD else USUAL
-        for letter in text
+    """Tell how wide a line of text is, in inches, for type of some points."""
+    # A name of the user's may hold what matplotlib would take for a formula.
+    width, *_ = text_to_path.get_text_width_height_descent(
+        text, FontProperties(size=size), ismath=False
     )
-    return sum(letters) * size / 72
+    return float(width) / 72
 
 
 def layout(stages: Sequence[Stage], source: str, output: str, page: float) -> Diagram:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
+from matplotlib.ticker import MaxNLocator
 
 from hystbench.figures.style import (
     BLACK,
@@ -222,14 +222,11 @@ def _window(table: HoldOut) -> slice:
 
 def logarithmic(panel: Axes, directions: str) -> None:
     """Make axes logarithmic, with plain numbers at the decades."""
-    for axis, scale in (
-        (panel.xaxis, panel.set_xscale),
-        (panel.yaxis, panel.set_yscale),
-    ):
-        if axis.axis_name in directions:
-            scale("log")
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
+    for name in directions:
+        panel.set(**{f"{name}scale": "log"})
+        axis = {"x": panel.xaxis, "y": panel.yaxis}[name]
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter("")
 
 
 def hull(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -9,11 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.errors import InputError, nearest
+from hystbench.errors import InputError
+from hystbench.formats import read_table
 from hystbench.gap.schema import SCHEMA
 from hystbench.model import Model, load_model
 from hystbench.record import FloatArray
 from hystbench.schema import check_against_schema
+from hystbench.text_files import read_text
 
 COLUMNS = ("time_s", "measured", "before", "after")
 
@@ -88,28 +90,17 @@ def read_content(folder: Path) -> Content:
 
 
 def _json(path: Path) -> Any:
+    text = read_text(path, "a JSON file")
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}; expected a JSON file") from error
+        return json.loads(text)
     except ValueError as error:
         raise InputError(f"{path}: not JSON ({error})") from error
 
 
 def _hold_out(path: Path) -> HoldOut:
-    lines = path.read_text(encoding="utf-8").splitlines()
-    header = lines[0].split(",") if lines else []
-    for column in COLUMNS:
-        if column not in header:
-            near = nearest(column, header or COLUMNS)
-            raise InputError(f"{path}: no column {column!r}; {near}")
-    places = [header.index(column) for column in COLUMNS]
-    try:
-        table = np.loadtxt(lines[1:], delimiter=",", usecols=places, ndmin=2)
-    except ValueError as error:
-        raise InputError(f"{path}: {error}; expected numbers") from None
-    finite = np.isfinite(table)
-    runs_away = finite[:, :-1].all() and np.isnan(table[:, -1]).all()
-    if len(table) < 2 or not (finite.all() or runs_away):
+    table = read_table(path, COLUMNS)
+    columns = [table.column(name).values for name in COLUMNS]
+    *known, after = map(np.isfinite, columns)
+    if len(after) < 2 or not (np.all(known) and (after.all() or not after.any())):
         raise InputError(f"{path}: expected at least 2 rows of finite numbers")
-    return HoldOut(path.stem, *(np.ascontiguousarray(column) for column in table.T))
+    return HoldOut(path.stem, *columns)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,67 +21,21 @@ from hystbench.model import Model
 Told = Mapping[str, Any]
 """What gap.json holds."""
 
-COLUMNS = (
-    "dataset",
-    "base",
-    "verdict",
-    "effects",
-    "withdrawn",
-    "unit",
-    "before",
-    "after",
-    "black_box",
-    "noise_floor",
-    "floor_method",
-    "explained_percent",
-    "explained_on_fit_percent",
-    "reason",
-    "shortfall",
-)
-RECORD_COLUMNS = ("dataset", "record", "outside", "before", "black_box", "after")
-EFFECT_COLUMNS = (
-    "dataset",
-    "effect",
-    "place",
-    "confidence",
-    "cannot_be_told_from",
-    "parameter",
-    "value",
-    "standard_error",
-    "unit",
-)
+Row = Sequence[Any]
 
 
-ADDS_COLUMNS = ("block", "parameter", "value", "unit")
+def write_table(name: str, contents: Sequence[Told], path: Path) -> None:
+    """Write one of the tables of several datasets as CSV.
 
-
-def write_summary(contents: Sequence[Told], path: Path) -> None:
-    """Write one row a dataset: the verdict, and RMS over its hold-out records."""
-    write_csv(path, COLUMNS, [_row(content) for content in contents])
-
-
-def write_records(contents: Sequence[Told], path: Path) -> None:
-    """Write one row a hold-out record: RMS, and in what it is outside what was fitted.
-
-    There a black box knows nothing, and effects that are the right ones still hold.
+    Parameters
+    ----------
+    name : {"summary", "records", "effects", "sentences"}
+    contents : sequence of mapping
+        What gap.json of each holds.
+    path : Path
     """
-    rows = [
-        [
-            content["dataset"],
-            item["name"],
-            " and ".join(item["outside"]),
-            *(_rms(item[key]) for key in ("before", "after", "named")),
-        ]
-        for content in contents
-        for item in content["black_box"]["records"]
-    ]
-    write_csv(path, RECORD_COLUMNS, rows)
-
-
-def write_effects(contents: Sequence[Told], path: Path) -> None:
-    """Write one row a parameter of each named effect."""
-    rows = [row for content in contents for row in _effect_rows(content)]
-    write_csv(path, EFFECT_COLUMNS, rows)
+    columns, rows_of = TABLES[name]
+    write_csv(path, columns, [row for told in contents for row in rows_of(told)])
 
 
 def write_adds(model: Model, path: Path) -> None:
@@ -101,41 +55,78 @@ def write_adds(model: Model, path: Path) -> None:
         for name, about in block.parameters().items()
         if name not in SETTINGS
     ]
-    write_csv(path, ADDS_COLUMNS, rows)
+    write_csv(path, ("block", "parameter", "value", "unit"), rows)
 
 
-def _row(content: Told) -> list[str]:
-    gap = content["gap"]
-    return [
-        content["dataset"],
-        content["model"],
-        content["verdict"],
-        " + ".join(item["name"] for item in content["effects"]) or "none",
-        " + ".join((content["withdrawn"] or {}).get("names", ())),
-        content["unit"],
+def _summary(told: Told) -> Iterator[Row]:
+    """Give the row of a dataset: the verdict, and RMS over its hold-out records."""
+    gap = told["gap"]
+    yield [
+        *(told[key] for key in ("dataset", "model", "verdict")),
+        " + ".join(item["name"] for item in told["effects"]) or "none",
+        " + ".join((told["withdrawn"] or {}).get("names", ())),
+        told["unit"],
         *(_rms(gap[key]) for key in ("before", "after")),
-        _rms(content["black_box"]["after"]),
+        _rms(told["black_box"]["after"]),
         _number(gap["noise_floor"]),
         gap["floor_method"],
-        _share(gap["explained"]),
-        _share(content["fit"]["explained"]),
-        content["reason"],
-        (content["shortfall"] or {}).get("sentence", ""),
+        *(_share(told[part]["explained"]) for part in ("gap", "fit")),
+        told["reason"],
+        (told["shortfall"] or {}).get("sentence", ""),
     ]
 
 
-def _effect_rows(content: Told) -> Iterator[list[str]]:
-    for item in content["effects"]:
+def _records(told: Told) -> Iterator[Row]:
+    """Give a row a hold-out record: RMS, and in what it is outside what was fitted.
+
+    There a black box knows nothing, and effects that are the right ones still hold.
+    """
+    for item in told["black_box"]["records"]:
+        sizes = (_rms(item[key]) for key in ("before", "after", "named"))
+        yield [told["dataset"], item["name"], " and ".join(item["outside"]), *sizes]
+
+
+def _effects(told: Told) -> Iterator[Row]:
+    """Give a row a parameter of each named effect."""
+    for item in told["effects"]:
         shown = [
-            content["dataset"],
-            item["name"],
-            item["place"],
+            *(told["dataset"], item["name"], item["place"]),
             _number(item["confidence"]),
             ", ".join(item["cannot_be_told_from"]),
         ]
         for name, about in item["parameters"].items():
             value, error = about["value"], about["standard_error"]
             yield [*shown, name, _any(value), _any(error), about["unit"]]
+
+
+def _sentences(told: Told) -> Iterator[Row]:
+    """Give the row of a dataset: the verdict in a sentence."""
+    yield [told["dataset"], words.verdict_sentence(with_optional(told))]
+
+
+TABLES: dict[str, tuple[tuple[str, ...], Callable[[Told], Iterator[Row]]]] = {
+    "summary": (
+        (
+            *("dataset", "base", "verdict", "effects", "withdrawn", "unit", "before"),
+            *("after", "black_box", "noise_floor", "floor_method", "explained_percent"),
+            *("explained_on_fit_percent", "reason", "shortfall"),
+        ),
+        _summary,
+    ),
+    "records": (
+        ("dataset", "record", "outside", "before", "black_box", "after"),
+        _records,
+    ),
+    "effects": (
+        (
+            *("dataset", "effect", "place", "confidence", "cannot_be_told_from"),
+            *("parameter", "value", "standard_error", "unit"),
+        ),
+        _effects,
+    ),
+    "sentences": (("dataset", "verdict in a sentence"), _sentences),
+}
+"""Columns of each table, and the rows of a dataset."""
 
 
 def _share(explained: float | Sequence[float] | None) -> str:
@@ -197,23 +188,6 @@ def write_gallery(folder: str | Path) -> None:
             for suffix in FORMATS:
                 style.save(figure, place / f"{name}.{suffix}")
     write_text(place / "verdict.md", words.verdict_text(with_optional(content.gap)))
-
-
-def write_sentences(contents: Sequence[Told], path: Path) -> None:
-    """Write one row a dataset: the verdict in a sentence.
-
-    Parameters
-    ----------
-    contents : sequence of mapping
-        What gap.json of each holds.
-    path : Path
-        CSV file.
-    """
-    rows = [
-        [content["dataset"], words.verdict_sentence(with_optional(content))]
-        for content in contents
-    ]
-    write_csv(path, ("dataset", "verdict in a sentence"), rows)
 
 
 def _residual(content: Content, place: Path) -> Figure:

@@ -20,7 +20,7 @@ from hystbench.figures.style import (
     legend_above,
     unit_text,
 )
-from hystbench.gap.report.pictures import BARS, Picture, draw, logarithmic
+from hystbench.gap.report.pictures import BARS, Picture, bars, draw, logarithmic
 
 Content = Mapping[str, Any]
 
@@ -103,7 +103,10 @@ def _paint(panel: Axes, content: Content) -> None:
     if content["cells"]:
         _cells(panel, content["cells"])
     if content["bars"]:
-        _bars(panel, content["bars"])
+        values = numbers(content["bars"]["values"])
+        order = np.argsort(-values, kind="stable")[:BARS]
+        names = [content["bars"]["names"][k] for k in order]
+        bars([panel], names, values[order], "", [BLUE] * len(order))
     for series in content["series"]:
         above = content["labelled_above"]
         _series(panel, series | {"label": ""} if above else series)
@@ -142,15 +145,6 @@ def _series(panel: Axes, series: Content) -> None:
         panel.plot(x, y, **look)
     else:
         panel.errorbar(x, y, numbers(series["error"]), capsize=2, **look)
-
-
-def _bars(panel: Axes, bars: Content) -> None:
-    values = numbers(bars["values"])
-    order = np.argsort(-values, kind="stable")[:BARS]
-    panel.barh(np.arange(len(order)), values[order], color=BLUE, height=0.7)
-    panel.set_yticks(np.arange(len(order)), [bars["names"][k] for k in order])
-    panel.invert_yaxis()
-    panel.grid(visible=False, axis="y")
 
 
 def _cells(panel: Axes, cells: Content) -> None:

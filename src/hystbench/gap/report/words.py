@@ -23,6 +23,14 @@ VERDICTS = {
     "within their tolerances, close the gap.",
     "no-gap": "There is no gap: {reason}.",
 }
+ADVICE = {
+    "named": "A record outside the range of these, in amplitude or rate, is what would "
+    "put the names to the test.",
+    "parameters": "Take over the values of model.yaml, and measure a record outside "
+    "the range of these to see whether they hold there.",
+    "no-gap": "A smaller gap than this would show only in records with a lower noise "
+    "floor, or where the actuator is driven harder than here.",
+}
 NO_NAME = "No effect of the vocabulary accounts for what differs."
 
 FLOORS = {
@@ -148,21 +156,8 @@ def _either(names: list[str]) -> str:
 
 def advice(gap: dict[str, Any]) -> str:
     """Say where to go on, where no experiment was computed; by the verdict."""
-    if gap["verdict"] == "no-gap":
-        return (
-            "A smaller gap than this would show only in records with a lower noise "
-            "floor, or where the actuator is driven harder than here."
-        )
-    if gap["verdict"] == "parameters":
-        return (
-            "Take over the values of model.yaml, and measure a record outside the "
-            "range of these to see whether they hold there."
-        )
-    if gap["verdict"] == "named":
-        return (
-            "A record outside the range of these, in amplitude or rate, is what would "
-            "put the names to the test."
-        )
+    if gap["verdict"] in ADVICE:
+        return ADVICE[gap["verdict"]]
     first = next(iter(gap["where"]), None)
     if first is None:
         return ""
