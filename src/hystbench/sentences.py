@@ -1,4 +1,4 @@
-"""Words joined as in a sentence."""
+"""Words and numbers as they stand in a sentence."""
 
 from __future__ import annotations
 
@@ -9,3 +9,10 @@ def listed(names: Sequence[str]) -> str:
     """Join names with commas and a last "and"."""
     *first, last = names or ("",)
     return f"{', '.join(first)} and {last}" if first else last
+
+
+def shortly(value: float, digits: int = 3) -> str:
+    """Write a number to some digits; without an exponent up to a million."""
+    text = f"{value:.{digits}g}"
+    plain = "e+" in text and abs(float(text)) < 1e6
+    return f"{float(text):.0f}" if plain else text

@@ -15,10 +15,11 @@ from hystbench.gap.locate.picture import Axis, Bars, Cells, Panel, Picture, seri
 from hystbench.gap.report import pictures, write_report
 from hystbench.gap.report.page import headline
 from hystbench.gap.report.read import Content
-from hystbench.gap.report.words import number, with_error
+from hystbench.gap.report.words import explained, number, sentence, with_error
 from hystbench.gap.schema import LEFT_OUT, SCHEMA
 from hystbench.report.markup import one_micro
 from hystbench.schema import check_against_schema
+from hystbench.sentences import shortly
 
 
 def ranked(number, name, place="mechanics", **more):
@@ -723,3 +724,21 @@ def test_micro_is_written_one_way_in_sentences():
     page = "from 2 um to 0.3 um rms (um), a 4 us step of displacement_um at b.um"
     wanted = "from 2 µm to 0.3 µm rms (µm), a 4 µs step of displacement_um at b.um"
     assert one_micro(page) == wanted
+
+
+def test_a_range_of_one_value_is_printed_as_that_value():
+    assert explained([0.3591, 0.3592]).striptags() == "35.9 %"
+    assert explained([0.3, 0.4]).striptags() == "30.0 % to 40.0 %"
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(12_130.0, "12100"), (999.6, "1000"), (2.5e6, "2.5e+06"), (1.7e-8, "1.7e-08")],
+)
+def test_a_number_in_a_sentence_has_no_exponent_up_to_a_million(value, shown):
+    assert shortly(value) == shown
+
+
+def test_a_reason_is_a_sentence():
+    assert sentence("on the records all is gone") == "On the records all is gone."
+    assert sentence("It is.") == "It is."

@@ -9,6 +9,7 @@ from typing import Any
 from hystbench.gap.locate.forms import FittedForm
 from hystbench.gap.locate.picture import Picture
 from hystbench.gap.view_kinds import ViewKind
+from hystbench.sentences import shortly
 
 SIGNIFICANT = 0.01
 """Of a p-value, for a part of a view to be told as there."""
@@ -117,7 +118,7 @@ def percent(share: float) -> str:
 
 def number(value: float) -> str:
     """Write a number as it stands in a sentence, to three digits."""
-    return f"{value:.3g}"
+    return shortly(value)
 
 
 def chance(p_value: float) -> str:

@@ -22,7 +22,7 @@ TEMPLATE = "report.html.j2"
 #: Functions of ``words`` that the template uses.
 FILTERS = (
     *("number", "size", "with_error", "percent", "explained", "p_value", "bound"),
-    "unit",
+    *("sentence", "unit"),
 )
 #: Of the parts of gap.json with figures, where a bootstrap tells nothing.
 INTERVALS = dict.fromkeys(("before_interval", "after_interval", "interval"))

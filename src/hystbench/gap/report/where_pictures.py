@@ -113,11 +113,12 @@ def _paint(panel: Axes, content: Content) -> None:
         if above:
             panel.annotate(
                 series["label"],
-                (series["x"][0], 1),
+                ((series["x"][0] + series["x"][-1]) / 2, 1),
                 (0, 2),
                 ("data", "axes fraction"),
                 textcoords="offset points",
                 fontsize=6,
+                ha="center",
                 rotation=90,
                 parse_math=False,
             )

@@ -12,7 +12,7 @@ from hystbench.device_kinds import behaviour_of
 from hystbench.figures.style import unit_text
 from hystbench.gap.thresholds import LOOSE
 from hystbench.gap.vocabulary import in_words
-from hystbench.sentences import listed
+from hystbench.sentences import listed, shortly
 
 #: A narrow space that does not break.
 NARROW = "\u202f"
@@ -188,7 +188,7 @@ def number(value: float | None, digits: int = 3) -> Markup:
     """Print a number shortly; the page's source holds all of its digits."""
     if value is None:
         return Markup('<span class="none">none</span>')
-    text = f"{value:.{digits}g}"
+    text = shortly(value, digits)
     if "e" in text:
         mantissa, exponent = text.split("e")
         shown = Markup("{}&thinsp;·&thinsp;10<sup>{}</sup>").format(
@@ -235,9 +235,14 @@ def percent(share: float | None, decimals: int = 0) -> Markup:
 
 def explained(share: Any) -> Markup:
     """Print the share that is gone: a number, a range or none."""
-    if isinstance(share, list):
-        return percent(share[0], 1) + Markup(" to ") + percent(share[-1], 1)
-    return percent(share, 1)
+    ends = [percent(x, 1) for x in (share if isinstance(share, list) else [share])]
+    same = ends[0].striptags() == ends[-1].striptags()
+    return ends[0] if same else ends[0] + Markup(" to ") + ends[-1]
+
+
+def sentence(text: str) -> str:
+    """Write a reason as a sentence: with a capital letter and a stop."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
 
 
 def p_value(value: float) -> Markup:
