@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -25,16 +25,17 @@ from hystbench.gap.fitting.uncertainty import (
 )
 from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.holdout.show import FitResult
-from hystbench.gap.judging.black_box import black_box
+from hystbench.gap.judging.black_box import BlackBox, black_box
 from hystbench.gap.judging.gap_json import (
     effect_mapping,
     not_tried,
     ranking_rows,
     simulator_mapping,
 )
-from hystbench.gap.judging.unnamed import what_is_unnamed
+from hystbench.gap.judging.unnamed import Unnamed, what_is_unnamed
 from hystbench.gap.judging.verdict import (
     Left,
+    Word,
     judge,
     may_be_of_base,
     what_is_left,
@@ -45,6 +46,7 @@ from hystbench.gap.naming.add_effects import LITTLE, Named
 from hystbench.gap.naming.ladder import contributions, rungs
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.floor import Floor, lone_share, unrepeated
+from hystbench.gap.records.scored_samples import Compared
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.model import Model
 
@@ -109,14 +111,91 @@ def judge_and_tell(
         say(f"{LITTLE}: none named")
         named = named.taken_back()
         left = what_is_left(start, named.state, floor.rms)
-    records, state = start.records, named.state
-    compared = compared_records(start)
-    box = black_box(compared, floor.rms)
-    after = compared if state is start else compared_records(state)
+    state, model = named.state, augmented(base, named.state)
+    before = compared_records(start)
+    after = before if state is start else compared_records(state)
+    found = _judged(start, named, left, floor, before, after, own, unnamed_share)
+    ladder = rungs(start, named)
+    simulated = {start: before, state: after}
+    is_named = found.verdict == "named"
+    contributed = contributions(ladder, simulated) if is_named else ()
+    where = locate(before, floor, contributed)
+    say(where[0].sentence)
+    say(f"{found.verdict}: {found.reason}")
+    experiment, why_none = tell_apart(base, named, start.records, floor.rms, limits)
+    unit = start.records[0].output.unit
+    content: dict[str, Any] = {
+        "dataset": dataset,
+        "model": base.name,
+        "unit": unit,
+        "verdict": found.verdict,
+        "reason": found.reason,
+        "effects": _effects(named, model, left, floor, found.trust),
+        "fit": _fit(start, state, floor)
+        | {
+            "left": left.loose,
+            "lone_share": found.lone,
+            "unrepeated": found.unrepeated,
+        },
+        "unnamed": found.unnamed.mapping(unnamed_share),
+        "where": [view.to_mapping() for view in where],
+        "ranking": ranking_rows(named),
+        "record_values": own.mapping(unit),
+        "not_tried": not_tried(named),
+        "taken_out": [item._asdict() for item in named.gone],
+        "next_experiment": None if experiment is None else experiment.mapping(),
+        "base_parameters": base_parameters(base, state),
+        "simulator": simulator_mapping(model, start.records),
+        "black_box": {"explained_on_folds": found.box.explained_on_folds},
+    }
+    if why_none:
+        content["no_experiment"] = why_none
+    if used_up := _used_up(current()):
+        content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
+    return Decision(
+        base,
+        state,
+        floor,
+        found.box,
+        ladder,
+        own,
+        model=model,
+        left=left,
+        content=content,
+        curves=curves(where),
+        experiment=experiment,
+    )
+
+
+class _Judged(NamedTuple):
+    """A verdict, and what it is made of."""
+
+    verdict: Word
+    reason: str
+    trust: float
+    unnamed: Unnamed
+    lone: float
+    unrepeated: float | None
+    box: BlackBox
+
+
+def _judged(
+    start: ModelState,
+    named: Named,
+    left: Left,
+    floor: Floor,
+    before: Sequence[Compared],
+    after: Sequence[Compared],
+    own: OwnValues,
+    unnamed_share: float,
+) -> _Judged:
+    """Give the verdict on what was named, and say why."""
+    state = named.state
+    box = black_box(before, floor.rms)
     lone = lone_share([item.residual for item in after])
     differs = unrepeated(after, floor.rms)
     unnamed = what_is_unnamed(start, state, floor.rms, unnamed_share)
-    verdict, reason = judge(
+    verdict, why = judge(
         left,
         bool(state.added),
         box.explained_on_folds,
@@ -128,78 +207,41 @@ def judge_and_tell(
         unnamed_share,
         what_mends(start.records),
     )
+    parts = (
+        why,
+        _untried(not_tried(named)) if state.added else "",
+        at_ends(state),
+        f"beside {own.words} of some records' own" if own.records else "",
+        _predicts_nothing(state),
+        _used_up(current()),
+    )
     trust = unnamed.trust(unnamed_share, may_be_of_base(left, lone, differs))
-    untried = not_tried(named)
-    reason += _untried(untried) if state.added else ""
-    ends = at_ends(state)
-    reason += f"; {ends}" if ends else ""
-    used_up = _used_up(current())
-    reason += f"; beside {own.words} of some records' own" if own.records else ""
-    reason += _predicts_nothing(state)
-    reason += f"; {used_up}" if used_up else ""
-    ladder = rungs(start, named)
-    simulated = {start: compared, state: after}
-    contributed = contributions(ladder, simulated) if verdict == "named" else ()
-    where = locate(compared, floor, contributed)
-    say(where[0].sentence)
-    say(f"{verdict}: {reason}")
+    reason = "; ".join(part for part in parts if part)
+    return _Judged(verdict, reason, trust, unnamed, lone, differs, box)
+
+
+def _effects(
+    named: Named, model: Model, left: Left, floor: Floor, trust: float
+) -> list[dict[str, Any]]:
+    """Tell the effects with their numbers and errors."""
+    state, by_effect = named.state, named.reasons
     finer = on_more_samples(state)
     score = make_score(finer, floor.rms, forms=False)
-    errors = standard_errors(finer, score)
-    of_beside = beside_errors(finer, score)
-    by_effect = named.reasons
-    model = augmented(base, state)
-    experiment, why_none = tell_apart(base, named, records, floor.rms, limits)
-    content: dict[str, Any] = {
-        "dataset": dataset,
-        "model": base.name,
-        "unit": records[0].output.unit,
-        "verdict": verdict,
-        "reason": reason,
-        "effects": [
-            effect_mapping(
-                item,
-                state,
-                errors,
-                of_beside,
-                by_effect.get(item.effect, ()),
-                left,
-                size_error(finer, floor.rms, number),
-                trust,
-            )
-            | {"blocks": blocks_of(item, state, model)}
-            for number, item in enumerate(state.added)
-        ],
-        "fit": _fit(start, state, floor)
-        | {"left": left.loose, "lone_share": lone, "unrepeated": differs},
-        "unnamed": unnamed.mapping(unnamed_share),
-        "where": [view.to_mapping() for view in where],
-        "ranking": ranking_rows(named),
-        "record_values": own.mapping(records[0].output.unit),
-        "not_tried": untried,
-        "taken_out": [item._asdict() for item in named.gone],
-        "next_experiment": None if experiment is None else experiment.mapping(),
-        "base_parameters": base_parameters(base, state),
-        "simulator": simulator_mapping(model, records),
-        "black_box": {"explained_on_folds": box.explained_on_folds},
-    }
-    if why_none:
-        content["no_experiment"] = why_none
-    if used_up:
-        content["calls_used_up"] = {"bound": current().bound, "sentence": used_up}
-    return Decision(
-        base,
-        state,
-        floor,
-        box,
-        ladder,
-        own,
-        model=model,
-        left=left,
-        content=content,
-        curves=curves(where),
-        experiment=experiment,
-    )
+    errors, of_beside = standard_errors(finer, score), beside_errors(finer, score)
+    return [
+        effect_mapping(
+            item,
+            state,
+            errors,
+            of_beside,
+            by_effect.get(item.effect, ()),
+            left,
+            size_error(finer, floor.rms, number),
+            trust,
+        )
+        | {"blocks": blocks_of(item, state, model)}
+        for number, item in enumerate(state.added)
+    ]
 
 
 def _predicts_nothing(state: ModelState) -> str:
@@ -210,7 +252,7 @@ def _predicts_nothing(state: ModelState) -> str:
     names = sorted({beside.effect for beside, values in state.beside if not values})
     if not names:
         return ""
-    return f"; {' and '.join(names)} of each record's own predicts no other record"
+    return f"{' and '.join(names)} of each record's own predicts no other record"
 
 
 def _untried(names: Sequence[str]) -> str:
@@ -218,7 +260,7 @@ def _untried(names: Sequence[str]) -> str:
     if not names:
         return ""
     why = USED_UP if current().refused() else "the simulator cannot be run again"
-    return f"; not tried, as {why}: {', '.join(names)}"
+    return f"not tried, as {why}: {', '.join(names)}"
 
 
 def _used_up(calls: Calls) -> str:
