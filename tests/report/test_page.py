@@ -96,6 +96,15 @@ def test_the_verdict_counts_held_out_errors_alone(results, page):
     )
 
 
+def test_each_sentence_of_the_verdict_is_an_item(results, page):
+    said = (results / "compare" / "verdict.md").read_text(encoding="utf-8")
+    items = [line[2:] for line in said.splitlines() if line.startswith("- ")]
+    assert items
+    assert page.tags.count("li") >= len(items)
+    assert all(inline(item).striptags() in page.said for item in items)
+    assert " - " not in page.said[page.said.index(items[0][:20]) :][: len(said)]
+
+
 @pytest.mark.parametrize(
     ("verdicts", "told"),
     [

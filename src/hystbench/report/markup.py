@@ -25,8 +25,12 @@ def inline(text: str) -> Markup:
 
 
 def paragraphs(text: str) -> list[str]:
-    """Split text at its blank lines; a paragraph becomes one line."""
-    return [" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip())]
+    """Split text at its blank lines and before the items of a list.
+
+    A paragraph becomes one line; an item keeps its dash.
+    """
+    parts = re.split(r"\n\s*\n|\n(?=- )", text.strip())
+    return [" ".join(part.split()) for part in parts]
 
 
 def plain(text: str) -> str:

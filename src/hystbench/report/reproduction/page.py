@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
+from markupsafe import Markup
+
 from hystbench.figures.style import look, looks, signal_title
 from hystbench.report.layout import page_environment
 from hystbench.report.markup import inline, one_micro, paragraphs
@@ -72,7 +74,7 @@ def _twin(found: Reproduction, content: Content) -> dict[str, object]:
             found.cells, "held-out" if held else "calibrated"
         ),
         "near": errors.nearness_table(found.cells),
-        "full": [inline(text) for text in _prose(found.verdict)],
+        **_full(found.verdict),
         "tables": [errors.paper_table(each, halves) for each in found.tables],
         "cells": errors.all_cells(found.cells, told["cells"], file("cells")),
         "off": errors.off_table(found.off, told["off"], file("off")),
@@ -97,11 +99,15 @@ def _measured(found: Measured, content: Content) -> dict[str, object]:
     }
 
 
-def _prose(markdown: str) -> list[str]:
-    """Take the sentences of a verdict, without its table and what stands below."""
+def _full(markdown: str) -> dict[str, list[Markup]]:
+    """Take a verdict's list and the sentences below it, without its table."""
     parts = paragraphs(markdown)
     table = next((n for n, part in enumerate(parts) if part.startswith("|")), None)
-    return parts[:table]
+    found: dict[str, list[Markup]] = {"listed": [], "below": []}
+    for part in parts[:table]:
+        kind = "listed" if part.startswith("- ") else "below"
+        found[kind].append(inline(part.removeprefix("- ")))
+    return found
 
 
 def _in_order(figures: list[Picture]) -> list[Picture]:
