@@ -110,7 +110,8 @@ def _record(cell: ComparedCell, evidence: ClaimEvidence) -> str:
     percent = rms_error_percent(evidence).get(cell.signal)
     if percent is None:
         return ""
-    return f"the RMS displacement is off by {percent:+.1f} %"
+    # Never minus nought.
+    return f"the RMS displacement is off by {round(percent, 1) + 0.0:+.1f} %"
 
 
 def _start_up(cell: ComparedCell, evidence: ClaimEvidence) -> str:
