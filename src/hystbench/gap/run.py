@@ -12,13 +12,13 @@ from pathlib import Path
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
+from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.decision import Decision, search
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.compare import compare
 from hystbench.gap.fitting.own_values import OwnValues
 from hystbench.gap.fitting.serialize import Restorer, state_mapping
 from hystbench.gap.fitting.start import run_base, start_state
-from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.holdout.outcome import Outcome, as_asked, outcome
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.inside.named_inside import quantities_if_linear
@@ -138,20 +138,25 @@ def closed_gap(
     # From here on models are compared with hold-out records: these choose nothing, and
     # may take back what was named.
     evidence = without_lead(evidence, base, "hold_out", say)
-    evidence = _as_found(evidence, decision.base, decision.state, say)
+    evidence = as_found(evidence, base, decision, say)
     shown = outcome(decision, decision.content, evidence)
     shown = as_asked(shown, decision, evidence, vocabulary, built_in)
     decision = replace(decision, model=shown.model, content=shown.content)
     return Closed(decision, shown, evidence)
 
 
-def _as_found(
-    evidence: Evidence, base: Model, state: ModelState, say: Say = silent
+def as_found(
+    evidence: Evidence, base: Model, found: FitResult, say: Say = silent
 ) -> Evidence:
-    """Leave out the leads of hold-out records by forces inside, as of fit records."""
-    if not any(isinstance(block, Mechanism) for block in base.chain):
+    """Leave out the leads of hold-out records by forces inside, as of fit records.
+
+    The base that was identified tells what another state at the first sample would do:
+    what stands for it may hold a place that no record forgets.
+    """
+    if not any(isinstance(block, Mechanism) for block in found.base.chain):
         return evidence
-    return without_lead(evidence, base, "hold_out", say, augmented(base, state))
+    model = augmented(found.base, found.state)
+    return without_lead(evidence, base, "hold_out", say, model)
 
 
 def found_on_fit(
@@ -284,6 +289,7 @@ def decide_in(
             {"name": item.name, "state": state_mapping(item.state)}
             for item in decision.rungs
         ],
+        "identified": base.to_mapping() if is_identified(base) else None,
         "without": list(vocabulary.without),
         "with": list(vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
@@ -313,20 +319,24 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     kept = read_json(folder / NAMED)
     leads = zip(evidence.fit, kept["leads"], strict=True)
     evidence = replace(evidence, fit=tuple(replace(x, lead=n) for x, n in leads))
-    evidence = without_lead(evidence, base, "hold_out")
+    named = f"{folder / NAMED}: identified"
+    first = (
+        Model.from_mapping(kept["identified"], named) if kept["identified"] else base
+    )
+    evidence = without_lead(evidence, first, "hold_out")
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)
     own = OwnValues.of_mapping(decided["record_values"])
     fit = own.taken_off(evidence.fit, evidence.hold)
     restorer = Restorer(fit, base.chain)
     state = restorer.state(kept["state"])
-    evidence = _as_found(evidence, base, state)
     rungs = tuple(
         Rung(item["name"], restorer.state(item["state"])) for item in kept["rungs"]
     )
     start, _ = start_state(fit, base, evidence.hold, evidence.noise_rms)
     box = black_box(compare(start), floor.rms)
     fitted = FitResult(base, state, floor, box, rungs, own)
+    evidence = as_found(evidence, first, fitted)
     shown = outcome(fitted, decided, evidence)
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     vocabulary = vocabulary.in_device(evidence.device_kind)
