@@ -15,9 +15,9 @@ from hystbench.blocks.base import Place
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Force, Host, Motion, Near, exported, rows
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.starts import PASTS, STARTS, path_from
 from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.step import Sampling, Step, lines_of
-from hystbench.blocks.transfer_function import PASTS, STARTS, path_from
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.mechanism import Mechanism, free_starts
-from hystbench.blocks.transfer_function import TransferFunction, possible_starts
+from hystbench.blocks.starts import possible_starts
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState

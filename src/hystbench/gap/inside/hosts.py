@@ -20,7 +20,8 @@ from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.input_delay import InputDelay
 from hystbench.blocks.mechanism import Mechanism, free_starts
-from hystbench.blocks.transfer_function import TransferFunction, possible_starts
+from hystbench.blocks.starts import possible_starts
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
