@@ -285,6 +285,27 @@ def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
     )
 
 
+def runs(records: Sequence[Record]) -> tuple[tuple[int, ...], ...]:
+    """Give which records were measured in one run: windows of one record, or it alone.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        As they were measured, or cut by :func:`windows`.
+
+    Returns
+    -------
+    tuple of tuple of int
+        Numbers of the records, by run.
+    """
+    found: dict[str, list[int]] = {}
+    for number, record in enumerate(records):
+        window = record.decay_s is not None
+        run = record.name.rpartition("-")[0] if window else f"{number} {record.name}"
+        found.setdefault(run, []).append(number)
+    return tuple(tuple(own) for own in found.values())
+
+
 def _starts(record: Record) -> list[int]:
     """Give the samples where a window begins: the first, and those of no velocity."""
     if len(record) < 2 * LEAST:
