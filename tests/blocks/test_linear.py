@@ -1,5 +1,7 @@
 """Linear blocks against scipy.signal and against their transfer functions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.signal
@@ -305,3 +307,27 @@ def test_states_make_the_response(name, hold):
     expected = respond(system, v, DT, hold)
     size = np.abs(expected).max()
     assert states @ system.c + system.d * v == pytest.approx(expected, abs=1e-12 * size)
+
+
+EVERY = [
+    *(case[0] for case in CASES.values()),
+    EddyDiffusion(time_constant_s=0.01),
+    LogarithmicCreep(magnitude=0.2, first_time_s=0.01, last_time_s=0.5),
+]
+
+
+@pytest.mark.parametrize("block", EVERY, ids=lambda block: block.name)
+def test_where_the_first_value_has_stood_for_ever_nothing_moves(block):
+    z = np.full(200, 3.0)
+    y = replace(block, start="settled").simulate(z, z, DT)
+    static = frequency_response(block, [0.0])[0].real
+    np.testing.assert_allclose(y, 3.0 * static, rtol=1e-9)
+
+
+@pytest.mark.parametrize("block", EVERY, ids=lambda block: block.name)
+def test_what_repeats_is_the_second_of_two_passages(block):
+    z = 2.0 + np.sin(2 * np.pi * np.arange(400) / 200)
+    both = np.concatenate([z, z])
+    twice = replace(block, start="settled").simulate(both, both, DT)
+    once = replace(block, start="repeating").simulate(z, z, DT)
+    np.testing.assert_allclose(once, twice[400:], rtol=1e-9, atol=1e-9)

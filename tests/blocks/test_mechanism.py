@@ -435,6 +435,20 @@ def test_a_free_mass_has_no_place_of_balance():
     with pytest.raises(InputError, match="start: settled; expected rest") as told:
         replace(MACHINE, stiffness=0.0, start="settled")
     assert "\n" not in str(told.value)
+    with pytest.raises(InputError, match="start: repeating; expected rest, as"):
+        replace(MACHINE, stiffness=0.0, start="repeating")
+
+
+@pytest.mark.parametrize("output", ["velocity", "acceleration"])
+def test_a_free_mass_whose_place_is_not_shown_may_have_moved_before(output):
+    t = np.arange(2000) * 2e-3
+    u = 100 * np.sin(2 * np.pi * 2 * t / t[-1]) * np.cos(9 * t)
+    free = replace(MACHINE, stiffness=0.0, output=output)
+    dry = [force("friction-force", coulomb=5.0, presliding_distance=0.01)]
+    twice = run(free, dry, np.concatenate([u, u]), 2e-3)
+    once = run(replace(free, start="repeating"), dry, u, 2e-3)
+    np.testing.assert_allclose(once, twice[2000:], atol=1e-9 * np.ptp(twice))
+    assert np.abs(run(free, dry, u, 2e-3) - once).max() > 0.01 * np.ptp(once)
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 3])

@@ -121,3 +121,18 @@ def test_a_record_may_be_short(hold, count):
 def test_a_parameter_out_of_bounds_is_refused(key, value):
     with pytest.raises(InputError, match=f"{key}: {value:g} is out of bounds"):
         replace(TANK, **{key: value})
+
+
+@pytest.mark.parametrize("exponent", [0.5, 1.0, 2.0])
+def test_a_settled_store_rests_until_its_inflow_changes(exponent):
+    z = np.full(50, 0.6)
+    tank = Store(gain=2.0, rate=0.8, exponent=exponent, bias=0.1, start="settled")
+    np.testing.assert_allclose(tank.simulate(z, z, 0.5), (1.3 / 0.8) ** (1 / exponent))
+    full = replace(tank, height=0.5)
+    np.testing.assert_allclose(full.simulate(z, z, 0.5), 0.5)
+
+
+def test_a_settled_store_into_which_nothing_flows_is_empty():
+    z = np.full(3, -1.0)
+    level = replace(TANK, start="settled").simulate(z, z, 0.5)
+    np.testing.assert_array_equal(level, 0.0)

@@ -40,6 +40,8 @@ def example(name, **more):
     return (name, EXAMPLES[name] | more)
 
 
+RESTING = {"gain": 40.0, "rate": 20.0, "start": "settled"}
+
 #: Of blocks that the gap adds beside one another, with the hold that it writes.
 OTHERS = {
     "creep over decades behind a half-space": (
@@ -65,6 +67,16 @@ OTHERS = {
         example("store", gain=400.0, bias=100.0, output="outflow", **SMOOTH),
         example("store", gain=0.5, rate=20.0, exponent=0.5, height=2.0),
         example("sensor-lag", **SMOOTH),
+    ),
+    "stores that rest at first": (
+        ("store", RESTING | {"bias": 30.0, "output": "outflow"} | SMOOTH),
+        ("store", RESTING),
+    ),
+    "a free mass that has moved before": (
+        example(
+            "mechanism", stiffness=0.0, output="velocity", start="moving", **SMOOTH
+        ),
+        example("friction-force"),
     ),
     "a rate and a shape, then a mode": (
         example("gpi"),

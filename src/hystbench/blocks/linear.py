@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -13,6 +13,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from hystbench import kernels, operators
 from hystbench.blocks.curve import AHEAD, POINTS, continued
 from hystbench.blocks.held import HeldBlock, Hold
+from hystbench.blocks.parameter import choice
+from hystbench.blocks.starts import PASTS, STARTS, path_from
 from hystbench.blocks.state_space import (
     StateSpace,
     curve_drive,
@@ -27,22 +29,39 @@ from hystbench.record import FloatArray
 
 @dataclass(frozen=True)
 class LinearBlock(HeldBlock):
-    """A linear, time-invariant block that starts at rest.
+    """A linear, time-invariant block.
 
-    A subclass defines :meth:`continuous`.
+    With ``start: settled`` the input had its first value for ever before the record.
+    With ``moving`` it came through the first sample as it leaves it, the record turned
+    about that sample: one that begins in the middle of a motion shows neither jump nor
+    kink. With ``repeating`` the same record came before, as whole periods of an input
+    do. A subclass defines :meth:`continuous`.
     """
+
+    start: str = choice("state before the first sample", STARTS, "rest")
 
     @abstractmethod
     def continuous(self) -> StateSpace:
         """Return the block in continuous time."""
 
+    @property
+    def static_gain(self) -> float:
+        """What an input that has stood for ever is multiplied by."""
+        return self.continuous().static_gain
+
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the response to ``z`` from rest."""
-        return respond(self.continuous(), z, dt, self.holding)
+        """Compute the response to ``z``."""
+        if self.start == "rest":
+            return respond(self.continuous(), z, dt, self.holding)
+        path, before = path_from(z, self.start)
+        moves = respond(self.continuous(), path - before, dt, self.holding)
+        return (moves + self.static_gain * before)[len(path) - len(z) :]
 
     def step(self, sampling: Sampling) -> Step:
         """Move the state over the interval that has passed."""
-        return linear_step(self.continuous(), sampling, self.holding)
+        settled = self.start != "rest"
+        step = linear_step(self.continuous(), sampling, self.holding, settled)
+        return replace(step, past=PASTS.get(self.start, ""))
 
 
 def low_pass(

@@ -15,9 +15,9 @@ from hystbench.blocks.base import Place
 from hystbench.blocks.curve import held_lines
 from hystbench.blocks.force import Force, Host, Motion, Near, exported, rows
 from hystbench.blocks.parameter import HUGE, TINY, choice, number
+from hystbench.blocks.starts import PASTS, STARTS, path_from
 from hystbench.blocks.state_space import StateSpace, discretise
 from hystbench.blocks.step import Sampling, Step, lines_of
-from hystbench.blocks.transfer_function import PASTS, STARTS, path_from
 from hystbench.errors import InputError
 from hystbench.record import FloatArray
 
@@ -43,7 +43,8 @@ class Mechanism(Host):
     stable however stiff they are. A step in which the motion turns back is taken in
     eighths where a force turns with it. A band-limited input is taken as straight lines
     on a grid twice as fine. With ``start: settled`` it begins where the springs balance
-    the first value; friction holds nothing there yet.
+    the first value; friction holds nothing there yet. A free mass has no such place:
+    where the output does not show its place, what was before begins at rest.
 
     References
     ----------
@@ -75,10 +76,11 @@ class Mechanism(Host):
 
     def check(self) -> None:
         """Refuse a start from balance where there is none."""
-        if self.start != "rest" and self.stiffness == 0.0:
+        if self.stiffness == 0.0 and self.start not in free_starts(self.output):
             raise InputError(
-                f"start: {self.start}; expected rest, as without a stiffness there is "
-                "no place of balance"
+                f"start: {self.start}; expected "
+                f"{' or '.join(free_starts(self.output))}, as without a stiffness "
+                "there is no place of balance"
             )
 
     def given(self, motion: Motion) -> FloatArray:
@@ -121,7 +123,7 @@ class Mechanism(Host):
                 own, first = path_from(signals[k], self.start)
                 p[k] = host.gain * held_lines(own, self.holding)[0] + host.bias
             q[k, 0], v[k, 0] = host.start_position, host.start_velocity
-            if self.start != "rest":
+            if self.start != "rest" and host.stiffness > 0.0:
                 q[k, 0] += host._balance(host.gain * first + host.bias, numbers[k])
         if n:
             kernels.call(
@@ -203,6 +205,15 @@ class Mechanism(Host):
     def _steps(self, dt: float) -> FloatArray:
         """Weights of a step, and of an eighth of it."""
         return step_weights(self.mass, self.damping, self.stiffness, dt)
+
+
+def free_starts(output: str) -> tuple[str, ...]:
+    """Give the starts that a mass without a spring may have.
+
+    It forgets its speed and never its place. So it may have moved before the record
+    only where the output does not show the place.
+    """
+    return ("rest", *PASTS) if output in ("velocity", "acceleration") else ("rest",)
 
 
 @lru_cache(maxsize=256)

@@ -18,6 +18,8 @@ PART = 0.1
 """Largest share of its level, at most, that a store loses in one step."""
 MOST = 64
 """Steps of one interval, at most."""
+STARTS = ("given", "settled")
+"""At the level that is given, or where it rests under the first inflow."""
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,8 @@ class Store(HeldBlock):
     With an exponent of a half it is a tank with a free outlet (Torricelli), with one it
     is linear. What would rise above the height is spilt. The output is the level, or
     what leaves: the outflow and the share of what is spilt that the next store catches.
-    Second-order Runge-Kutta method.
+    With ``start: settled`` it begins at the level where as much leaves as comes in at
+    first. Second-order Runge-Kutta method.
 
     References
     ----------
@@ -47,6 +50,7 @@ class Store(HeldBlock):
     bias: float = number("Q/s", "constant inflow", -HUGE, HUGE, 0.0)
     start_level: float = number("Q", "level at the first sample", 0.0, HUGE, 0.0)
     output: str = choice("what the output is", ("level", "outflow"), "level")
+    start: str = choice("level at the first sample", STARTS, "given")
 
     def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
         """Fill and empty the store."""
@@ -56,7 +60,7 @@ class Store(HeldBlock):
         level, outflow, spilt = np.zeros(n), np.zeros(n), np.zeros(n)
         if n == 0:
             return level
-        level[0] = min(self.start_level, self.height)
+        level[0] = min(self._first(v[0]), self.height)
         kernels.call(
             "hb_store",
             n,
@@ -89,10 +93,20 @@ class Store(HeldBlock):
             "t": sampling.dt / lines.segments / parts,
             **self.constants("rate", "exponent", "height"),
             "start": self.start_level,
+            "settled": int(self.start == "settled"),
             "outflow": int(self.output == "outflow"),
             "caught": self.caught,
         }
         return Step("store", constants, {"level": 1, **lines.states}, **lines.told)
+
+    def _first(self, inflow: float) -> float:
+        """Give the level at the first sample; a store that loses nothing is full."""
+        if self.start == "given":
+            return self.start_level
+        if inflow <= 0.0:
+            return 0.0
+        with np.errstate(divide="ignore", over="ignore"):
+            return float(np.power(np.divide(inflow, self.rate), 1.0 / self.exponent))
 
     def _parts(self, dt: float) -> int:
         """Steps of an interval: none empties more than a part of the store."""

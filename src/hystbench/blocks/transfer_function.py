@@ -3,37 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from hystbench.blocks.base import Place
-from hystbench.blocks.linear import LinearBlock, linear_step
-from hystbench.blocks.parameter import HUGE, choice, numbers
+from hystbench.blocks.linear import LinearBlock
+from hystbench.blocks.parameter import HUGE, numbers
 from hystbench.blocks.state_space import StateSpace
-from hystbench.blocks.step import REPEATED, TURNED, Sampling, Step
 from hystbench.errors import InputError
-from hystbench.record import FloatArray, Record
-
-Start = Literal["rest", "settled", "moving", "repeating"]
-STARTS: tuple[Start, ...] = ("rest", "settled", "moving", "repeating")
-CLEARLY = 1.01
-"""The plainest start is taken whose squares of errors are within this factor of the
-best."""
-PASTS = {"moving": TURNED, "repeating": REPEATED}
-"""Starts that depend on samples to come, and what came before."""
 
 
 @dataclass(frozen=True)
 class TransferFunction(LinearBlock):
     """Proper, stable transfer function in descending powers of s.
 
-    ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k. With
-    ``start: settled`` the input had its first value for ever before the record. With
-    ``moving`` it came through the first sample as it leaves it, the record turned about
-    that sample: one that begins in the middle of a motion shows neither jump nor kink.
-    With ``repeating`` the same record came before, as whole periods of an input do.
+    ``G(s) = (n_0 s^m + ... + n_m) / (d_0 s^k + ... + d_k)`` with m <= k.
 
     References
     ----------
@@ -50,20 +36,11 @@ class TransferFunction(LinearBlock):
     denominator: tuple[float, ...] = numbers(
         "powers of s", "d_0 to d_k, descending", -HUGE, HUGE
     )
-    start: str = choice("state before the first sample", STARTS, "rest")
 
-    def simulate(self, z: FloatArray, u: FloatArray, dt: float) -> FloatArray:
-        """Compute the response to ``z``."""
-        path, before = path_from(z, self.start)
-        static = self.numerator[-1] / self.denominator[-1]
-        y = super().simulate(path - before, u, dt) + static * before
-        return y[len(path) - len(z) :]
-
-    def step(self, sampling: Sampling) -> Step:
-        """Move the state."""
-        settled = self.start != "rest"
-        step = linear_step(self.continuous(), sampling, self.holding, settled)
-        return replace(step, past=PASTS.get(self.start, ""))
+    @property
+    def static_gain(self) -> float:
+        """What an input that has stood for ever is multiplied by."""
+        return self.numerator[-1] / self.denominator[-1]
 
     def check(self) -> None:
         """Refuse an improper or unstable transfer function."""
@@ -113,49 +90,3 @@ def stable(denominator: Sequence[float]) -> tuple[float, ...]:
         return tuple(denominator)
     poles.real = -np.abs(poles.real)
     return tuple((denominator[0] * np.real(np.poly(poles))).tolist())
-
-
-def possible_starts(records: Sequence[Record]) -> tuple[Start, ...]:
-    """Give the starts that records may have: only whole periods repeat."""
-    return STARTS if all(record.repeats for record in records) else STARTS[:-1]
-
-
-def plainest_start(costs: Sequence[float]) -> int:
-    """Choose among possible starts, the plainest first, by what each leaves.
-
-    Parameters
-    ----------
-    costs : sequence of float
-        Squares of the errors, in the order of :func:`possible_starts`.
-
-    Returns
-    -------
-    int
-        Place of the first that is as good as the best, to a hundredth.
-    """
-    most = CLEARLY * min(costs)
-    return next(k for k, cost in enumerate(costs) if cost <= most)
-
-
-def path_from(z: FloatArray, start: str) -> tuple[FloatArray, float]:
-    """Put before a record what its start stands for.
-
-    Parameters
-    ----------
-    z : ndarray, shape (n,)
-    start : {"rest", "settled", "moving", "repeating"}
-
-    Returns
-    -------
-    path : ndarray, shape (n,), (2n - 1,) or (2n,)
-        What was before, and ``z``.
-    before : float
-        What was for ever before that.
-    """
-    if start == "rest" or len(z) == 0:
-        return z, 0.0
-    if start == "moving":
-        z = np.concatenate([2 * z[0] - z[:0:-1], z])
-    elif start == "repeating":
-        z = np.concatenate([z, z])
-    return z, float(z[0])

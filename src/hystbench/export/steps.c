@@ -268,12 +268,14 @@ static double hb_outflow(double rate, double exponent, double h)
 static double hb_store(double gain, double bias, int segments, int points,
                        int ahead, const double *corners, double ramp, int parts, double t,
                        double rate, double exponent, double height, double start,
-                       int outflow, double caught, double *level, double *history,
+                       int settled, int outflow, double caught, double *level, double *history,
                        double z)
 {
     const int moves = history[0] > ahead;
     hb_remember(points, history, gain * z + bias);
     if (history[0] <= ahead) return 0;
+    const double first = history[1 + ahead];
+    if (settled) start = first > 0 ? pow(first / rate, 1 / exponent) : 0;
     double h = moves ? *level : hb_least(start, height), over = 0;
     for (int i = 0; i < segments && moves; i++) {
         const double now = hb_weighted(points, corners + i * points, history + 1);

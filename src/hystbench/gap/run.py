@@ -13,6 +13,7 @@ from typing import Any
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.files import read_json, whole_folder, write_columns, write_json
 from hystbench.gap.bases.lead import without_lead
+from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.decision import search
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.base_on_records import run_base, start_state
@@ -188,7 +189,8 @@ def shown_on_hold_out(
     ----------
     evidence : Evidence
     base : Model
-        As it was given.
+        As it was given, or identified: it tells what another state at the first sample
+        would do, as what stands for it may hold a place that no record forgets.
     fitted : FitResult
     decided : mapping
         What gap.json holds, but for what the hold-out records show.
@@ -206,7 +208,7 @@ def shown_on_hold_out(
     evidence = without_lead(evidence, base, "hold_out", say)
     if any(isinstance(block, Mechanism) for block in found.chain):
         model = augmented(found, fitted.state)
-        evidence = without_lead(evidence, found, "hold_out", say, model)
+        evidence = without_lead(evidence, base, "hold_out", say, model)
     vocabulary = vocabulary.in_device(evidence.device_kind)
     return evidence, outcome(fitted, decided, evidence, vocabulary, built_in)
 
@@ -309,6 +311,7 @@ def decide_in(
             {"name": item.name, "state": state_mapping(item.state)}
             for item in decision.rungs
         ],
+        "identified": base.to_mapping() if is_identified(base) else None,
         "without": list(vocabulary.without),
         "with": list(vocabulary.fixed),
         "built_in": None if built_in is None else built_in.mapping(),
@@ -338,6 +341,10 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     kept = read_json(folder / NAMED)
     leads = zip(evidence.fit, kept["leads"], strict=True)
     evidence = replace(evidence, fit=tuple(replace(x, lead=n) for x, n in leads))
+    named = f"{folder / NAMED}: identified"
+    first = (
+        Model.from_mapping(kept["identified"], named) if kept["identified"] else base
+    )
     floor = Floor(**kept["floor"])
     decided = read_json(folder / DECISION)
     own = OwnValues.of_mapping(decided["record_values"])
@@ -353,7 +360,7 @@ def show_in(folder: Path, evidence: Evidence, base: Model) -> None:
     vocabulary = Vocabulary.of(kept["without"], kept["with"])
     built_in = BuiltIn.of_mapping(kept["built_in"]) if kept["built_in"] else None
     evidence, shown = shown_on_hold_out(
-        evidence, base, fitted, decided, vocabulary, built_in
+        evidence, first, fitted, decided, vocabulary, built_in
     )
     with whole_folder(folder, SHOWN) as fresh:
         write_shown(fresh, evidence.hold_out, shown)

@@ -8,7 +8,12 @@ import pytest
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.lead import leads_left_out, without_lead
+from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.records.evidence import Evidence
+from hystbench.gap.records.floor import Floor
+from hystbench.gap.records.scored_samples import ScoredSamples
+from hystbench.gap.run import as_found
 from hystbench.model import Model
 from hystbench.quantities import NONE_KNOWN, Quantities
 from hystbench.record import Channel, Record
@@ -116,3 +121,19 @@ def test_records_of_one_use_are_left_as_they_are_where_the_other_is_asked():
     evidence = Evidence("device", (record(537),), (record(537, "hold-out"),))
     found = without_lead(evidence, linear(), "fit")
     assert found.hold_out is evidence.hold_out
+
+
+def test_forces_in_a_free_mass_leave_leads_of_both_uses_out_alike():
+    """What stands for the base forgets its speed in a second, and never its place."""
+    fit = record(537)
+    held = replace(record(537, "hold-out"), y=fit.y)
+    free = Mechanism(mass=0.3, damping=1.0, stiffness=0.0, output="velocity")
+    found = FitResult(
+        Model("linear", *CHANNELS, (free,), ("mechanism.mass",)),
+        ModelState((free,), (fit,), ScoredSamples.of((fit,))),
+        Floor(0.001, "declared", {}),
+        None,
+        (),
+    )
+    evidence = as_found(Evidence("device", (fit,), (held,)), linear(), found)
+    assert evidence.hold_out[0].lead == 200

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hystbench.blocks.transfer_function import STARTS
+from hystbench.blocks.starts import STARTS
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import Ratio
 from tests.gap.made import record

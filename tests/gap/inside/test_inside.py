@@ -19,6 +19,7 @@ from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.hosts import (
     best_host,
+    free_masses,
     hosts,
     is_seen_moving,
     one_coordinate,
@@ -468,3 +469,18 @@ def test_a_spring_whose_acceleration_is_measured_is_no_friction():
     base = Model("linear", given[0].input, given[0].output, start.chain)
     moves = Quantities("force", "acceleration")
     assert named_inside(base, start, NOISE, moves, True) is None
+
+
+def test_a_free_mass_of_which_the_speed_is_seen_may_have_moved_before():
+    rng = np.random.default_rng(3)
+    half = rng.standard_normal(400)
+    u = np.tile(np.convolve(np.tile(half, 2), np.ones(9) / 9)[400:800], 2)
+    before = np.concatenate([u, u])
+    truth = Mechanism(mass=1.0, damping=2.0, stiffness=0.0, output="velocity")
+    y = truth.simulate(before, before, 0.01)[len(u) :]
+    channels = Channel("voltage", "V"), Channel("speed", "rad/s")
+    record = Record("run", 0.01, u, y, *channels, "measured", period_samples=400)
+    (state,) = free_masses((record,), "velocity", "zero-order")
+    assert state.chain[0].start == "repeating"
+    (state,) = free_masses((record,), "position", "zero-order")
+    assert state.chain[0].start == "rest"

@@ -107,3 +107,32 @@ def test_a_level_may_be_negative_by_its_noise():
     begun = Record("low", DT, record.u, low - low.min() - NOISE, *CHANNELS, "measured")
     assert min(begun.y) < 0
     assert list(stores((begun,), "zero-order", NOISE, 1))
+
+
+def test_of_several_records_each_may_begin_where_it_rests():
+    """Of two runs from different levels no one number is both their starts."""
+    rng = np.random.default_rng(8)
+    t = np.arange(COUNT) * DT
+    records = []
+    for first in (2.0, 5.0):
+        u = first + np.where(t > 40, 0.8 * np.repeat(rng.normal(0, 1, 40), 20), 0.0)
+        level = tank(u, (first / 0.8) ** 2)
+        noisy = level + NOISE * rng.standard_normal(COUNT)
+        records.append(Record("run", DT, u, noisy, *CHANNELS, "measured"))
+    begun = list(stores(tuple(records), "zero-order", NOISE, 1))
+    score = Score(begun[0].sample, np.zeros((2 * COUNT, 0)), NOISE**2)
+    best = chosen(search(best_host(begun, score), score), score.floor)
+    assert best.effects == ("outflow",)
+    state = best.fitted.state
+    assert [store.start for store in state.chain] == ["settled"]
+    assert np.sqrt(np.mean(state.residual**2)) < 1.5 * NOISE
+
+
+def tank(u, level):
+    """One tank that loses 0.8 times the root of its level, in turns of a minute."""
+    out, step = [], DT / 60 / FINE
+    for flow in u:
+        out.append(level)
+        for _ in range(FINE):
+            level += step * (flow - 0.8 * np.sqrt(max(level, 0.0)))
+    return np.array(out)

@@ -12,13 +12,14 @@ from hystbench.commands.gap import gap
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.edit_chain import numbers_of
 from hystbench.gap.fitting.state import Added
-from hystbench.gap.judging.known_signals import halves, low_pass
+from hystbench.gap.judging.known_signals import halves, in_runs, low_pass
 from hystbench.gap.judging.unnamed import (
     SORTS,
     Unnamed,
     what_is_unnamed,
     winding,
 )
+from hystbench.gap.records.evidence import runs
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
@@ -218,6 +219,30 @@ def test_halves_are_those_of_every_record():
     assert parts.shape == (len(state.sample), 3 * 2 * len(given))
     assert parts.reshape(len(signals), -1, 3).sum(axis=1) == pytest.approx(signals)
     assert (np.count_nonzero(parts, axis=0) == 50).all()
+
+
+def test_windows_of_one_record_are_one_run():
+    """A strength may change over what was measured in one go, not in each window."""
+    whole = measured((GAIN,))
+    cut = tuple(
+        replace(one, name=f"{one.name}-{k}", decay_s=1.0, u=u, y=y)
+        for one in whole
+        for k, (u, y) in enumerate(
+            zip(np.array_split(one.u, 7), np.array_split(one.y, 7), strict=True), 1
+        )
+    )
+    assert runs(whole) == ((0,), (1,))
+    assert runs(cut) == (tuple(range(7)), tuple(range(7, 14)))
+    state = state_of((GAIN,), cut, count=20)
+    strength = in_runs(state, 3)
+    assert strength.shape == (len(state.sample), 2 * 4)
+    # Its slowest cosine falls from the first window of a run to the last one.
+    slow = strength[: len(state.sample) // 2, 1]
+    assert np.all(np.diff(slow) < 0)
+    ends = slow[[0, -1]]
+    assert ends == pytest.approx([1.0, -1.0], abs=0.01)
+    signals = np.random.default_rng(0).standard_normal((len(state.sample), 3))
+    assert halves(state, signals).shape == (len(state.sample), 3 * 2 * 2)
 
 
 PLAIN = {"verdict": "unnamed", "reason": "", "withdrawn": None}

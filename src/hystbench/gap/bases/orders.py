@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from hystbench.blocks.input_delay import InputDelay
-from hystbench.blocks.transfer_function import plainest_start, possible_starts
+from hystbench.blocks.starts import plainest_start, possible_starts
 from hystbench.gap.bases.output_error import OutputError
 from hystbench.gap.bases.spectral import (
     Ratio,

@@ -9,8 +9,9 @@ import numpy as np
 
 from hystbench.blocks.held import Hold
 from hystbench.blocks.linear import states_of
+from hystbench.blocks.starts import path_from
 from hystbench.blocks.state_space import StateSpace
-from hystbench.blocks.transfer_function import TransferFunction, path_from
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.errors import InputError
 from hystbench.gap.bases.spectral import Ratio, stable, triangle_of
 from hystbench.record import FloatArray, Mask, Record

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from hystbench.blocks.held import Hold
-from hystbench.blocks.transfer_function import path_from
+from hystbench.blocks.starts import path_from
 from hystbench.gap.bases.spectral import stable
 from hystbench.record import ComplexArray, FloatArray, Mask, Record
 

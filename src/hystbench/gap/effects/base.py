@@ -9,8 +9,8 @@ those that scale a contribution (a magnitude) are solved for.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -100,6 +100,10 @@ class Variant:
     begun : bool
         Whether a trial only begins it: the refit frees numbers that no trial has, so
         that the score of its trial says little.
+    is_linear : bool
+        Whether its block is linear dynamics.
+    start_state : str
+        How that starts, where it is not at rest.
     """
 
     effect: str
@@ -120,6 +124,8 @@ class Variant:
     neutral: bool = True
     zero: dict[str, float] | None = None
     begun: bool = False
+    is_linear: bool = False
+    start_state: str = ""
 
     def ends(self, name: str) -> tuple[float, float]:
         """Give the ends of a searched parameter's range."""
@@ -169,6 +175,23 @@ class Effect(ABC):
         Declined
             If there is none: why.
         """
+
+    def every_variant(self, simulation: Simulation) -> Iterator[Variant]:
+        """Give the variants, and linear ones again from the start of what operates.
+
+        A device that is switched on begins at rest, whatever its first input is. One
+        that operates about a point away from zero does not: what it remembers is as old
+        as its slowest lag.
+
+        Raises
+        ------
+        Declined
+            As :meth:`variants`.
+        """
+        for variant in self.variants(simulation):
+            yield variant
+            if variant.is_linear and never_at_rest(simulation.at(variant.start)):
+                yield in_operation(variant, simulation)
 
     def inserted(
         self,
@@ -221,6 +244,7 @@ class Effect(ABC):
             limits=limits or {},
             neutral=neutral,
             zero=zero,
+            is_linear=issubclass(block, LinearBlock),
         )
 
     def added(
@@ -309,6 +333,29 @@ class Effect(ABC):
     def describe(self, given: Values, amplitudes: FloatArray) -> dict[str, Any]:
         """Give the block of a signal beside, from its amplitudes (records, k)."""
         raise NotImplementedError
+
+
+def never_at_rest(signals: Sequence[FloatArray]) -> bool:
+    """Tell whether a signal of some record keeps away from zero, on one side of it."""
+    return any(len(z) > 0 and (z.min() > 0.0 or z.max() < 0.0) for z in signals)
+
+
+def in_operation(variant: Variant, simulation: Simulation) -> Variant:
+    """Give a linear variant that has operated before its records began.
+
+    Whole periods of an input came before; else the first value has stood there.
+    """
+    whole = all(record.repeats for record in simulation.records)
+    start: Any = "repeating" if whole else "settled"
+    (place,) = variant.positions
+
+    def build(given: Values) -> tuple[Block, ...]:
+        blocks = list(variant.build(given))
+        own: Any = blocks[place]
+        blocks[place] = replace(own, start=start)
+        return tuple(blocks)
+
+    return replace(variant, build=build, start_state=start)
 
 
 def places_between_halves(simulation: Simulation) -> list[int]:

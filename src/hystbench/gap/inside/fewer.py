@@ -9,12 +9,9 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.base import Block
-from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.transfer_function import (
-    TransferFunction,
-    plainest_start,
-    possible_starts,
-)
+from hystbench.blocks.mechanism import Mechanism, free_starts
+from hystbench.blocks.starts import plainest_start, possible_starts
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
@@ -55,15 +52,15 @@ def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
 
 
 def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
-    """Give linear dynamics another start; a free mass has but one."""
+    """Give linear dynamics another start; a free mass has only some."""
     changed: Any = {"start": start}
-    return tuple(
-        replace(block, **changed)
-        if isinstance(block, TransferFunction)
-        or (isinstance(block, Mechanism) and block.stiffness > 0.0)
-        else block
-        for block in chain
-    )
+
+    def may(block: Block) -> bool:
+        if isinstance(block, Mechanism):
+            return block.stiffness > 0.0 or start in free_starts(block.output)
+        return isinstance(block, TransferFunction)
+
+    return tuple(replace(x, **changed) if may(x) else x for x in chain)
 
 
 @dataclass(frozen=True)

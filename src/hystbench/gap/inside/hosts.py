@@ -19,8 +19,9 @@ from hystbench.blocks.gain import Gain
 from hystbench.blocks.held import Hold
 from hystbench.blocks.impedance import NUMBERS, Impedance
 from hystbench.blocks.input_delay import InputDelay
-from hystbench.blocks.mechanism import Mechanism
-from hystbench.blocks.transfer_function import TransferFunction, possible_starts
+from hystbench.blocks.mechanism import Mechanism, free_starts
+from hystbench.blocks.starts import possible_starts
+from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
 from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
@@ -269,9 +270,7 @@ def masses(
     found: list[tuple[float, tuple[Block, ...]]] = []
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
-    # Where periods were left out the first sample is in the middle of a motion.
-    at_rest = _from_rest(records) and not all(item.repeats for item in records)
-    starts = ("rest",) if at_rest else possible_starts(records)
+    starts = _starts(records)
     span = max(record.dt * len(record) for record in records)
     fastest = 0.8 * np.pi / min(record.dt for record in records)
     grid = np.geomspace(2 * np.pi / span, fastest, FREQUENCIES)
@@ -302,14 +301,23 @@ def free_masses(
     records: tuple[Record, ...], output: str, hold: Hold
 ) -> Iterator[ModelState]:
     """Give a mass without a spring, begun at the rate of decay that fits best."""
+    windows = any(record.decay_s is not None for record in records)
+    allowed = ("rest",) if windows else free_starts(output)
+    starts = [own for own in _starts(records) if own in allowed]
     sample = ScoredSamples.of(records)
     wanted = sample.take([record.y for record in records])
     span = max(record.dt * len(record) for record in records)
     step = min(record.dt for record in records)
     found = []
-    for rate in np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES):
+    rates = np.geomspace(0.3 / span, 0.3 / step, FREQUENCIES)
+    for start, rate in itertools.product(starts, rates):
         unit = Mechanism(
-            mass=1.0, damping=rate, stiffness=0.0, output=output, hold=hold
+            mass=1.0,
+            damping=rate,
+            stiffness=0.0,
+            output=output,
+            start=start,
+            hold=hold,
         )
         ones = [np.ones(len(record)) for record in records]
         columns = np.column_stack(
@@ -365,6 +373,15 @@ def with_zero(state: ModelState) -> Iterator[ModelState]:
     block = state.chain[0]
     if isinstance(block, Mechanism) and block.output != "force":
         yield replace(state, free=(*state.free, Free(0, "blend")))
+
+
+def _starts(records: Sequence[Record]) -> Sequence[str]:
+    """Give the starts that hosts are begun with.
+
+    Where periods were left out the first sample is in the middle of a motion.
+    """
+    at_rest = _from_rest(records) and not all(item.repeats for item in records)
+    return ("rest",) if at_rest else possible_starts(records)
 
 
 def _from_rest(records: Sequence[Record]) -> bool:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from hystbench.blocks.held import Hold
-from hystbench.blocks.store import Store
+from hystbench.blocks.store import STARTS, Store
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.effects.law import Changed, Filled
 from hystbench.gap.fitting.state import Added, Free, ModelState
@@ -29,8 +29,9 @@ def stores(
 ) -> Iterator[ModelState]:
     """Give stores in series, with all their numbers free, begun.
 
-    At each set of rates the gain and a constant inflow are solved for. Nothing is
-    given where the output is negative somewhere beyond what noise does: no level is.
+    At each set of rates the gain and a constant inflow are solved for. The level at the
+    first sample is a number, or, of several records, that at which each rests. Nothing
+    is given where the output is negative somewhere beyond what noise does: no level is.
 
     Parameters
     ----------
@@ -65,12 +66,20 @@ def stores(
             chain = _chain(rates, float(gain), float(offset / gain), inflow, hold)
             last = replace(chain[-1], start_level=max(float(records[0].y[0]), 0.0))
             found.append((rest, (*chain[:-1], last)))
-    for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]:
-        free = [Free(0, "bias")]
+    likely = [chain for _, chain in sorted(found, key=lambda item: item[0])[:BEGUN]]
+    for start, chain in itertools.product(_starts(records), likely):
+        free = [Free(0, "bias"), Free(len(chain) - 1, "gain")]
         for k in range(len(chain)):
-            free += [Free(k, "rate"), Free(k, "start_level")]
-        free.append(Free(len(chain) - 1, "gain"))
-        yield ModelState(chain, records, sample, free=tuple(free), hold=hold)
+            free.append(Free(k, "rate"))
+            if start == "given":
+                free.append(Free(k, "start_level"))
+        begun = tuple(replace(store, start=start) for store in chain)
+        yield ModelState(begun, records, sample, free=tuple(free), hold=hold)
+
+
+def _starts(records: Sequence[Record]) -> tuple[str, ...]:
+    """Give the starts of stores: one record's level is a number, wherever it rests."""
+    return STARTS if len(records) > 1 else STARTS[:1]
 
 
 def _chain(

@@ -11,9 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.linear import low_pass
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.records.free_mass import runs
 from hystbench.operators import play
 from hystbench.record import FloatArray, Record
 
@@ -57,7 +59,7 @@ def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]
     """
     before, after = base.simulation.output, state.simulation.output
     increments = [b - a for a, b in zip(before, after, strict=True)]
-    over_time = paths(state, SLOW_COSINES)
+    over_time = in_runs(state, SLOW_COSINES)
     groups = {}
     if any(x.any() for x in increments):
         groups["strength"] = state.sample.take(increments)[:, None] * over_time
@@ -87,7 +89,7 @@ def generic_groups(base: ModelState, state: ModelState) -> dict[str, FloatArray]
 
 
 def halves(state: ModelState, signals: FloatArray) -> FloatArray:
-    """Give signals their two halves of every record as columns of their own.
+    """Give signals their two halves of every run as columns of their own.
 
     Parameters
     ----------
@@ -96,16 +98,50 @@ def halves(state: ModelState, signals: FloatArray) -> FloatArray:
 
     Returns
     -------
-    ndarray, shape (scored samples, 2 k records)
+    ndarray, shape (scored samples, 2 k runs)
     """
     columns = []
-    for rows in state.sample.slices:
-        middle = (rows.start + rows.stop) // 2
-        for part in (slice(rows.start, middle), slice(middle, rows.stop)):
+    for rows in _rows_of_runs(state):
+        for part in np.split(rows, [len(rows) // 2]):
             own = np.zeros_like(signals)
             own[part] = signals[part]
             columns.append(own)
     return np.hstack(columns)
+
+
+def in_runs(state: ModelState, count: int) -> FloatArray:
+    """Give every run a constant and cosines of its own, zero in the others.
+
+    Windows of one record are one run, over which a strength may change.
+
+    Parameters
+    ----------
+    state : ModelState
+    count : int
+        Cosines over a run.
+
+    Returns
+    -------
+    ndarray, shape (scored samples, cosines and constants of all runs)
+    """
+    found = []
+    for own, rows in zip(runs(state.records), _rows_of_runs(state), strict=True):
+        ends = np.cumsum([0, *(len(state.records[k]) for k in own)])
+        places = [state.sample.positions[k] + ends[n] for n, k in enumerate(own)]
+        phase = np.pi * (np.concatenate(places) + 0.5) / ends[-1]
+        columns = np.zeros((len(state.sample), count + 1))
+        columns[rows] = np.cos(phase[:, None] * np.arange(count + 1))
+        found.append(columns)
+    return np.hstack(found)
+
+
+def _rows_of_runs(state: ModelState) -> list[NDArray[np.intp]]:
+    """Give the scored samples of each run."""
+    slices = state.sample.slices
+    return [
+        np.concatenate([np.arange(slices[k].start, slices[k].stop) for k in own])
+        for own in runs(state.records)
+    ]
 
 
 def paths(
@@ -127,16 +163,17 @@ def paths(
     -------
     ndarray, shape (scored samples, cosines and constants of all records)
     """
-    sample, found = state.sample, []
-    for record, rows, positions in zip(
-        state.records, sample.slices, sample.positions, strict=True
+    sample = state.sample
+    each = [max(count, allowed(record)) + 1 for record in state.records]
+    ends = np.cumsum([0, *each])
+    # Hundreds of windows have six columns each: they are filled in, not joined.
+    found = np.zeros((len(sample), ends[-1]))
+    for record, rows, positions, a, b in zip(
+        state.records, sample.slices, sample.positions, ends[:-1], ends[1:], strict=True
     ):
-        most = max(count, allowed(record))
         phase = np.pi * (positions + 0.5) / len(record)
-        columns = np.zeros((len(sample), most + 1))
-        columns[rows] = np.cos(phase[:, None] * np.arange(most + 1))
-        found.append(columns)
-    return np.hstack(found)
+        found[rows, a:b] = np.cos(phase[:, None] * np.arange(b - a))
+    return found
 
 
 def _slow_power(dt: float, u: FloatArray, y: FloatArray, times: FloatArray) -> Columns:

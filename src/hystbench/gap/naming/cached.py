@@ -25,7 +25,7 @@ Tried = tuple[Attempt, Trial]
 def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried], str]:
     """Score every variant of an effect over its grid; or say why it declines."""
     try:
-        variants = list(effect.variants(state.simulation))
+        variants = list(effect.every_variant(state.simulation))
     except Declined as reason:
         return [], str(reason)
     runnable = [
@@ -82,6 +82,7 @@ def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, fl
     """
     variant = trial.variant
     about = [variant.effect, variant.place, variant.form, variant.start]
+    about.append(variant.start_state)
     return remembered_of(
         state,
         lambda: ["added", *about, trial.values, score.digest],

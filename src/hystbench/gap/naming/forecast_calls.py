@@ -46,7 +46,7 @@ def calls_of_a_round(state: ModelState) -> int:
     grids, before, names = 0, 0, set()
     for effect in among(state.offered).values():
         try:
-            variants = list(effect.variants(state.simulation))
+            variants = list(effect.every_variant(state.simulation))
         except Declined:
             continue
         for item in variants:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -106,6 +106,27 @@ def windows(record: Record, decay_s: float | None = None) -> tuple[Record, ...]:
         for k, (a, b) in enumerate(zip(starts, ends, strict=True))
         if b - a >= LEAST or len(starts) == 1
     )
+
+
+def runs(records: Sequence[Record]) -> tuple[tuple[int, ...], ...]:
+    """Give which records were measured in one run: windows of one record, or it alone.
+
+    Parameters
+    ----------
+    records : sequence of Record
+        As they were measured, or cut by :func:`windows`.
+
+    Returns
+    -------
+    tuple of tuple of int
+        Numbers of the records, by run.
+    """
+    found: dict[str, list[int]] = {}
+    for number, record in enumerate(records):
+        window = record.decay_s is not None
+        run = record.name.rpartition("-")[0] if window else f"{number} {record.name}"
+        found.setdefault(run, []).append(number)
+    return tuple(tuple(own) for own in found.values())
 
 
 def _starts(record: Record) -> list[int]:

@@ -1,0 +1,62 @@
+"""Linear effects of a device that was in operation before its records began."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hystbench.gap.effects import effects
+from hystbench.gap.naming.rank import rank
+from tests.gap.made import record
+from tests.gap.small import block, plain_score, state_of
+
+TAU, DT, COUNT = 0.4, 0.01, 1000
+NOISE = 0.002
+
+
+def operated(middle, whole=True):
+    """Two records of a lag of .4 s that has run long before, about a middle."""
+    rng = np.random.default_rng(2)
+    made = []
+    for k in range(2):
+        t = DT * np.arange(5 * COUNT)
+        u = middle + np.sin(2 * np.pi * 0.3 * t + k) + 0.5 * np.sin(2 * np.pi * 1.1 * t)
+        y = np.full(len(u), middle)
+        for n in range(1, len(u)):  # exact for straight lines, nearly
+            y[n] = y[n - 1] + (1 - np.exp(-DT / TAU)) * (
+                u[n - 1 : n + 1].mean() - y[n - 1]
+            )
+        own = record(
+            u[-COUNT:],
+            2.0 * y[-COUNT:] + NOISE * rng.standard_normal(COUNT),
+            name=f"run-{k}",
+            dt=DT,
+        )
+        made.append(replace(own, period_samples=COUNT if whole else None))
+    return tuple(made)
+
+
+BASE = (block("gain", value=2.0, offset=0.0),)
+
+
+@pytest.mark.parametrize(("whole", "start"), [(True, "repeating"), (False, "settled")])
+def test_a_lag_is_tried_from_where_it_operates(whole, start):
+    state = state_of(BASE, operated(6.0, whole))
+    lags = [effects()[name] for name in ("sensor-lag", "creep", "drift")]
+    first = rank(state, plain_score(state, NOISE**2), lags, folds=False)[0]
+    assert first.effect == "sensor-lag"
+    (lag,) = (x for x in first.state.chain if x.name == "sensor-lag")
+    assert lag.start == start
+    assert lag.time_constant_s == pytest.approx(TAU, rel=0.1)
+
+
+def test_an_input_that_comes_to_zero_may_begin_at_rest():
+    state = state_of(BASE, operated(0.0))
+    tried = list(effects()["sensor-lag"].every_variant(state.simulation))
+    assert [item.start_state for item in tried] == [""]
+
+
+def test_a_device_may_have_been_switched_on_with_its_record():
+    state = state_of(BASE, operated(6.0))
+    tried = list(effects()["drive-lag"].every_variant(state.simulation))
+    assert [item.start_state for item in tried] == ["", "repeating"]
