@@ -6,7 +6,7 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined
+from hystbench.gap.effects.base import Declined, Effect
 from hystbench.gap.fitting.variant_search import Attempt, coarse
 from hystbench.gap.naming.cached import tried
 from hystbench.gap.naming.rank import rank
@@ -15,7 +15,7 @@ from tests.gap.small import block, measured, plain_score, state_of
 NOISE = 0.02
 
 
-class Lags:
+class Lags(Effect):
     """The drive's lag, of which some variants refuse every value."""
 
     name, place = "drive-lag", "drive"

@@ -9,7 +9,7 @@ from hystbench.blocks.held import Hold
 from hystbench.gap.bases.lead import leads_left_out
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects import among
-from hystbench.gap.effects.base import places_between_halves
+from hystbench.gap.effects.places import places_between_halves
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.base_on_records import start_state

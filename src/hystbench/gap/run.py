@@ -204,13 +204,23 @@ def shown_on_hold_out(
         Without the leads of hold-out records that begin in the middle of a motion.
     outcome : Outcome
     """
-    say, found = say_in_words(say), fitted.base
-    evidence = without_lead(evidence, base, "hold_out", say)
-    if any(isinstance(block, Mechanism) for block in found.chain):
-        model = augmented(found, fitted.state)
-        evidence = without_lead(evidence, base, "hold_out", say, model)
+    evidence = as_found(evidence, base, fitted, say_in_words(say))
     vocabulary = vocabulary.in_device(evidence.device_kind)
     return evidence, outcome(fitted, decided, evidence, vocabulary, built_in)
+
+
+def as_found(
+    evidence: Evidence, base: Model, found: FitResult, say: Say = silent
+) -> Evidence:
+    """Leave out the leads of hold-out records, as of fit records.
+
+    They are asked for beside the base, and again beside forces that stand for it.
+    """
+    evidence = without_lead(evidence, base, "hold_out", say)
+    if not any(isinstance(block, Mechanism) for block in found.base.chain):
+        return evidence
+    model = augmented(found.base, found.state)
+    return without_lead(evidence, base, "hold_out", say, model)
 
 
 def write_shown(folder: Path, records: tuple[Record, ...], outcome: Outcome) -> None:

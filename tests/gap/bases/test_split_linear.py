@@ -13,7 +13,7 @@ from hystbench.gap.bases.split_linear import _block
 from hystbench.gap.bases.wiener_hammerstein import Halves, HalvesError
 from hystbench.gap.decision import search
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import INSIDE
+from hystbench.gap.effects.places import INSIDE
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.model import Model, load_model

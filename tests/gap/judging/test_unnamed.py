@@ -19,7 +19,7 @@ from hystbench.gap.judging.unnamed import (
     what_is_unnamed,
     winding,
 )
-from hystbench.gap.records.evidence import runs
+from hystbench.gap.records.free_mass import runs
 from hystbench.gap.report.words import verdict_sentence
 from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant, places_in_drive
+from hystbench.gap.effects.base import Effect, Variant
 from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.places import places_in_drive
 from hystbench.gap.simulation.simulation import Simulation
 
 

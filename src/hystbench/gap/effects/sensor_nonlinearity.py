@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from hystbench.gap.effects.base import Effect, Variant, places_in_sensor
+from hystbench.gap.effects.base import Effect, Variant
 from hystbench.gap.effects.law import Law, Moved
+from hystbench.gap.effects.places import places_in_sensor
 from hystbench.gap.simulation.simulation import Simulation
 
 UNSIGNED = "unsigned-sensor"

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import expit, logit
 
-from hystbench.gap.effects.base import Effect, Variant, places_in_drive
+from hystbench.gap.effects.base import Effect, Variant
+from hystbench.gap.effects.places import places_in_drive
 from hystbench.gap.simulation.simulation import Simulation
 
 
