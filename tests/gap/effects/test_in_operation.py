@@ -7,6 +7,7 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.naming.rank import rank
+from hystbench.gap.simulation.simulation import Simulation
 from tests.gap.made import record
 from tests.gap.small import block, plain_score, state_of
 
@@ -60,3 +61,13 @@ def test_a_device_may_have_been_switched_on_with_its_record():
     state = state_of(BASE, operated(6.0))
     tried = list(effects()["drive-lag"].every_variant(state.simulation))
     assert [item.start_state for item in tried] == ["", "repeating"]
+
+
+def test_on_a_record_that_does_not_repeat_its_first_value_has_stood_before():
+    """What was found on whole periods is shown on a step that was held out."""
+    chain = (block("sensor-lag", time_constant_s=TAU, start="repeating"),)
+    step = record(np.where(np.arange(COUNT) < 100, 5.0, 7.0), np.zeros(COUNT), dt=DT)
+    (whole,) = Simulation(chain, (replace(step, period_samples=COUNT),)).output
+    (once,) = Simulation(chain, (replace(step, period_samples=None),)).output
+    assert whole[0] > 6.5  # it comes from the end of the period before
+    np.testing.assert_allclose(once[:100], 5.0, atol=1e-12)

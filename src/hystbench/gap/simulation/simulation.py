@@ -93,11 +93,12 @@ class Simulation:
 
     def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
         """Send signals through blocks, from rest."""
-        steps = self._steps(blocks)
+        steps, once = self._steps(blocks), [_begun_once(block) for block in blocks]
+        begun = steps if once == [*blocks] else self._steps(once)
         out = []
         finely = self.fine and self.hold == LIMITED
         for z, record in zip(signals, self.records, strict=True):
-            for step in steps:
+            for step in steps if record.repeats else begun:
                 if finely and (isinstance(step, Wrapped) or step.hysteretic):
                     z = _finely(step, z, record.dt, SHORT_STEPS)
                 elif self.quick and _takes_short_steps(step):
@@ -272,6 +273,19 @@ def _quick(block: Block) -> Block:
     if block.place == "drive" or not block.smooths:
         return block
     return replace(block, hold="linear") if block.holding == LIMITED else block
+
+
+@lru_cache(maxsize=1024)
+def _begun_once(block: Block) -> Block:
+    """Give the block on a record that does not repeat: its first value has stood there.
+
+    A free mass has no place of balance, and rests.
+    """
+    if getattr(block, "start", "") != "repeating":
+        return block
+    free = isinstance(block, Mechanism) and block.stiffness == 0.0
+    begun: dict[str, Any] = {"start": "rest" if free else "settled"}
+    return replace(block, **begun)
 
 
 LIMITED = "band-limited"
