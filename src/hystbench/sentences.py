@@ -11,6 +11,11 @@ def listed(names: Sequence[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
+def percent(share: float) -> str:
+    """Write a share as it stands in a sentence."""
+    return f"{100 * share:.0f} %"
+
+
 def shortly(value: float, digits: int = 3) -> str:
     """Write a number to some digits; without an exponent up to a million."""
     text = f"{value:.{digits}g}"

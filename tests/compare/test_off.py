@@ -97,10 +97,10 @@ def test_the_ratio_in_the_file(tmp_path):
     assert row["half"] == "calibrated"
 
 
-def test_what_rounds_to_nought_has_no_minus():
+def test_a_displacement_that_is_right_is_no_reason():
     y = np.full(100, 9.17 * (1 - 1e-4))
     evidence = ClaimEvidence(
         runs=published_runs({CELL: 0.094}),
         records={"sine-010hz": make_record("sine-010hz", y, y)},
     )
-    assert "the RMS displacement is off by +0.0 %" in known(CELL, evidence)
+    assert "displacement" not in known(CELL, evidence)

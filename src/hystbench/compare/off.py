@@ -110,8 +110,8 @@ def _record(cell: ComparedCell, evidence: ClaimEvidence) -> str:
     percent = rms_error_percent(evidence).get(cell.signal)
     if percent is None:
         return ""
-    # Never minus nought.
-    return f"the RMS displacement is off by {round(percent, 1) + 0.0:+.1f} %"
+    off = f"{percent:+.1f}"
+    return f"the RMS displacement is off by {off} %" if float(off) else ""
 
 
 def _start_up(cell: ComparedCell, evidence: ClaimEvidence) -> str:

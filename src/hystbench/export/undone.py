@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from math import comb, factorial
 
@@ -15,6 +16,7 @@ from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.linear import LinearBlock, linear_step
 from hystbench.blocks.mechanism import Mechanism
 from hystbench.blocks.rate_dependent_hysteresis import RateDependentHysteresis
+from hystbench.blocks.starts import PASTS
 from hystbench.blocks.state_space import StateSpace
 from hystbench.blocks.step import Sampling, Step, polynomial
 from hystbench.blocks.wrapping import Hysteresis
@@ -172,7 +174,7 @@ def linear(block: LinearBlock) -> Iterator[Making]:
     system, order, w = _advanced(block)
     if order:
         yield partial(_derivatives, order, w)
-    yield partial(_exchanged, system, getattr(block, "start", "rest") != "rest")
+    yield partial(_exchanged, system, getattr(block, "start", "rest"))
 
 
 def _derivatives(order: int, w: float, sampling: Sampling) -> Step:
@@ -204,8 +206,10 @@ def _derivatives(order: int, w: float, sampling: Sampling) -> Step:
     )
 
 
-def _exchanged(system: StateSpace, settled: bool, sampling: Sampling) -> Step:
+def _exchanged(system: StateSpace, start: str, sampling: Sampling) -> Step:
     """Exchange the input and the output of what answers at once.
+
+    What depends on samples to come begins settled, which is told.
 
     Raises
     ------
@@ -221,7 +225,9 @@ def _exchanged(system: StateSpace, settled: bool, sampling: Sampling) -> Step:
     if (np.linalg.eigvals(a).real >= 0).any():
         raise CannotBe("its inverse is unstable")
     inverse = StateSpace(a, system.b / d, -system.c / d, 1 / d)
-    return linear_step(inverse, sampling, "band-limited", settled)
+    step = linear_step(inverse, sampling, "band-limited", start != "rest")
+    told = "begins as if its first value had always been there"
+    return replace(step, differs=told) if start in PASTS else step
 
 
 def motion(block: Mechanism, forces: tuple[Force, ...], sampling: Sampling) -> Step:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from hystbench.blocks.held import Hold
+from hystbench.blocks.store import Store
 from hystbench.gap.bases.lead import leads_left_out
 from hystbench.gap.bases.linear import is_identified
 from hystbench.gap.effects import among
@@ -88,7 +89,7 @@ def search(
     if places_between_halves(start.simulation):
         # The base itself says that there is a curve between two filters: a chain.
         chain = add_effects(start, floor.rms, say, unnamed_share)
-        if _why_enough(start, chain.state, floor, unnamed_share):
+        if quantities and _why_enough(start, chain.state, floor, unnamed_share):
             say("no force could gain what matters, so none is tried inside")
             quantities = None
     if quantities is not None:
@@ -153,8 +154,11 @@ def _with_forces(
     inside, own = look(start), NONE
     shorter = _without_leads(inside, base, records, hold, quantities, say)
     if shorter is not records:
+        whole = start, floor
         start, floor = start_state(shorter, base, hold, declared, start.offered)
         inside = look(start)
+        if inside is None:  # no force shows where a motion begins
+            start, floor = whole
     if not _leaves_little(inside, floor) and own_offsets(records, quantities):
         start, inside, own = apart_inside(start, inside, floor.rms, look, say)
     return start, floor, inside, own
@@ -175,6 +179,8 @@ def _without_leads(
     if inside is None or quantities.causality == "storage":
         return records
     found = augmented(inside.base, inside.named.state)
+    if any(isinstance(block, Store) for block in found.chain):
+        return records  # the level that it begins with is a number of its own
     return leads_left_out(records, base, hold, "fit", say, found)
 
 

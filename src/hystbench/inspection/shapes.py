@@ -70,7 +70,7 @@ def shapes_of(state: ModelState) -> tuple[list[Shape], dict[str, str]]:
     declined: dict[str, str] = {}
     for name, effect in effects().items():
         try:
-            variants = list(effect.variants(state.simulation))
+            variants = list(effect.every_variant(state.simulation))
         except Declined as why:
             declined[name] = str(why)
             continue

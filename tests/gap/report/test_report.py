@@ -729,6 +729,7 @@ def test_micro_is_written_one_way_in_sentences():
 def test_a_range_of_one_value_is_printed_as_that_value():
     assert explained([0.3591, 0.3592]).striptags() == "35.9 %"
     assert explained([0.3, 0.4]).striptags() == "30.0 % to 40.0 %"
+    assert explained([0.0, -0.0001]).striptags() == "0.0 %"
 
 
 @pytest.mark.parametrize(

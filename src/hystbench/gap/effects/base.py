@@ -103,7 +103,7 @@ class Variant:
         that the score of its trial says little.
     is_linear : bool
         Whether its block is linear dynamics.
-    start_state : str
+    operates : str
         How that starts, where it is not at rest.
     """
 
@@ -126,7 +126,7 @@ class Variant:
     zero: dict[str, float] | None = None
     begun: bool = False
     is_linear: bool = False
-    start_state: str = ""
+    operates: str = ""
 
     def ends(self, name: str) -> tuple[float, float]:
         """Give the ends of a searched parameter's range."""
@@ -356,7 +356,7 @@ def in_operation(variant: Variant, simulation: Simulation) -> Variant:
         blocks[place] = replace(own, start=start)
         return tuple(blocks)
 
-    return replace(variant, build=build, start_state=start)
+    return replace(variant, build=build, operates=start)
 
 
 def logarithmic(low: float, high: float, per_decade: float = 2.5) -> FloatArray:

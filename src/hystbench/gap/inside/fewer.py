@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.blocks.base import Block
+from hystbench.blocks.linear import LinearBlock
 from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.starts import plainest_start, possible_starts
 from hystbench.blocks.transfer_function import TransferFunction
@@ -52,13 +53,18 @@ def on_fewer(start: ModelState, quantities: Quantities) -> ModelState:
 
 
 def starting(chain: Sequence[Block], start: str) -> tuple[Block, ...]:
-    """Give linear dynamics another start; a free mass has only some."""
+    """Give linear dynamics another start; a free mass has only some.
+
+    A lag that is settled stays so where the dynamics are at rest.
+    """
     changed: Any = {"start": start}
 
     def may(block: Block) -> bool:
         if isinstance(block, Mechanism):
             return block.stiffness > 0.0 or start in free_starts(block.output)
-        return isinstance(block, TransferFunction)
+        return isinstance(block, LinearBlock) and (
+            start != "rest" or isinstance(block, TransferFunction)
+        )
 
     return tuple(replace(x, **changed) if may(x) else x for x in chain)
 

@@ -1,4 +1,4 @@
-"""Naming effects inside the dynamics, before effects in the chain are searched.
+"""Naming effects inside the dynamics.
 
 Whether they do better than those in the chain is asked afterwards (:func:`beats`).
 """
@@ -105,11 +105,11 @@ def named_inside(
         return None
 
     # Together forces are tried in the host that does best with one.
-    def least(found: Sequence[Hypothesis]) -> float:
+    def charge_of(found: Sequence[Hypothesis]) -> float:
         best = chosen(found, score.floor, share)
         return charged(best, found, score.floor, share)
 
-    host, found = min(tried, key=lambda item: least(item[1]))
+    host, found = min(tried, key=lambda item: charge_of(item[1]))
     found = together(found, offer, score, say)
     best, alone = chosen(found, score.floor, share), host.alone
     if not best.effects:

@@ -74,6 +74,8 @@ def stores(
             if start == "given":
                 free.append(Free(k, "start_level"))
         begun = tuple(replace(store, start=start) for store in chain)
+        if start != "given":
+            begun = tuple(replace(store, start_level=0.0) for store in begun)
         yield ModelState(begun, records, sample, free=tuple(free), hold=hold)
 
 

@@ -56,8 +56,9 @@ class Unnamed:
         What follows known signals and the named effects cannot own.
     changing : float or None
         What goes if the effects' strength and numbers may differ between the halves of
-        each record; None where no effect acts on the input. It is told and decides
-        nothing: what changes in time is structure too.
+        each run, a record or the windows that were cut from it; None where no effect
+        acts on the input. It is told and decides nothing: what changes in time is
+        structure too.
     unrelated : float
         What follows no known signal.
     gains : mapping of str to float

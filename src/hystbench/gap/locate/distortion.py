@@ -10,9 +10,10 @@ from scipy import fft, special
 
 from hystbench.gap.locate.picture import FREQUENCY, Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import LEAST_SHARE, SIGNIFICANT, chance, percent
+from hystbench.gap.locate.view import LEAST_SHARE, SIGNIFICANT, chance
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray
+from hystbench.sentences import percent
 
 IntArray = NDArray[np.int64]
 

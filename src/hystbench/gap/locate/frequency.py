@@ -22,10 +22,11 @@ from hystbench.gap.locate.picture import (
     thinned,
 )
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number, percent, view_of
+from hystbench.gap.locate.view import View, number, view_of
 from hystbench.gap.records.floor import periodogram
 from hystbench.gap.records.scored_samples import Compared, whole_periods
 from hystbench.record import FloatArray
+from hystbench.sentences import percent
 
 BANDS = 12
 """With a gain and a phase of their own."""

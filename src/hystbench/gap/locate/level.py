@@ -24,10 +24,11 @@ from hystbench.gap.locate.forms import saved
 from hystbench.gap.locate.mode import LINES, Lines, Mode, find_modes, fit_mode, lines_of
 from hystbench.gap.locate.picture import Axis, Panel, Picture, series
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number, percent
+from hystbench.gap.locate.view import View, number
 from hystbench.gap.records.scored_samples import Compared
 from hystbench.quantities import quantity_of
 from hystbench.record import FloatArray
+from hystbench.sentences import percent
 
 WORDS = {
     "hardening": "hardening, as of a spring that stiffens or a stop",

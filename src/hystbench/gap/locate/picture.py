@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from hystbench.gap.locate.samples import ViewSamples
 from hystbench.record import FloatArray
+from hystbench.sentences import percent
 
 POINTS = 200
 """Of a line, at most."""
@@ -195,7 +196,7 @@ def over_plane(samples: ViewSamples) -> Picture | None:
         "How to read it: a cell shows by how much the measurement lies above (red) or "
         "below (blue) the simulation, in the mean, where the input had that value and "
         "moved at that rate; above zero it rises, below it falls; grey cells have few "
-        f"samples. These cells hold {100 * share:.0f} % of the gap"
+        f"samples. These cells hold {percent(share)} of the gap"
     )
     return Picture("over-plane", words, (panel,))
 

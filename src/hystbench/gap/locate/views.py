@@ -26,9 +26,10 @@ from hystbench.gap.locate.picture import (
     over_time,
 )
 from hystbench.gap.locate.samples import ViewSamples
-from hystbench.gap.locate.view import View, number, percent, view_of
+from hystbench.gap.locate.view import View, number, view_of
 from hystbench.operators import play
 from hystbench.record import FloatArray, Mask
+from hystbench.sentences import percent
 
 KNOTS = 9
 """Of a curve over an axis."""

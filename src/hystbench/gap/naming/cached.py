@@ -82,7 +82,7 @@ def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, fl
     """
     variant = trial.variant
     about = [variant.effect, variant.place, variant.form, variant.start]
-    about.append(variant.start_state)
+    about.append(variant.operates)
     return remembered_of(
         state,
         lambda: ["added", *about, trial.values, score.digest],

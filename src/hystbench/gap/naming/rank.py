@@ -92,7 +92,10 @@ def rank(
     tested: dict[str, list[TriedVariant]] = {}
     for trial in refined:
         of_effect.setdefault(trial.variant.effect, trial)
-        tested.setdefault(trial.variant.effect, []).append(_tested(trial))
+        own, one = tested.setdefault(trial.variant.effect, []), _tested(trial)
+        # The same law from another start is no other law: the better one counts.
+        if all(one[:-1] != other[:-1] for other in own):
+            own.append(one)
     likely = [
         trial
         for number, trial in enumerate(of_effect.values())

@@ -229,15 +229,17 @@ def percent(share: float | None, decimals: int = 0) -> Markup:
     """Print a share in per cent."""
     if share is None:
         return number(None)
-    shown = _minus(f"{100 * share:.{decimals}f}") + NARROW + "%"
+    text = f"{100 * share:.{decimals}f}"
+    shown = _minus(text if float(text) else text.lstrip("-")) + NARROW + "%"
     return Markup('<data value="{}">{}</data>').format(repr(float(share)), shown)
 
 
 def explained(share: Any) -> Markup:
     """Print the share that is gone: a number, a range or none."""
-    ends = [percent(x, 1) for x in (share if isinstance(share, list) else [share])]
+    values = share if isinstance(share, list) else [share]
+    ends = [percent(x, 1) for x in values]
     same = ends[0].striptags() == ends[-1].striptags()
-    return ends[0] if same else ends[0] + Markup(" to ") + ends[-1]
+    return ends[0] if same else Markup("{} to {}").format(ends[0], ends[-1])
 
 
 def sentence(text: str) -> str:
