@@ -206,7 +206,7 @@ def searched():
             content=CONTENT | {"run": len(calls)},
         )
 
-    def outcome(fitted, decided, evidence):
+    def outcome(fitted, decided, evidence, *_):
         outputs = [(record.y, record.y) for record in evidence.hold_out]
         return run_module.Outcome(fitted.base, decided, outputs)
 
