@@ -93,8 +93,10 @@ class Simulation:
 
     def run(self, blocks: Sequence[Block], signals: Signals) -> Signals:
         """Send signals through blocks, from rest."""
-        steps, once = self._steps(blocks), [_begun_once(block) for block in blocks]
-        begun = steps if once == [*blocks] else self._steps(once)
+        begun = steps = self._steps(blocks)
+        repeating = any(getattr(block, "start", "") == "repeating" for block in blocks)
+        if repeating and not all(record.repeats for record in self.records):
+            begun = self._steps([_begun_once(block) for block in blocks])
         out = []
         finely = self.fine and self.hold == LIMITED
         for z, record in zip(signals, self.records, strict=True):
@@ -275,7 +277,6 @@ def _quick(block: Block) -> Block:
     return replace(block, hold="linear") if block.holding == LIMITED else block
 
 
-@lru_cache(maxsize=1024)
 def _begun_once(block: Block) -> Block:
     """Give the block on a record that does not repeat: its first value has stood there.
 
