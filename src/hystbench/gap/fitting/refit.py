@@ -8,6 +8,7 @@ import numpy as np
 
 from hystbench.errors import InputError
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.least_squares import fitted_to_the_end
 from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState, beside_count, beside_slope
@@ -16,9 +17,6 @@ from hystbench.record import FloatArray
 
 ROUNDS = 5
 """Of least squares in a refit."""
-
-BENDING = 3 * ROUNDS
-"""Of what a trial has only begun."""
 
 DAMPING = (0.0, 1e2, 1e4, 1e6)
 """Charge for a change of the whole of a number, tried until a step pays."""
@@ -92,17 +90,8 @@ def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, fl
     if trial.variant.zero is not None:
         after = after.settled()
     if trial.variant.begun:
-        after, _ = refit(after, _beside_its_shape(after, score), BENDING)
+        after = fitted_to_the_end(after, score).state
     return refit(after, score)
-
-
-def _beside_its_shape(state: ModelState, score: Score) -> Score:
-    """Give the score of a model whose hysteresis may have any shape.
-
-    What many numbers together make of a loop is then solved for, so that a refit from
-    far off finds the valley that it would else creep along.
-    """
-    return replace(score, directions=state.wrong_shape)
 
 
 def tuned(state: ModelState, score: Score) -> ModelState:
