@@ -149,11 +149,12 @@ def named_inside(
 def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
     """Tell whether effects inside do better than those in a chain.
 
-    They have to lower the score of records held back by as much as any effect.
+    They have to lower the score of records held back by as much as any effect. Both
+    models are refitted without those records.
     """
-    state = inside.named.state
+    state, chain = inside.named.state, named.state
     score = Score.plain(state.sample, floor_rms**2)
-    gain = gain_held_back(named.state, state, score)
+    gain = gain_held_back(chain, state, score) - gain_held_back(chain, chain, score)
     say(f"inside: gain {gain:.1f} on records held back")
     return gain >= PAYS
 
