@@ -77,7 +77,8 @@ class OutputError:
         With offsets of their own, those that fit the masked samples best.
         """
         error = self._masked(self.left(ratio), masks)
-        return float(sum(np.sum(part**2) for part in error))
+        with np.errstate(over="ignore"):  # of a ratio that runs away: infinite
+            return float(sum(np.sum(part**2) for part in error))
 
     def _masked(
         self, columns: Sequence[FloatArray], masks: Sequence[Mask]
