@@ -7,8 +7,8 @@ import pytest
 
 from hystbench.blocks.curve import finer
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.edit_chain import with_effect
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.step_error import above_floor, floor_with_steps, step_error
 from hystbench.gap.naming import add_effects as naming
 from hystbench.gap.naming.add_effects import Progress, advance

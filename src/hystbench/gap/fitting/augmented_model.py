@@ -8,7 +8,7 @@ from hystbench.blocks import registry
 from hystbench.blocks.base import Block
 from hystbench.blocks.parameter import SETTINGS
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.state import Added, ModelState, beside_count
+from hystbench.gap.fitting.state import Added, ModelState
 from hystbench.model import Model
 
 
@@ -102,12 +102,9 @@ def beside_blocks(state: ModelState) -> list[Block]:
     """Give the blocks of what lies beside the chain."""
     if not state.beside:
         return []
-    blocks, first = [], 0
-    for beside, values in state.beside:
-        count = beside_count(state, beside, values)
-        own = state.beside_amplitudes[first : first + count]
-        rows = own.reshape(len(state.records), -1)
+    blocks = []
+    each = state.by_signal(state.beside_amplitudes)
+    for (beside, values), rows in zip(state.beside, each, strict=True):
         described = effects()[beside.effect].describe(values, rows)
         blocks.append(registry()[beside.effect].from_mapping(described))
-        first += count
     return blocks

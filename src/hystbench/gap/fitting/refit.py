@@ -10,7 +10,7 @@ from hystbench.errors import InputError
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import ModelState, beside_count, beside_slope
+from hystbench.gap.fitting.state import ModelState, beside_slope
 from hystbench.gap.fitting.variant_search import Trial
 from hystbench.record import FloatArray
 
@@ -113,11 +113,13 @@ def tuned(state: ModelState, score: Score) -> ModelState:
     ModelState
         Never worse than the one given.
     """
-    for number, key in _searched(state):
+    searched = [(k, key) for k, (_, own) in enumerate(state.beside) for key in own]
+    for number, key in searched:
         for _ in range(ROUNDS):
             before = score_of(state, score)
             beside, values = state.beside[number]
-            slope = beside_slope(state, beside, values, key, _own(state, number))
+            own = state.by_signal(state.beside_amplitudes)[number].ravel()
+            slope = beside_slope(state, beside, values, key, own)
             columns = np.column_stack([state.tangents, state.beside_columns, slope])
             stiffness = state.change_charges(columns.shape[1])
             step = score.amplitudes(state.residual, columns, 0.0, stiffness).values[-1]
@@ -130,16 +132,6 @@ def tuned(state: ModelState, score: Score) -> ModelState:
             if before - after < ENOUGH:
                 break
     return state
-
-
-def _searched(state: ModelState) -> list[tuple[int, str]]:
-    return [(k, key) for k, (_, values) in enumerate(state.beside) for key in values]
-
-
-def _own(state: ModelState, number: int) -> FloatArray:
-    """Give the amplitudes of one of the signals beside."""
-    counts = [beside_count(state, *item) for item in state.beside[: number + 1]]
-    return state.beside_amplitudes[sum(counts[:-1]) : sum(counts)]
 
 
 def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.blocks.base import Block
@@ -112,10 +113,14 @@ class ModelState:
             correction=correction,
         )
 
+    @cached_property
+    def exact(self) -> Signals:
+        """The chain's output, simulated in short steps."""
+        return Simulation(self.chain, self.records, self.hold, fine=True).output
+
     def settled(self) -> ModelState:
         """Give the state with what the quick simulation lacks made up for."""
-        exact = Simulation(self.chain, self.records, self.hold, fine=True).output
-        lacks = self.sample.take(exact) - self.sample.take(self.simulation.output)
+        lacks = self.sample.take(self.exact) - self.sample.take(self.simulation.output)
         return replace(self, correction=lacks, corrected_at=self.chain)
 
     @cached_property
@@ -203,9 +208,17 @@ class ModelState:
     @cached_property
     def beside_columns(self) -> FloatArray:
         """Scored samples of the shapes beside, of every record on its own."""
-        return _stack(
-            [beside_columns(self, *item) for item in self.beside], len(self.sample)
-        )
+        return _stack(self._beside_each, len(self.sample))
+
+    @cached_property
+    def _beside_each(self) -> list[FloatArray]:
+        return [beside_columns(self, *item) for item in self.beside]
+
+    def by_signal(self, amplitudes: NDArray[Any]) -> list[NDArray[Any]]:
+        """Share the amplitudes of all shapes beside out: (records, k) a signal."""
+        ends = np.cumsum([columns.shape[1] for columns in self._beside_each], dtype=int)
+        parts = np.split(amplitudes, ends)[:-1]
+        return [own.reshape(len(self.records), -1) for own in parts]
 
     @cached_property
     def beside_amplitudes(self) -> FloatArray:
@@ -330,12 +343,6 @@ def beside_columns(state: ModelState, beside: Beside, values: Values) -> FloatAr
         full[where] = own
         parts.append(full)
     return np.hstack(parts)
-
-
-def beside_count(state: ModelState, beside: Beside, values: Values) -> int:
-    """Give the number of amplitudes of a signal beside, in all records together."""
-    each: int = beside.columns(state.records[0], values, beside.order).shape[1]
-    return each * len(state.records)
 
 
 def beside_slope(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Beside, Values
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.state import SMALL, ModelState, beside_count, beside_slope
+from hystbench.gap.fitting.state import SMALL, ModelState, beside_slope
 from hystbench.gap.fitting.uncertainty import between_stretches, by_record
 from hystbench.record import FloatArray
 
@@ -43,26 +42,21 @@ def beside_errors(state: ModelState, score: Score) -> list[Errors]:
     found = np.linalg.lstsq(columns, state.residual, rcond=1e-10)[0]
     fitted = np.asarray(found, dtype=np.float64)
     residual = state.residual - columns @ fitted
-    searched: list[FloatArray] = []
-    places = []
-    first = len(state.free)
-    for beside, values in state.beside:
-        count = beside_count(state, beside, values)
-        own = fitted[first : first + count]
-        places.append((first, count, columns.shape[1] + len(searched)))
-        searched += [beside_slope(state, beside, values, key, own) for key in values]
-        first += count
-    columns = np.column_stack([columns, *searched])
+    own = state.by_signal(np.arange(len(state.free), columns.shape[1]))
+    amplitudes, places = [], []
+    for (beside, values), rows in zip(state.beside, own, strict=True):
+        amplitudes.append(fitted[rows.ravel()])
+        searched = [
+            beside_slope(state, beside, values, key, amplitudes[-1]) for key in values
+        ]
+        behind = columns.shape[1] + np.arange(len(searched))
+        places.append([*rows.ravel(), *behind])
+        columns = np.column_stack([columns, *searched])
     covariance = _covariance(columns, residual, state, score.floor)
-    told = []
-    for (beside, values), (start, count, behind) in zip(
-        state.beside, places, strict=True
-    ):
-        own = fitted[start : start + count]
-        at = np.r_[start : start + count, behind : behind + len(values)]
-        part = covariance[np.ix_(at, at)]
-        told.append(_told(state, beside, values, own, part))
-    return told
+    return [
+        _told(state, *item, size, covariance[np.ix_(at, at)])
+        for item, size, at in zip(state.beside, amplitudes, places, strict=True)
+    ]
 
 
 def _covariance(
@@ -104,13 +98,6 @@ def _told(
 
 def _error(slopes: FloatArray, covariance: FloatArray) -> float | list[float]:
     """Give the errors of one parameter, from its slopes, shape (k,) or (k, m)."""
-    if slopes.ndim == 1:
-        return float(np.sqrt(max(float(slopes @ covariance @ slopes), 0.0)))
-    return list(_each(slopes, covariance))
-
-
-def _each(slopes: FloatArray, covariance: FloatArray) -> Iterator[float]:
-    for column in slopes.T:
-        found = _error(np.ascontiguousarray(column), covariance)
-        assert isinstance(found, float)  # noqa: S101  (for the type checker)
-        yield found
+    variance = np.einsum("i...,ij,j...->...", slopes, covariance, slopes)
+    errors: float | list[float] = np.sqrt(np.maximum(variance, 0.0)).tolist()
+    return errors

@@ -13,7 +13,7 @@ from typing import Any
 
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.base import Effect
-from hystbench.gap.fitting.base_on_records import run_base
+from hystbench.gap.fitting.on_records import run_base
 from hystbench.gap.holdout.show import (
     FitResult,
     Outcome,

@@ -14,9 +14,9 @@ from typing import Any
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.augmented_model import augmented
-from hystbench.gap.fitting.base_on_records import start_state
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.refit import finished
 from hystbench.gap.fitting.score import Score

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from hystbench.gap.effects import effects
-from hystbench.gap.fitting.compared_records import compared_records
+from hystbench.gap.fitting.on_records import compared_records
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.locate import Contribution
 from hystbench.gap.naming.add_effects import Named
