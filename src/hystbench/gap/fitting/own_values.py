@@ -117,16 +117,6 @@ class OwnValues:
         kinds, share = tuple(content["kinds"]), content["share_of_gap_power"]
         return cls(kinds, tuple(told), share)
 
-    def plain(self) -> list[Any]:
-        """Give the same as JSON holds it, all digits of it."""
-        return [list(self.kinds), [[name, *own] for name, own in self.records]]
-
-    @classmethod
-    def of_plain(cls, content: Sequence[Any]) -> OwnValues:
-        """Give back what :meth:`plain` gave of what :func:`own_values` found."""
-        kinds, records = content
-        return cls(tuple(kinds), tuple((name, Own(*own)) for name, *own in records))
-
     @property
     def words(self) -> str:
         """Name what it is, as ``a delay and a gain``."""

@@ -10,7 +10,7 @@ from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.named_inside import Inside
-from hystbench.gap.naming.with_own_values import ROUNDS, on_records, simulated
+from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import PAYS
 
@@ -49,7 +49,7 @@ def apart_inside(
     state = start if inside is None else inside.named.state
     found, least = (start, inside, NONE), score_of(state, score) - PAYS
     for _ in range(ROUNDS):
-        own = own_values(start.records, simulated(state), square, ("offset",))
+        own = own_values(start.records, state.exact, square, ("offset",))
         if not own.records:
             break
         say("inside: records have an offset of their own: looking beside that")

@@ -18,9 +18,8 @@ from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.naming import cached
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import Say
-from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, UNNAMED_SHARE
-from hystbench.record import FloatArray, Record
+from hystbench.record import Record
 
 
 def named_apart(
@@ -153,9 +152,9 @@ def _own_values(state: ModelState, start: ModelState, floor: float) -> OwnValues
     return remembered_of(
         state,
         lambda: ["own values", records_digest(start.records), floor, kinds],
-        lambda: own_values(start.records, simulated(state), floor, kinds),
-        OwnValues.plain,
-        OwnValues.of_plain,
+        lambda: own_values(start.records, state.exact, floor, kinds),
+        lambda own: own.mapping(start.records[0].output.unit),
+        OwnValues.of_mapping,
     )
 
 
@@ -168,8 +167,3 @@ def kinds_of(state: ModelState) -> tuple[str, ...]:
 def on_records(state: ModelState, records: tuple[Record, ...]) -> ModelState:
     """Give a model on other records of the same lengths."""
     return replace(state, records=records, correction=None).settled()
-
-
-def simulated(state: ModelState) -> Sequence[FloatArray]:
-    """Give the output of a model's chain on the fit records."""
-    return Simulation(state.chain, state.records, state.hold, fine=True).output
