@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -307,6 +307,33 @@ class ModelState:
     def with_chain(self, chain: tuple[Block, ...]) -> ModelState:
         """Give the state with other values in its chain."""
         return replace(self, chain=chain)
+
+    def rearranged(
+        self, chain: tuple[Block, ...], moved: Mapping[int, int]
+    ) -> ModelState:
+        """Give the state with its blocks at other places, in a chain of others too.
+
+        Free numbers and effects follow their blocks; what has no place any more goes.
+
+        Parameters
+        ----------
+        chain : tuple of Block
+        moved : mapping of int to int
+            Places in it of the blocks that stay, by their places now.
+        """
+        return replace(
+            self,
+            chain=chain,
+            free=tuple(
+                item._replace(block=moved[item.block])
+                for item in self.free
+                if item.block in moved
+            ),
+            added=tuple(
+                item._replace(blocks=tuple(moved[k] for k in item.blocks if k in moved))
+                for item in self.added
+            ),
+        )
 
     @cached_property
     def _simulated(self) -> FloatArray:

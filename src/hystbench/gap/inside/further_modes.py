@@ -211,22 +211,16 @@ def _with_mode(
     behind = list(chain[place + (0 if rest else 1) :])
     blocks = (*chain[:place], new, *behind)
     moved = {k: k + (rest and k >= place) for k in range(len(chain))}
-    free: list[Free] = []
-    for item in state.free:
-        old = state.chain[item.block]
-        if isinstance(old, OtherModes):
-            continue
-        free.append(item._replace(block=moved[item.block]))
-    for k in sorted({x.block for x in state.free}):
-        block = blocks[moved[k]]
+    with_numbers = {moved[x.block] for x in state.free}
+    free = [x for x in state.free if not isinstance(state.chain[x.block], OtherModes)]
+    state = replace(state, free=tuple(free)).rearranged(blocks, moved)
+    free = list(state.free)
+    for k in sorted(with_numbers):
+        block = blocks[k]
         if isinstance(block, OtherModes):
-            free += numbers_of(block, moved[k])
+            free += numbers_of(block, k)
     free += [Free(place, name) for name in NUMBERS]
-    added = (
-        item._replace(blocks=tuple(moved[k] for k in item.blocks))
-        for item in state.added
-    )
-    return replace(state, chain=blocks, free=tuple(free), added=tuple(added)).settled()
+    return replace(state, free=tuple(free)).settled()
 
 
 def _needs(state: ModelState) -> float:

@@ -30,7 +30,6 @@ from hystbench.gap.inside.best_host import best_host
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
-from hystbench.gap.simulation.simulation import Simulation
 from hystbench.gap.thresholds import UNNAMED_SHARE
 from hystbench.quantities import Quantities
 from hystbench.record import FloatArray, Record
@@ -161,17 +160,15 @@ def _behind(start: ModelState) -> ModelState:
 
 def _without_timing(start: ModelState) -> ModelState:
     """Give a base without the timing of its input, on the records as they are."""
-    free = (item._replace(block=item.block - 1) for item in start.free if item.block)
-    return replace(start, chain=start.chain[1:], free=tuple(free)).settled()
+    moved = {k: k - 1 for k in range(1, len(start.chain))}
+    return start.rearranged(start.chain[1:], moved).settled()
 
 
 def _in_front(delay: Block, start: ModelState, state: ModelState) -> ModelState:
     """Give a model of such records on those of a base, with the timing of its input."""
-    free = (item._replace(block=item.block + 1) for item in state.free)
-    chain = (delay, *state.chain)
-    return replace(
-        state, chain=chain, records=start.records, free=tuple(free)
-    ).settled()
+    moved = {k: k + 1 for k in range(len(state.chain))}
+    behind = state.rearranged((delay, *state.chain), moved)
+    return replace(behind, records=start.records).settled()
 
 
 def is_seen_moving(state: ModelState) -> bool:
@@ -206,18 +203,16 @@ def same_as(start: ModelState, quantities: Quantities) -> ModelState | None:
     It may differ by as much of the gap as may stay unnamed. Of a base that a gain and
     an offset do as well there is none: nothing moves in it.
     """
-    outputs = Simulation(start.chain, start.records, start.hold, fine=True).output
     simulated = tuple(
         replace(record, y=y, simulated=None, interpolated=None)
-        for record, y in zip(start.records, outputs, strict=True)
+        for record, y in zip(start.records, start.exact, strict=True)
     )
     most = UNNAMED_SHARE * float(np.mean(start.residual**2))
-    u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], outputs))
+    u, wanted = (start.sample.take(x) for x in ([r.u for r in simulated], start.exact))
     static = np.column_stack([u, np.ones(len(u))])
     if np.mean((wanted - static @ _solved(static, wanted)) ** 2) < most:
         return None
-    nothing = np.zeros((len(wanted), 0))
-    score = Score(ScoredSamples.of(simulated), nothing, 1e-3 * most)
+    score = Score.plain(ScoredSamples.of(simulated), 1e-3 * most)
     best = best_host(list(one_coordinate(simulated, quantities, start.hold)), score)
     if best is None or rms(best.state.residual) ** 2 > most:
         return None

@@ -34,31 +34,14 @@ def with_law(state: ModelState, effect: str, law: Law) -> ModelState:
         base[host] = replace(base[host], stiffness=spring)
     chain = (*base[:place], law.block, *base[place:])
 
-    def moved(block: int) -> int:
-        return block + 1 if block >= place else block
-
+    state = state.rearranged(chain, {k: k + (k >= place) for k in range(len(base))})
+    free = list(state.free)
+    for name in law.free:
+        low, high = law.ranges.get(name, (-np.inf, np.inf))
+        free.append(Free(place, name, low=low, high=high))
     values: dict[str, Any] = {name: getattr(law.block, name) for name in law.free}
     item = Added(effect, law.place, law.form, (place,), values, float(len(law.free)))
-    return replace(
-        state,
-        chain=chain,
-        free=(
-            *(free._replace(block=moved(free.block)) for free in state.free),
-            *(_free(place, name, law) for name in law.free),
-        ),
-        added=(
-            *(
-                old._replace(blocks=tuple(moved(block) for block in old.blocks))
-                for old in state.added
-            ),
-            item,
-        ),
-    )
-
-
-def _free(place: int, name: str, law: Law) -> Free:
-    low, high = law.ranges.get(name, (-np.inf, np.inf))
-    return Free(place, name, low=low, high=high)
+    return replace(state, free=tuple(free), added=(*state.added, item))
 
 
 def evened(state: ModelState) -> ModelState:
