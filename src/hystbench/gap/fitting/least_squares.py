@@ -44,6 +44,16 @@ class Fitted:
     state: ModelState
     score: float
 
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Its effects, in the order in which they were put in."""
+        return tuple(item.effect for item in self.state.added)
+
+    @property
+    def forms(self) -> tuple[str, ...]:
+        """Law of each."""
+        return tuple(item.form for item in self.state.added)
+
 
 def fitted(
     state: ModelState,

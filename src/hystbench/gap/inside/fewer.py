@@ -16,7 +16,7 @@ from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.fitting.least_squares import Fitted, fitted, judged
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.search import FEW, Hypothesis
+from hystbench.gap.inside.search import FEW
 from hystbench.gap.records.coarser import coarser, left_out
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.simulation import Simulation
@@ -130,16 +130,10 @@ class OnAll:
         return fitted(self.state(found.state), self.score, FEW)
 
     def hypotheses(
-        self, found: Sequence[Hypothesis], best: Sequence[Hypothesis]
-    ) -> list[Hypothesis]:
+        self, found: Sequence[Fitted], best: Sequence[Fitted]
+    ) -> list[Fitted]:
         """Fit the best ones to all samples, and score the others on them."""
-        return [
-            replace(
-                item,
-                fitted=(self.fitted if item in best else self.judged)(item.fitted),
-            )
-            for item in found
-        ]
+        return [(self.fitted if x in best else self.judged)(x) for x in found]
 
 
 def _simulated(whole: ModelState, chain: tuple[Block, ...]) -> FloatArray:

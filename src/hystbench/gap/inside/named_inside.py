@@ -15,6 +15,7 @@ import numpy as np
 from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
+from hystbench.gap.fitting.least_squares import Fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
@@ -27,7 +28,6 @@ from hystbench.gap.inside.further_modes import (
 from hystbench.gap.inside.hosts import hosts
 from hystbench.gap.inside.laws import laws_for
 from hystbench.gap.inside.search import (
-    Hypothesis,
     may_gain,
     singles,
     together,
@@ -105,7 +105,7 @@ def named_inside(
         return None
 
     # Together forces are tried in the host that does best with one.
-    def charge_of(found: Sequence[Hypothesis]) -> float:
+    def charge_of(found: Sequence[Fitted]) -> float:
         best = chosen(found, score.floor, share)
         return charged(best, found, score.floor, share)
 
@@ -123,9 +123,9 @@ def named_inside(
         place = [item is best for item in found].index(True)
         found = on_all.hypotheses(found, way)
         best = found[place]
-        alone = found[0].fitted.state if identified else on_all.state(alone)
-    fitted = found[0].fitted.state
-    state = replace(best.fitted.state, offered=start.offered).settled()
+        alone = found[0].state if identified else on_all.state(alone)
+    fitted = found[0].state
+    state = replace(best.state, offered=start.offered).settled()
     alone = with_modes(replace(alone, offered=start.offered), modes).settled()
     left = (float(np.sqrt(max(x.power(floor_rms**2), 0.0))) for x in (start, alone))
     before, after = (f"{rms:.3g} {base.output.unit}" for rms in left)
@@ -159,8 +159,8 @@ def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> 
 
 
 def charged(
-    item: Hypothesis,
-    found: Sequence[Hypothesis],
+    item: Fitted,
+    found: Sequence[Fitted],
     floor: float,
     share: float = UNNAMED_SHARE,
 ) -> float:
@@ -169,14 +169,14 @@ def charged(
     A further one must take a share of the gap that matters, or be beyond doubt: what is
     left after the right force is also what its law, or the simulation, misses.
     """
-    gap, value = max(found[0].fitted.state.power(floor), floor), item.score
+    gap, value = max(found[0].state.power(floor), floor), item.score
     for before, after in pairwise((found[0], *way_to(item, found))):
-        taken = after.fitted.state.share(before.fitted.state, floor, gap)
+        taken = after.state.share(before.state, floor, gap)
         value += for_a_further(taken, share) if before.effects else PAYS
     return value
 
 
-def way_to(item: Hypothesis, found: Sequence[Hypothesis]) -> list[Hypothesis]:
+def way_to(item: Fitted, found: Sequence[Fitted]) -> list[Fitted]:
     """Give hypotheses of one effect more each, up to one with all of them.
 
     The effect that is missed least comes last, and so on.
@@ -194,8 +194,8 @@ def way_to(item: Hypothesis, found: Sequence[Hypothesis]) -> list[Hypothesis]:
 
 
 def chosen(
-    found: Sequence[Hypothesis], floor: float, share: float = UNNAMED_SHARE
-) -> Hypothesis:
+    found: Sequence[Fitted], floor: float, share: float = UNNAMED_SHARE
+) -> Fitted:
     """Take the least score with what effects have to pay; of a tie the fewest numbers.
 
     Bouc and Wen's hysteresis that yields at once is dry friction, which has one number.
@@ -210,16 +210,14 @@ def chosen(
         if value < min(values) + SCALE and len(item.effects) == len(best.effects)
     ]
 
-    def unlikely(item: Hypothesis) -> tuple[float, int, float]:
+    def unlikely(item: Fitted) -> tuple[float, int, float]:
         special = sum(effects()[name].special for name in item.effects)
-        return item.fitted.state.freedom, -special, item.score
+        return item.state.freedom, -special, item.score
 
     return min(tied, key=unlikely)
 
 
-def _rounds(
-    start: ModelState, best: Hypothesis, found: Sequence[Hypothesis]
-) -> list[Round]:
+def _rounds(start: ModelState, best: Fitted, found: Sequence[Fitted]) -> list[Round]:
     """Write how the effects were found as rounds: each beside those before it.
 
     They come in the order of :func:`way_to`.
@@ -235,14 +233,14 @@ def _rounds(
         (effect,) = {*taken.effects} - already
         ranking = sorted(candidates, key=lambda x: (x.effect != effect, x.score))
         rounds.append(Round(before, now, tuple(ranking), True))
-        before, now = taken.fitted.state, taken.score
+        before, now = taken.state, taken.score
         already = frozenset(taken.effects)
     return rounds
 
 
-def _candidate(item: Hypothesis, already: frozenset[str], now: float) -> Candidate:
+def _candidate(item: Fitted, already: frozenset[str], now: float) -> Candidate:
     """Give the effect that a hypothesis has beyond those of the rounds before."""
-    state = item.fitted.state
+    state = item.state
     last = next(x for x in state.added if x.effect not in already)
     return Candidate(
         last.effect, last.place, last.form, item.score, now - item.score, state
