@@ -12,12 +12,11 @@ from hystbench.blocks.calls import USED_UP, Calls, current
 from hystbench.gap.experiment.excitations import Limits
 from hystbench.gap.experiment.tell_apart import Experiment, tell_apart
 from hystbench.gap.fitting.augmented_model import augmented, blocks_of
-from hystbench.gap.fitting.model_score import make_score
+from hystbench.gap.fitting.model_score import floor_with_steps, make_score, step_error
 from hystbench.gap.fitting.on_records import compared_records
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.fitting.step_error import floor_with_steps, step_error
 from hystbench.gap.fitting.uncertainty import (
     on_more_samples,
     size_error,

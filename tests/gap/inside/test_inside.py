@@ -24,9 +24,8 @@ from hystbench.gap.inside.hosts import (
     is_seen_moving,
     one_coordinate,
 )
-from hystbench.gap.inside.laws import how_it_moves, laws_for
+from hystbench.gap.inside.laws import evened, how_it_moves, laws_for, with_law
 from hystbench.gap.inside.named_inside import chosen, named_inside
-from hystbench.gap.inside.put_in import evened, with_law
 from hystbench.gap.inside.search import (
     starts,
     with_one_fewer,

@@ -7,8 +7,7 @@ import pytest
 
 from hystbench.gap.fitting.edit_chain import without_effect
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.inside.best_host import best_host
-from hystbench.gap.inside.hosts import hosts
+from hystbench.gap.inside.hosts import best_host, hosts
 from hystbench.gap.inside.named_inside import chosen
 from hystbench.gap.inside.stores import stores
 from hystbench.quantities import Quantities

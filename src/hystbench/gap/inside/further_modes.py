@@ -16,7 +16,7 @@ from hystbench.gap.fitting.least_squares import Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Added, Free, ModelState
 from hystbench.gap.inside.beginnings import Beginnings
-from hystbench.gap.inside.laws import Offer
+from hystbench.gap.inside.laws import Offer, host_of
 from hystbench.gap.inside.modes import (
     NONE,
     NUMBERS,
@@ -25,7 +25,6 @@ from hystbench.gap.inside.modes import (
     numbers_of,
     taken_out,
 )
-from hystbench.gap.inside.put_in import host_of
 from hystbench.gap.inside.search import (
     fitted_likely,
     may_gain,

@@ -23,10 +23,9 @@ from hystbench.blocks.mechanism import Mechanism, free_starts
 from hystbench.blocks.starts import possible_starts
 from hystbench.blocks.transfer_function import TransferFunction
 from hystbench.gap.bases.orders import HIGHEST
-from hystbench.gap.fitting.least_squares import Fitted, fitted
+from hystbench.gap.fitting.least_squares import QUICK, Fitted, fitted
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import Free, ModelState
-from hystbench.gap.inside.best_host import best_host
 from hystbench.gap.inside.modes import frequency_of, modes, shows_a_pole
 from hystbench.gap.inside.stores import in_other_order, stores
 from hystbench.gap.records.scored_samples import ScoredSamples, rms
@@ -131,6 +130,29 @@ def hosts(
             f"the base's mode at {frequency_of(block):.3g} Hz is a mechanism of its own"
         )
         yield Host(best.state if identified else mode, best, words)
+
+
+def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
+    """Fit linear hosts, the likely ones to the end; give the one that scores least.
+
+    What it gives as its output may also have a share of the next derivative (a zero).
+    """
+    if not states:
+        return None
+    quick = [fitted(state, score, QUICK) for state in states]
+    best = fitted(min(quick, key=lambda item: item.score).state, score)
+    for further in with_zero(best.state):
+        found = fitted(further, score)
+        if found.score < best.score:
+            best = found
+    return best
+
+
+def with_zero(state: ModelState) -> Iterator[ModelState]:
+    """Give a mechanism with a zero in its numerator."""
+    block = state.chain[0]
+    if isinstance(block, Mechanism) and block.output != "force":
+        yield replace(state, free=(*state.free, Free(0, "blend")))
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:
