@@ -6,7 +6,7 @@ import pytest
 
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined, Effect
+from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.fitting.variant_search import Attempt, coarse
 from hystbench.gap.naming.cached import tried
 from hystbench.gap.naming.rank import rank

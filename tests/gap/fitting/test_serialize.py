@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Declined
+from hystbench.gap.effects.effect import Declined
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import make_score
 from hystbench.gap.fitting.on_records import start_state

@@ -10,7 +10,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.wrapping import WrappingBlock
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Values, Variant
+from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.fitting.state import Added, Free, ModelState
 
 AT_END = 0.02

@@ -10,7 +10,7 @@ import numpy as np
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Variant
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Attempt

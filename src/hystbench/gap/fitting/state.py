@@ -15,7 +15,7 @@ from hystbench.blocks.base import Block
 from hystbench.blocks.held import Hold
 from hystbench.blocks.transfer_function import stable
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Beside, Refused, Values
+from hystbench.gap.effects.variant import Beside, Refused, Values
 from hystbench.gap.records.scored_samples import ScoredSamples
 from hystbench.gap.simulation.reshape import orthonormal, reshapings
 from hystbench.gap.simulation.simulation import Signals, Simulation

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from hystbench.gap.effects import effects
-from hystbench.gap.effects.base import Beside, Values
+from hystbench.gap.effects.variant import Beside, Values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import SMALL, ModelState, beside_slope
 from hystbench.gap.fitting.uncertainty import between_stretches, by_record

@@ -12,7 +12,8 @@ import numpy as np
 from hystbench.blocks.calls import CallsUsedUp
 from hystbench.blocks.parameter import HUGE
 from hystbench.errors import InputError
-from hystbench.gap.effects.base import Declined, Values, Variant
+from hystbench.gap.effects.effect import Declined
+from hystbench.gap.effects.variant import Values, Variant
 from hystbench.gap.fitting.score import Amplitudes, Products, Score
 from hystbench.gap.fitting.state import ModelState, beside_columns
 from hystbench.record import FloatArray

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from hystbench.blocks.simulated_column import NEEDS_RERUN
-from hystbench.gap.effects.base import Declined, Effect, Variant
+from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting import refit, variant_search
 from hystbench.gap.fitting.glance import glance_of, thinned
 from hystbench.gap.fitting.score import Score

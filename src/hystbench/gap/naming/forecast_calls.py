@@ -6,7 +6,8 @@ from hystbench.blocks.calls import PATIENCE, current, minutes
 from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects import among
-from hystbench.gap.effects.base import Declined, Variant
+from hystbench.gap.effects.effect import Declined
+from hystbench.gap.effects.variant import Variant
 from hystbench.gap.fitting.glance import records_at_a_glance
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import MANY

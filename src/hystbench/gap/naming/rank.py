@@ -11,7 +11,7 @@ from hystbench.blocks.calls import USED_UP, CallsUsedUp, current
 from hystbench.blocks.simulator import Simulator
 from hystbench.errors import InputError
 from hystbench.gap.effects import among, effects
-from hystbench.gap.effects.base import Effect
+from hystbench.gap.effects.effect import Effect
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.edit_chain import at_end
 from hystbench.gap.fitting.model_score import directions_of, score_of
