@@ -120,20 +120,19 @@ class OnAll:
             sample=self.whole.sample,
         ).settled()
 
-    def judged(self, found: Fitted) -> Fitted:
-        """Score a model on all samples as it is."""
-        state = self.state(found.state)
-        return Fitted(state, judged(state, self.score))
-
-    def fitted(self, found: Fitted) -> Fitted:
-        """Fit a model to all samples, from where it is."""
-        return fitted(self.state(found.state), self.score, FEW)
-
     def hypotheses(
         self, found: Sequence[Fitted], best: Sequence[Fitted]
     ) -> list[Fitted]:
         """Fit the best ones to all samples, and score the others on them."""
-        return [(self.fitted if x in best else self.judged)(x) for x in found]
+        on_all = []
+        for item in found:
+            state = self.state(item.state)
+            on_all.append(
+                fitted(state, self.score, FEW)
+                if item in best
+                else Fitted(state, judged(state, self.score))
+            )
+        return on_all
 
 
 def _simulated(whole: ModelState, chain: tuple[Block, ...]) -> FloatArray:

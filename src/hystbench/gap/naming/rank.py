@@ -122,9 +122,7 @@ def rank(
         if effect not in finalists
     ]
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
-    judged = [_not_cut_short(item, state) for item in judged]
-    declined += [item for item in judged if item.declined]
-    candidates = in_order(item for item in judged if not item.declined)
+    candidates = in_order(_not_cut_short(x, state) for x in (*judged, *declined))
     exact = [
         item.effect
         for item in candidates[:EXACT]
@@ -136,14 +134,12 @@ def rank(
     )
     candidates = beside_their_own_shapes(candidates, exact, state, score.floor)
     if not folds:
-        return (*_beyond_others(candidates, state, score), *declined)
-    judged = [
+        return tuple(_beyond_others(candidates, state, score))
+    candidates = in_order(
         _not_cut_short(item, state) for item in first_on_folds(candidates, state, score)
-    ]
-    declined += [item for item in judged if item.declined]
-    candidates = in_order(item for item in judged if not item.declined)
+    )
     # Folds may put one first that was not simulated exactly.
-    while candidates and candidates[0].effect not in exact and candidates[0].held_back:
+    while candidates[0].effect not in exact and candidates[0].held_back:
         first = candidates.pop(0)
         exact.append(first.effect)
         again = on_folds(exactly(first, score, now), state, score)
@@ -151,7 +147,7 @@ def rank(
         candidates = in_order(
             first_on_folds(in_order([again, *candidates]), state, score)
         )
-    return (*_beyond_others(candidates, state, score), *declined)
+    return tuple(_beyond_others(candidates, state, score))
 
 
 def _beyond_others(
