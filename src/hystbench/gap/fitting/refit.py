@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +12,11 @@ from hystbench.errors import InputError
 from hystbench.gap.fitting.edit_chain import with_effect
 from hystbench.gap.fitting.model_score import beside_of, score_beside, score_of
 from hystbench.gap.fitting.score import Score
+from hystbench.gap.fitting.serialize import (
+    remembered_of,
+    state_again,
+    state_with_correction,
+)
 from hystbench.gap.fitting.state import ModelState, beside_slope
 from hystbench.gap.fitting.variant_search import Trial
 from hystbench.record import FloatArray
@@ -87,22 +94,49 @@ def sizes(state: ModelState) -> FloatArray:
 
 
 def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
-    """Add an effect as a trial found it and refit everything together."""
+    """Add an effect as a trial found it and refit everything together.
+
+    Raises
+    ------
+    InputError
+        If a block refuses the values.
+    """
+    variant = trial.variant
+    about = [variant.effect, variant.place, variant.form, variant.start]
+    about.append(variant.operates)
+    return _remembered(
+        state,
+        lambda: ["added", *about, trial.values, score.digest],
+        lambda: _added(state, trial, score),
+    )
+
+
+def _remembered(
+    state: ModelState,
+    key: Callable[[], list[Any]],
+    compute: Callable[[], tuple[ModelState, float]],
+) -> tuple[ModelState, float]:
+    """Compute a model that follows from another one, or look it up."""
+    return remembered_of(
+        state,
+        key,
+        compute,
+        lambda found: [state_with_correction(found[0]), found[1]],
+        lambda kept: (state_again(kept[0], state), kept[1]),
+    )
+
+
+def _added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
     after = with_effect(state, trial.variant, trial.values)
     if trial.variant.zero is not None:
         after = after.settled()
     if trial.variant.begun:
-        after, _ = refit(after, _beside_its_shape(after, score), BENDING)
+        # Beside any shape that the hysteresis may have. What many numbers together make
+        # of a loop is then solved for, so that a refit from far off finds the valley
+        # that it would else creep along.
+        of_any_shape = replace(score, directions=after.wrong_shape)
+        after, _ = refit(after, of_any_shape, BENDING)
     return refit(after, score)
-
-
-def _beside_its_shape(state: ModelState, score: Score) -> Score:
-    """Give the score of a model whose hysteresis may have any shape.
-
-    What many numbers together make of a loop is then solved for, so that a refit from
-    far off finds the valley that it would else creep along.
-    """
-    return replace(score, directions=state.wrong_shape)
 
 
 def tuned(state: ModelState, score: Score) -> ModelState:
@@ -136,6 +170,14 @@ def tuned(state: ModelState, score: Score) -> ModelState:
 
 def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     """Simulate a model exactly and refit it to the end."""
+    return _remembered(
+        state,
+        lambda: ["finished", score.digest],
+        lambda: _finished(state, score),
+    )
+
+
+def _finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
     state = state.settled()
     state, _ = refit(state, score)
     state = tuned(state, score)

@@ -141,18 +141,11 @@ def best_host(states: Sequence[ModelState], score: Score) -> Fitted | None:
         return None
     quick = [fitted(state, score, QUICK) for state in states]
     best = fitted(min(quick, key=lambda item: item.score).state, score)
-    for further in with_zero(best.state):
-        found = fitted(further, score)
-        if found.score < best.score:
-            best = found
-    return best
-
-
-def with_zero(state: ModelState) -> Iterator[ModelState]:
-    """Give a mechanism with a zero in its numerator."""
-    block = state.chain[0]
+    block, free = best.state.chain[0], best.state.free
     if isinstance(block, Mechanism) and block.output != "force":
-        yield replace(state, free=(*state.free, Free(0, "blend")))
+        with_zero = replace(best.state, free=(*free, Free(0, "blend")))
+        best = min(best, fitted(with_zero, score), key=lambda item: item.score)
+    return best
 
 
 def _loose(state: ModelState, score: Score, words: str) -> Iterator[Host]:

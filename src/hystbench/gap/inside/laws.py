@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from hystbench.blocks.base import Block
 from hystbench.blocks.force import Force, against
 from hystbench.blocks.impedance import Impedance
 from hystbench.blocks.mechanism import Mechanism
@@ -184,9 +183,5 @@ def _as_strong(state: ModelState, place: int) -> ModelState:
 
 def host_of(state: ModelState) -> int:
     """Give the place of what forces are put inside of: the last host of the chain."""
-    return max(k for k, block in enumerate(state.chain) if is_host(block))
-
-
-def is_host(block: Block) -> bool:
-    """Tell whether forces can act inside a block."""
-    return isinstance(block, Mechanism | Impedance)
+    hosts = (Mechanism, Impedance)
+    return max(k for k, block in enumerate(state.chain) if isinstance(block, hosts))

@@ -11,11 +11,10 @@ from hystbench.gap.cache import records_digest
 from hystbench.gap.fitting.edit_chain import removable, without_effect
 from hystbench.gap.fitting.model_score import make_score, score_of
 from hystbench.gap.fitting.own_values import KINDS, NONE, OwnValues, own_values
-from hystbench.gap.fitting.refit import ENOUGH
+from hystbench.gap.fitting.refit import ENOUGH, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.naming import cached
 from hystbench.gap.naming.add_effects import Named, add_effects
 from hystbench.gap.progress import Say
 from hystbench.gap.thresholds import ABOVE_NOISE, PAYS, UNNAMED_SHARE
@@ -136,7 +135,7 @@ def _likely(
             if not own.records:
                 break
             bare = own.taken_off(start.records, start.hold)
-            apart, value = cached.finished(on_records(state, bare), score)
+            apart, value = finished(on_records(state, bare), score)
             if value + own.charge >= best[0] - ENOUGH:
                 break
             best = value + own.charge, own

@@ -1,4 +1,4 @@
-"""The four steps of naming that cost: computed, or looked up where they were before."""
+"""All variants of an effect beside a model, each over its grid."""
 
 from __future__ import annotations
 
@@ -8,14 +8,9 @@ from typing import Any
 from hystbench.blocks.simulated_column import NEEDS_RERUN
 from hystbench.gap.effects.effect import Declined, Effect
 from hystbench.gap.effects.variant import Variant
-from hystbench.gap.fitting import refit, variant_search
 from hystbench.gap.fitting.glance import glance_of, thinned
 from hystbench.gap.fitting.score import Score
-from hystbench.gap.fitting.serialize import (
-    remembered_of,
-    state_again,
-    state_with_correction,
-)
+from hystbench.gap.fitting.serialize import remembered_of
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.variant_search import Attempt, Trial, coarse
 
@@ -58,58 +53,6 @@ def tried(effect: Effect, state: ModelState, score: Score) -> tuple[list[Tried],
         ],
         read,
     )
-
-
-def fine(attempt: Attempt, trial: Trial) -> Trial:
-    """Search a variant around the best point of its grid."""
-    variant = trial.variant
-    about = [variant.effect, attempt.number, trial.values]
-    return remembered_of(
-        attempt.state,
-        lambda: ["fine", *about, attempt.score.digest],
-        lambda: variant_search.fine(attempt, trial),
-        lambda found: [found.values, found.score],
-        lambda kept: Trial(variant, *kept),
-    )
-
-
-def added(state: ModelState, trial: Trial, score: Score) -> tuple[ModelState, float]:
-    """Add an effect as a trial found it and refit everything together.
-
-    Raises
-    ------
-    InputError
-        If a block refuses the values.
-    """
-    variant = trial.variant
-    about = [variant.effect, variant.place, variant.form, variant.start]
-    about.append(variant.operates)
-    return remembered_of(
-        state,
-        lambda: ["added", *about, trial.values, score.digest],
-        lambda: refit.added(state, trial, score),
-        _written,
-        lambda kept: _read(kept, state),
-    )
-
-
-def finished(state: ModelState, score: Score) -> tuple[ModelState, float]:
-    """Simulate a model exactly and refit it to the end."""
-    return remembered_of(
-        state,
-        lambda: ["finished", score.digest],
-        lambda: refit.finished(state, score),
-        _written,
-        lambda kept: _read(kept, state),
-    )
-
-
-def _written(result: tuple[ModelState, float]) -> list[Any]:
-    return [state_with_correction(result[0]), result[1]]
-
-
-def _read(kept: list[Any], like: ModelState) -> tuple[ModelState, float]:
-    return state_again(kept[0], like), kept[1]
 
 
 def _tried(
