@@ -111,13 +111,10 @@ def judge_and_tell(
         named = named.taken_back()
         left = what_is_left(start, named.state, floor.rms)
     state, model = named.state, augmented(base, named.state)
-    before = compared_records(start)
-    after = before if state is start else compared_records(state)
+    before, after = compared_records(start), compared_records(state)
     found = _judged(start, named, left, floor, before, after, own, unnamed_share)
     ladder = rungs(start, named)
-    simulated = {start: before, state: after}
-    is_named = found.verdict == "named"
-    contributed = contributions(ladder, simulated) if is_named else ()
+    contributed = contributions(ladder) if found.verdict == "named" else ()
     where = locate(before, floor, contributed)
     say(where[0].sentence)
     say(f"{found.verdict}: {found.reason}")

@@ -123,7 +123,7 @@ def rank(
         if effect not in finalists
     ]
     judged = [replace(x, variants=tuple(tested[x.effect])) for x in judged]
-    candidates = in_order(_not_cut_short(x, state) for x in (*judged, *declined))
+    candidates = in_order(_not_cut_short(x, state) for x in (*declined, *judged))
     exact = [
         item.effect
         for item in candidates[:EXACT]
