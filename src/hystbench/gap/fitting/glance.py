@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hystbench.blocks.base import Block
 from hystbench.blocks.linear import LinearBlock
@@ -71,9 +72,15 @@ def _half(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     kept = sorted(order.tolist())
     if len(kept) == count:
         return state, score
-    few = state.on(kept)
-    directions = np.concatenate([score.directions[slices[k]] for k in kept])
-    return few, Score(few.sample, orthonormal(directions), score.floor)
+    rows = np.concatenate([np.arange(slices[k].start, slices[k].stop) for k in kept])
+    records = tuple(state.records[k] for k in kept)
+    few = state.on(records, state.sample.on(kept), rows)
+    return few, _on(few.sample, rows, score)
+
+
+def _on(sample: ScoredSamples, rows: NDArray[np.intp], score: Score) -> Score:
+    """Give a score of fewer samples."""
+    return Score(sample, orthonormal(score.directions[rows]), score.floor)
 
 
 @lru_cache(maxsize=1)
@@ -87,14 +94,9 @@ def _coarser(state: ModelState, score: Score) -> tuple[ModelState, Score]:
     ]
     rows = np.concatenate(kept)
     every = np.concatenate(state.sample.positions)
-    few = replace(
-        state,
-        sample=ScoredSamples(tuple(every[own] for own in kept)),
-        correction=None if state.correction is None else state.correction[rows],
-    )
-    directions = orthonormal(score.directions[rows])
-    few = _in_longer_steps(few, STRAIGHT)
-    return few, Score(few.sample, directions, score.floor)
+    sample = ScoredSamples(tuple(every[own] for own in kept))
+    few = _in_longer_steps(state.on(state.records, sample, rows), STRAIGHT)
+    return few, _on(few.sample, rows, score)
 
 
 @lru_cache(maxsize=2)

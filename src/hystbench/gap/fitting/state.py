@@ -100,18 +100,12 @@ class ModelState:
         """The chain on the records, simulated quickly."""
         return Simulation(self.chain, self.records, self.hold, quick=True)
 
-    def on(self, kept: Sequence[int]) -> ModelState:
-        """Give the state on some of its records, by number."""
-        rows = [self.sample.slices[k] for k in kept]
-        correction = self.correction
-        if correction is not None:
-            correction = np.concatenate([correction[part] for part in rows])
-        return replace(
-            self,
-            records=tuple(self.records[k] for k in kept),
-            sample=self.sample.on(kept),
-            correction=correction,
-        )
+    def on(
+        self, records: tuple[Record, ...], sample: ScoredSamples, rows: NDArray[Any]
+    ) -> ModelState:
+        """Give the state on less: the rows are the scored samples that are left."""
+        lacks = None if self.correction is None else self.correction[rows]
+        return replace(self, records=records, sample=sample, correction=lacks)
 
     @cached_property
     def exact(self) -> Signals:
