@@ -16,8 +16,7 @@ from hystbench.gap.fitting.augmented_model import augmented
 from hystbench.gap.fitting.on_records import start_state
 from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.state import ModelState
-from hystbench.gap.inside.apart import apart_inside
-from hystbench.gap.inside.named_inside import Inside, beats, named_inside
+from hystbench.gap.inside.named_inside import Inside, apart_inside, beats, named_inside
 from hystbench.gap.judge_and_tell import Decision, judge_and_tell
 from hystbench.gap.naming.add_effects import add_effects
 from hystbench.gap.naming.with_own_values import named_apart

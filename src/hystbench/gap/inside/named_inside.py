@@ -1,11 +1,11 @@
-"""Naming effects inside the dynamics.
+"""Naming effects inside the dynamics, also of records with a zero of their own.
 
 Whether they do better than those in the chain is asked afterwards (:func:`beats`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -16,6 +16,8 @@ from hystbench.blocks.attached import AttachedBlock
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.cross_validation import gain_held_back
 from hystbench.gap.fitting.least_squares import Fitted
+from hystbench.gap.fitting.model_score import score_of
+from hystbench.gap.fitting.own_values import NONE, OwnValues, own_values
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.inside.fewer import OnAll, on_fewer
@@ -34,6 +36,7 @@ from hystbench.gap.inside.search import (
 )
 from hystbench.gap.naming.add_effects import Named
 from hystbench.gap.naming.rounds import Candidate, Round
+from hystbench.gap.naming.with_own_values import ROUNDS, on_records
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.gap.simulation.simulation import may_have_hysteresis
@@ -144,6 +147,59 @@ def named_inside(
         Named(state, tuple(rounds)),
         sentence,
     )
+
+
+def apart_inside(
+    start: ModelState,
+    inside: Inside | None,
+    floor_rms: float,
+    look: Callable[[ModelState], Inside | None],
+    say: Say,
+) -> tuple[ModelState, Inside | None, OwnValues]:
+    """Look for forces again without the offsets that records have of their own.
+
+    Offsets are found beside what was named, then beside what is named without them, and
+    so on while the score falls. The first time it has to fall by what an effect has to
+    gain, all offsets charged.
+
+    Parameters
+    ----------
+    start : ModelState
+        The base on the fit records.
+    inside : Inside or None
+        What was found on them as they are.
+    floor_rms : float
+    look : callable
+        Finds forces beside a base.
+    say : callable
+
+    Returns
+    -------
+    start : ModelState
+        The base on records without their offsets, or as it was.
+    inside : Inside or None
+    own : OwnValues
+    """
+    square = floor_rms**2
+    score = Score.plain(start.sample, square)
+    state = start if inside is None else inside.named.state
+    found, least = (start, inside, NONE), score_of(state, score) - PAYS
+    for _ in range(ROUNDS):
+        own = own_values(start.records, state.exact, square, ("offset",))
+        if not own.records:
+            break
+        say("inside: records have an offset of their own: looking beside that")
+        apart = on_records(start, own.taken_off(start.records, start.hold))
+        again, before = look(apart), [item.effect for item in state.added]
+        state = apart if again is None else again.named.state
+        value = score_of(state, score) + own.charge
+        if again is None or value >= least:
+            break
+        share = apart.share(start, square, start.power(square))
+        found, least = (apart, again, replace(own, share=share)), value
+        if [item.effect for item in state.added] == before:
+            break  # looking has told all that it can
+    return found
 
 
 def beats(inside: Inside, named: Named, floor_rms: float, say: Say = silent) -> bool:
