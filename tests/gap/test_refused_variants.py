@@ -7,9 +7,9 @@ import pytest
 from hystbench.errors import InputError
 from hystbench.gap.effects import effects
 from hystbench.gap.effects.effect import Declined, Effect
+from hystbench.gap.fitting.tried import tried
 from hystbench.gap.fitting.variant_search import Attempt, coarse
 from hystbench.gap.naming.rank import rank
-from hystbench.gap.naming.tried import tried
 from tests.gap.small import block, measured, plain_score, state_of
 
 NOISE = 0.02

@@ -18,11 +18,11 @@ from hystbench.gap.fitting.own_values import NONE, OwnValues
 from hystbench.gap.fitting.parameters import at_ends, base_parameters
 from hystbench.gap.fitting.state import ModelState
 from hystbench.gap.fitting.uncertainty import (
+    beside_errors,
     on_more_samples,
     size_error,
     standard_errors,
 )
-from hystbench.gap.fitting.uncertainty_beside import beside_errors
 from hystbench.gap.holdout.show import FitResult
 from hystbench.gap.judging.black_box import BlackBox, black_box
 from hystbench.gap.judging.gap_json import (

@@ -5,7 +5,7 @@ import pytest
 
 from hystbench.gap.effects import effects
 from hystbench.gap.fitting.state import Added, Free, ModelState
-from hystbench.gap.fitting.uncertainty_beside import beside_errors
+from hystbench.gap.fitting.uncertainty import beside_errors
 from hystbench.gap.records.scored_samples import ScoredSamples
 from tests.gap.made import record
 from tests.gap.small import block, plain_score

@@ -21,9 +21,9 @@ from hystbench.gap.fitting.parameters import parameters_of
 from hystbench.gap.fitting.refit import added, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.tried import tried
 from hystbench.gap.fitting.uncertainty import on_more_samples, standard_errors
 from hystbench.gap.fitting.variant_search import Trial, fine
-from hystbench.gap.naming.tried import tried
 from hystbench.gap.progress import Say, silent
 from hystbench.gap.records.evidence import Evidence
 from hystbench.model import Model

@@ -10,8 +10,8 @@ from hystbench.errors import InputError
 from hystbench.gap.effects import among
 from hystbench.gap.effects.effect import Declined
 from hystbench.gap.effects.variant import Variant
-from hystbench.gap.fitting.glance import records_at_a_glance
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.tried import records_at_a_glance
 from hystbench.gap.fitting.variant_search import MANY
 from hystbench.gap.naming.rank import FINALISTS
 from hystbench.gap.naming.rounds import MOST

@@ -18,9 +18,9 @@ from hystbench.gap.fitting.model_score import directions_of, score_of
 from hystbench.gap.fitting.refit import added, finished
 from hystbench.gap.fitting.score import Score
 from hystbench.gap.fitting.state import ModelState
+from hystbench.gap.fitting.tried import Tried, tried
 from hystbench.gap.fitting.variant_search import Trial, fine
 from hystbench.gap.naming.rounds import Candidate, TriedVariant, best_forms, in_order
-from hystbench.gap.naming.tried import Tried, tried
 from hystbench.gap.thresholds import (
     CERTAIN,
     LOOSE,
