@@ -125,11 +125,6 @@ class Variant:
         own = len(self.grids) + len(self.unit)
         return own if self.charge is None else self.charge
 
-    @property
-    def label(self) -> str:
-        """The effect, with its form where it has several."""
-        return f"{self.effect} ({self.form})" if self.form else self.effect
-
 
 def in_operation(variant: Variant, simulation: Simulation) -> Variant:
     """Give a linear variant that has operated before its records began.
