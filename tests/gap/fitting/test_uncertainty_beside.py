@@ -49,6 +49,18 @@ def humming(seed):
     return state_of("mains-pickup", 1, values, tone, seed)
 
 
+def test_amplitudes_of_two_signals_are_shared_out_by_record():
+    """Of a ramp one a record, of a tone two: in the order of the columns."""
+    drift, tone = drifting(1), humming(1)
+    both = ModelState(
+        drift.chain, drift.records, drift.sample, beside=(*drift.beside, *tone.beside)
+    )
+    assert both.beside_columns.shape[1] == 6
+    ramps, tones = both.by_signal(np.arange(6))
+    assert ramps.tolist() == [[0], [1]]
+    assert tones.tolist() == [[2, 3], [4, 5]]
+
+
 def errors(state):
     (found,) = beside_errors(state, plain_score(state, 1e-9))
     return found

@@ -20,8 +20,8 @@ def augmented(base: Model, state: ModelState) -> Model:
     same share of what they are now. What the base tells of where numbers came from
     stays with those that were not re-tuned.
     """
-    chain = [*state.chain, *(block for block in beside_blocks(state))]
-    model = Model(f"{base.name}-augmented", base.input, base.output, tuple(chain))
+    chain = (*state.chain, *beside_blocks(state))
+    model = Model(f"{base.name}-augmented", base.input, base.output, chain)
     names = list(model.parameter_names())
     own = [k for item in state.added for k in item.blocks]
     labels = [label for label, _ in model.labelled()]

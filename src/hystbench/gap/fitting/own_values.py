@@ -28,8 +28,7 @@ from hystbench.gap.records.nuisance import FIRST
 from hystbench.gap.thresholds import PARAMETER, PAYS, RECORD_WEIGHT, SCALE
 from hystbench.record import FloatArray, Record
 
-KEYS = {"delay": "delay_s", "gain": "gain", "offset": "offset"}
-KINDS = tuple(KEYS)
+KINDS = ("delay", "gain", "offset")
 LONGEST = 1 / 20
 """Of a record, that it may be late or early by, as for a delay that all share."""
 FINER = 1e-3
@@ -96,11 +95,7 @@ class OwnValues:
             return None
         return {
             "kinds": list(self.kinds),
-            "records": [
-                {"name": name}
-                | {KEYS[kind]: getattr(own, KEYS[kind]) for kind in KINDS}
-                for name, own in self.records
-            ],
+            "records": [{"name": name, **own._asdict()} for name, own in self.records],
             "share_of_gap_power": self.share,
             "sentence": self._sentence(unit),
         }
@@ -111,7 +106,7 @@ class OwnValues:
         if content is None:
             return NONE
         told = [
-            (item["name"], Own(*(item[KEYS[kind]] for kind in KINDS)))
+            (item["name"], Own(*(item[key] for key in Own._fields)))
             for item in content["records"]
         ]
         kinds, share = tuple(content["kinds"]), content["share_of_gap_power"]
